@@ -1,4 +1,4 @@
-"""`uvicorn service.app:app`: the service as the environment sets it up."""
+"""`uvicorn service.app:app`: the service, configured by environment variables."""
 
 from fastapi import FastAPI
 
@@ -9,7 +9,7 @@ from service.settings import SettingsError, load_settings
 
 
 def create() -> FastAPI:
-    """The service. Ends the process with the reason where a setting or exercise is unusable."""
+    """Return the service. End the process with the reason if a setting or exercise is unusable."""
     check_kinds()
     try:
         return installed_app(load_settings())

@@ -1,4 +1,4 @@
-"""The check, when the program starts, that every answer kind has its three files."""
+"""The startup check that every answer kind has its three files."""
 
 from collections.abc import Mapping, Set
 from pathlib import Path
@@ -11,13 +11,13 @@ _SOLUTIONS: Final = Path(__file__).parent / "solutions" / "kinds"
 
 
 def check_kinds() -> None:
-    """Check that catalogue, grading and solutions know the same kinds. Raises KindError."""
-    # By their text: SymPy, which the model answers need, takes half a second to import.
+    """Raise KindError unless catalogue, grading and solutions have the same kinds."""
+    # Read the text of the solutions: importing them would load SymPy, which takes half a second.
     texts = {file.stem: file.read_text(encoding="utf-8") for file in _SOLUTIONS.glob("*.py")}
     solved = {
         kind for kind, text in texts.items() if "\ndef answer(" in text and "\ndef lazy(" in text
     }
-    refuse_half_made(
+    require_complete(
         {
             "service/catalogue/parts": SPECS.keys(),
             "service/grading/kinds": KINDS.keys(),
@@ -26,12 +26,12 @@ def check_kinds() -> None:
     )
 
 
-def refuse_half_made(kinds: Mapping[str, Set[str]]) -> None:
-    """Check that each folder has the same kinds. Raises KindError naming the files that lack."""
+def require_complete(kinds: Mapping[str, Set[str]]) -> None:
+    """Raise KindError, which names the missing files, unless all folders have the same kinds."""
     problems = []
     for kind in sorted(frozenset[str]().union(*kinds.values())):
-        lacking = [f"{folder}/{kind}.py" for folder, known in kinds.items() if kind not in known]
-        if lacking:
-            problems.append(f"The answer kind {kind!r} is half made: write {', '.join(lacking)}.")
+        missing = [f"{folder}/{kind}.py" for folder, known in kinds.items() if kind not in known]
+        if missing:
+            problems.append(f"The answer kind {kind!r} is incomplete: write {', '.join(missing)}.")
     if problems:
         raise KindError("\n".join(problems))

@@ -1,4 +1,4 @@
-"""The grading of what one student handed in, here and now."""
+"""Grade the submission of one student on this machine."""
 
 import traceback
 from collections.abc import Callable
@@ -23,11 +23,10 @@ _LONGEST_NAME = 60
 
 @dataclass(frozen=True, slots=True)
 class GradingTerms:
-    """What is graded, and how much the reports tell.
+    """The assignment to grade, and the options of the reports.
 
-    ``feedback`` is the level that the command line asks for. Without it a report tells what the
-    file asks for, and ``for_students`` no more than they may see; else these are a tutor's own
-    files, so nothing need be kept back. ``echo`` tells how each cell was read.
+    ``feedback`` is the level of the command line. Without it, the level is that of the submission,
+    or, with ``for_students``, at most that of the exercise. ``echo`` shows how each cell was read.
     """
 
     assignment: Assignment
@@ -38,25 +37,25 @@ class GradingTerms:
 
     @property
     def answered(self) -> tuple[AnsweredExercise, ...]:
-        """The exercises that are set, as they stand in results."""
+        """The assigned exercises as results show them."""
         return tuple(
             answered(assigned.exercise, assigned.worth) for assigned in self.assignment.exercises
         )
 
     def submission(self, body: GradeRequest, assigned: AssignedExercise) -> Submission:
-        """What is handed to the grader."""
+        """Return the submission for the grader, with the feedback level of these terms."""
         most = self.assignment.ceiling(assigned) if self.for_students else FeedbackLevel.FULL
         submission = body.submission(most)
         feedback = submission.feedback if self.feedback is None else self.feedback
         return replace(submission, feedback=feedback, echo=self.echo or submission.echo)
 
 
-# Answers to an exercise -> their report, or else the problem because of which there is none.
+# A function that returns the report on answers to an exercise and "", or None and a problem.
 ReportOn = Callable[[GradeRequest, AssignedExercise, GradingTerms], tuple[Report | None, str]]
 
 
 def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
-    """The problem of answers to a part that the exercise does not have; empty where it has all."""
+    """Return a problem if the answers name an unknown part of the exercise, otherwise ""."""
     known = [part.id for part in assigned.exercise.parts]
     unknown = next((part for part in body.answers if part not in known), None)
     if unknown is None:
@@ -72,7 +71,7 @@ def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
 def report_here(
     body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
 ) -> tuple[Report | None, str]:
-    """The report on answers to an exercise of this installation, or the problem."""
+    """Grade answers to an exercise of this installation; return the report or a problem."""
     exercise = assigned.exercise
     if not isinstance(exercise, Exercise):
         raise TypeError(f"{exercise.id} is an exercise of a server, and cannot be graded here")
@@ -80,10 +79,10 @@ def report_here(
         return None, problem
     try:
         return grade(exercise, terms.submission(body, assigned)), ""
-    except Exception as error:  # noqa: BLE001 - a fault of the program costs this submission only
+    except Exception as error:  # noqa: BLE001 - a fault of the program affects only this submission
         place = traceback.extract_tb(error.__traceback__)[-1]
         return None, (
-            "cannot be graded, for the program has a fault; please report it: "
+            "cannot be graded because of a fault in the program; please report it: "
             f"{type(error).__name__} in {place.name}, line {place.lineno}"
         )
 
@@ -91,9 +90,9 @@ def report_here(
 def graded(
     handed: HandedIn, terms: GradingTerms, report_on: ReportOn = report_here
 ) -> GradedSubmission:
-    """The submission with a report on each exercise, or the problem because of which it has none.
+    """Return the submission with a report or a problem for each exercise.
 
-    Nothing that is handed in makes it raise an exception.
+    No submission causes an exception.
     """
     answers = answers_in(handed, terms.assignment)
     files = tuple(

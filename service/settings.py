@@ -1,4 +1,4 @@
-"""The settings of an installation: environment variables that begin with DH_GRADER."""
+"""The settings of an installation, from environment variables DH_GRADER_…."""
 
 import os
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from service.catalogue import FeedbackLevel, shipped_folder
 from service.submissions.lookup import nearest
 
 PREFIX = "DH_GRADER_"
-# Stands for the folder of the exercises that come with the program.
+# The word in DH_GRADER_EXERCISES_DIR for the folder of the shipped exercises.
 SHIPPED = "shipped"
 
 
@@ -23,11 +23,11 @@ _SHORT_SECRET = f"is short; it needs {SHORTEST_SECRET} characters, such as opens
 
 
 class SettingsError(Exception):
-    """One or more environment variables cannot be used; the text has a line for each."""
+    """One or more environment variables cannot be used; the message has a line for each."""
 
 
 class Settings(BaseSettings):
-    """The settings; each is the variable DH_GRADER_ and its name in capitals."""
+    """The settings. Each is read from the variable DH_GRADER_ with its name in capitals."""
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True)
 
@@ -37,7 +37,7 @@ class Settings(BaseSettings):
         "`0.0.0.0` for all addresses.",
     )
     port: int = Field(
-        8000, ge=0, le=65535, description="The port that `serve` listens on; 0 takes a free one."
+        8000, ge=0, le=65535, description="The port that `serve` listens on; 0 for a free one."
     )
     workers: int = Field(
         1, ge=1, le=64, description="The number of processes that `serve` starts, up to 64."
@@ -144,15 +144,17 @@ class Settings(BaseSettings):
     @field_validator("host")
     @classmethod
     def _is_named(cls, host: str) -> str:
-        # An empty one would listen everywhere, which must be asked for by its name.
+        # An empty host would listen on all addresses; that requires an explicit 0.0.0.0.
         if not host or host.split() != [host]:
-            raise ValueError("is no address; write 127.0.0.1 for this machine, 0.0.0.0 for all")
+            raise ValueError(
+                "is not an address; write 127.0.0.1 for this machine, 0.0.0.0 for all addresses"
+            )
         return host
 
     @field_validator("database", mode="before")
     @classmethod
     def _is_set(cls, value: object) -> object:
-        # A file of settings, such as that of Docker Compose, can leave a variable empty only.
+        # In a file of settings, such as that of Docker Compose, an unset variable is empty.
         return None if isinstance(value, str) and not value.strip() else value
 
     @field_validator("secret")
@@ -196,18 +198,18 @@ class Settings(BaseSettings):
         for origin in origins:
             if origin != "*" and origin != _origin_in(origin):
                 raise ValueError(
-                    f"{origin!r} is no origin; write scheme and host in small letters, without a "
+                    f"{origin!r} is not an origin; write scheme and host in lower case, without a "
                     "path, such as https://course.example.edu"
                 )
         return origins
 
     @property
     def open_access(self) -> OpenAccess:
-        """What needs no key."""
+        """The operations that need no key."""
         return open_access(self.open)
 
     def known_secret(self) -> Secret | None:
-        """The secret, or None where none is set. Raises SettingsError."""
+        """Return the secret, or None if none is set. Raises SettingsError."""
         if self.secret is not None:
             return Secret(self.secret.get_secret_value())
         if self.secret_file is None:
@@ -222,7 +224,7 @@ class Settings(BaseSettings):
 
 
 def load_settings(**options: Any) -> Settings:
-    """The settings of this process; an option that is given counts more than its variable.
+    """Load the settings from the environment; ``options`` that are not None override them.
 
     Raises SettingsError.
     """
@@ -243,7 +245,7 @@ def _reason(message: str) -> str:
 
 
 def _unknown() -> Iterator[str]:
-    """The complaints about variables that are named like settings and are none."""
+    """Yield messages about variables that begin with DH_GRADER_ but are not settings."""
     for variable in sorted(os.environ):
         prefix, name = variable[: len(PREFIX)].upper(), variable[len(PREFIX) :].lower()
         if prefix == PREFIX and name not in Settings.model_fields:
@@ -253,7 +255,7 @@ def _unknown() -> Iterator[str]:
 
 
 def _origin_in(text: str) -> str:
-    """The origin that a browser would send for an address."""
+    """The origin that a browser sends for an address, or ""."""
     try:
         parts = urlsplit(text)
         port = f":{parts.port}" if parts.port is not None else ""

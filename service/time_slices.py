@@ -1,8 +1,8 @@
-"""Long work in slices of time: the event loop serves others between them.
+"""Run long work in time slices, so that the event loop can serve others between them.
 
-A grading is a function of plain Python that may take 60 ms. ``in_slices`` runs it in a greenlet, a
-stack of its own, which can be left in the midst and entered again. The work says at ``checkpoint``
-where that may be; what it computes does not depend on it.
+A grading is a plain Python function that may take 60 ms. ``in_slices`` runs it in a greenlet, which
+has its own stack and can be suspended and resumed. The work calls ``checkpoint`` where it may be
+suspended; its result does not depend on that.
 """
 
 import contextvars
@@ -15,41 +15,41 @@ from greenlet import GreenletExit, getcurrent, greenlet
 
 R = TypeVar("R")
 
-# Seconds that work goes on until the next checkpoint stops it.
+# The length of a slice (seconds); the next checkpoint after it suspends the work.
 SLICE: Final = 0.004
 
-# The time at which the present slice ends. There is one for the whole process: ``in_slices`` is
-# called in the thread of the event loop alone, and other threads are never stopped.
+# The end of the current slice. One for the whole process is enough: ``in_slices`` is called only in
+# the thread of the event loop, and other threads are never suspended.
 _end = math.inf
 
 
 class _Sliced(greenlet):  # type: ignore[misc]
-    """Work that can be stopped and continued; ``stopped`` counts the seconds in between."""
+    """Work that can be suspended; ``suspended`` is the total time of suspension (seconds)."""
 
-    stopped = 0.0
+    suspended = 0.0
 
 
 def checkpoint() -> None:
-    """Stop here until it is this work's turn again, if its slice is over."""
+    """Suspend this work until its next turn if its slice is over."""
     if perf_counter() < _end:
         return
     current = getcurrent()
     if isinstance(current, _Sliced):
         began = perf_counter()
         current.parent.switch()
-        current.stopped += perf_counter() - began
+        current.suspended += perf_counter() - began
 
 
 def working_time() -> float:
-    """Return a time in seconds that stands still while the present work is stopped."""
+    """Return a time in seconds that does not advance while the current work is suspended."""
     current = getcurrent()
-    return perf_counter() - (current.stopped if isinstance(current, _Sliced) else 0.0)
+    return perf_counter() - (current.suspended if isinstance(current, _Sliced) else 0.0)
 
 
 async def in_slices(work: Callable[[], R], give_way: Callable[[], Awaitable[None]]) -> R:
-    """Return the result of ``work``; ``give_way`` is awaited between its slices.
+    """Return the result of ``work``; await ``give_way`` between its slices.
 
-    Raises what either of them raises; work that is given up is ended at its checkpoint.
+    Exceptions of both are raised. If ``give_way`` raises one, the work ends at its checkpoint.
     """
     sliced = _Sliced(work)
     sliced.gr_context = contextvars.copy_context()

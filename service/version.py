@@ -1,4 +1,4 @@
-"""The program's version, as it is installed."""
+"""The installed version of the program."""
 
 from importlib.metadata import version
 from typing import Final

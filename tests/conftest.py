@@ -1,4 +1,4 @@
-"""What every test folder may use: the shipped exercises, and exercises written for one test."""
+"""Fixtures for all tests: the shipped exercises, exercises for single tests, and a server."""
 
 import gc
 import os
@@ -18,11 +18,11 @@ from tests.shipped import shipped_exercises
 
 pytest_plugins = ["tests.browser.fixtures"]
 
-# The suite starts this program a hundred times: it would be compiled each time.
+# The suite starts this program a hundred times: without bytecode it would be compiled each time.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# How long one example takes says more about the machine than about the code.
+# No deadline: the time of an example depends more on the machine than on the code.
 for profile, examples in (("suite", 30), ("thorough", 500)):
     settings.register_profile(
         profile,
@@ -37,7 +37,7 @@ FIGURE = "figure"
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """One more than there are cores: many a test waits for a process or a page."""
+    """One more than the number of cores, because many tests wait for a process or a page."""
     return (os.cpu_count() or 1) + 1
 
 
@@ -46,14 +46,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Shuffle all tests if asked to; each process does so alike."""
+    """Shuffle all tests if ``--shuffle`` is given; each process uses the same order."""
     if seed := config.getoption("shuffle"):
         random.Random(seed).shuffle(items)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """The collector of garbage never looks at the tests themselves, which live to the end."""
+    """Exclude the tests, which live to the end, from garbage collection."""
     gc.disable()
     try:
         return (yield)
@@ -64,12 +64,12 @@ def pytest_collection() -> Generator[None, object, object]:
 
 @pytest.fixture
 def figure(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
-    """Notes a measured figure, to be shown at the end of the run."""
+    """A function that records a measured figure, which is printed at the end of the run."""
     return lambda line: record_property(FIGURE, line)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Show the figures; they come with the reports of the tests, also from other processes."""
+    """Print the figures, which the reports of tests bring from all processes."""
     figures = [
         str(value)
         for reports in terminalreporter.stats.values()
@@ -92,14 +92,14 @@ def catalogue() -> Mapping[str, Exercise]:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A real process with the usual settings, for tests that neither end it nor make it busy."""
+    """A server process with default settings, for tests that neither end it nor make it busy."""
     with served(tmp_path_factory.mktemp("server")) as server:
         yield server
 
 
 @pytest.fixture(scope="session")
 def given_frames(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
-    """Table and pose of the same exercises, the frames prescribed, so that one table is right."""
+    """The shipped exercises with table and pose only, and given frames: one table is right."""
     given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
     return {
         name: replace(
@@ -118,7 +118,7 @@ def given_frames(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
 
 @pytest.fixture
 def make_exercise(tmp_path: Path) -> Callable[[str], Exercise]:
-    """Compiles the text of an exercise file."""
+    """A function that compiles the text of an exercise file."""
 
     def make(text: str) -> Exercise:
         file = tmp_path / "test-exercise.toml"

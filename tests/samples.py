@@ -1,4 +1,4 @@
-"""What is too long for the suite is tried there in part, and as a whole by ``make thorough``."""
+"""Samples of long lists of cases: the suite runs a part, ``make thorough`` runs all."""
 
 from collections.abc import Iterable
 
@@ -7,7 +7,7 @@ from _pytest.mark import ParameterSet
 
 
 def one_in(count: int, cases: Iterable[object]) -> list[ParameterSet]:
-    """The cases as parameters of a test: the suite tries one in ``count``, the campaign the others.
+    """Return parameters of a test: the suite runs one in ``count``, the campaign the others.
 
     A case of several parameters is a tuple.
     """

@@ -1,4 +1,4 @@
-"""The exercises that come with the program, loaded once in each process."""
+"""The shipped exercises, loaded once in each process."""
 
 from collections.abc import Mapping
 from functools import cache

@@ -1,4 +1,4 @@
-"""The three registries of answer kinds agree, and a half-made kind is refused at the start."""
+"""The three registries of answer kinds agree, and an incomplete kind is refused at startup."""
 
 import sys
 from types import ModuleType
@@ -8,7 +8,7 @@ import pytest
 from service.catalogue import parts
 from service.catalogue.parts import SPECS, KindError
 from service.grading.kinds import KINDS
-from service.kinds_check import check_kinds, refuse_half_made
+from service.kinds_check import check_kinds, require_complete
 from service.solutions.kinds import ANSWERS
 
 
@@ -17,13 +17,13 @@ def test_the_three_registries_agree() -> None:
     check_kinds()
 
 
-def test_the_files_that_a_kind_lacks_are_named() -> None:
+def test_missing_files_of_a_kind_are_named() -> None:
     found = {"parts": {"matrix", "gear"}, "kinds": {"matrix"}, "answers": {"matrix", "cam"}}
     with pytest.raises(KindError) as error:
-        refuse_half_made(found)
+        require_complete(found)
     assert str(error.value).splitlines() == [
-        "The answer kind 'cam' is half made: write parts/cam.py, kinds/cam.py.",
-        "The answer kind 'gear' is half made: write kinds/gear.py, answers/gear.py.",
+        "The answer kind 'cam' is incomplete: write parts/cam.py, kinds/cam.py.",
+        "The answer kind 'gear' is incomplete: write kinds/gear.py, answers/gear.py.",
     ]
 
 

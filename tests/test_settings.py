@@ -13,7 +13,7 @@ def _no_settings(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(f"DH_GRADER_{name.upper()}", raising=False)
 
 
-def test_the_defaults_listen_here_only_and_let_no_other_page_call() -> None:
+def test_by_default_the_service_is_local_and_allows_no_origins() -> None:
     settings = load_settings()
     assert (settings.host, settings.port) == ("127.0.0.1", 8000)
     assert settings.cors_origins == ()
@@ -21,7 +21,9 @@ def test_the_defaults_listen_here_only_and_let_no_other_page_call() -> None:
     assert settings.feedback is FeedbackLevel.FULL
 
 
-def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_settings_are_read_from_the_environment(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setenv("DH_GRADER_PORT", "0")
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
     monkeypatch.setenv("DH_GRADER_CORS_ORIGINS", "https://a.example, http://b.example:8080")
@@ -69,7 +71,7 @@ def test_an_unusable_setting_is_named(
 @pytest.mark.parametrize(
     "origin", ["*", "http://localhost:3000", "https://[::1]:8443", "https://course.example"]
 )
-def test_an_origin_as_a_browser_sends_it(monkeypatch: pytest.MonkeyPatch, origin: str) -> None:
+def test_a_valid_origin_is_accepted(monkeypatch: pytest.MonkeyPatch, origin: str) -> None:
     monkeypatch.setenv("DH_GRADER_CORS_ORIGINS", origin)
     assert load_settings().cors_origins == (origin,)
 
@@ -83,7 +85,7 @@ def test_an_origin_as_a_browser_sends_it(monkeypatch: pytest.MonkeyPatch, origin
         ("DH_GRADER_ZZZ", ""),
     ],
 )
-def test_a_misspelt_setting_is_refused_with_the_nearest(
+def test_an_unknown_setting_is_refused_with_a_suggestion(
     monkeypatch: pytest.MonkeyPatch, name: str, meant: str
 ) -> None:
     monkeypatch.setenv(name, "x")
@@ -92,7 +94,7 @@ def test_a_misspelt_setting_is_refused_with_the_nearest(
     assert str(refused.value) == f"{name}: there is no such setting{meant}"
 
 
-def test_an_option_counts_more_than_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_option_overrides_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DH_GRADER_PORT", "9000")
     monkeypatch.setenv("DH_GRADER_HOST", "0.0.0.0")
     settings = load_settings(port=9001, host=None)
@@ -101,11 +103,11 @@ def test_an_option_counts_more_than_its_variable(monkeypatch: pytest.MonkeyPatch
         load_settings(host="")
 
 
-def test_every_setting_says_what_it_is() -> None:
+def test_every_setting_has_a_description() -> None:
     assert all(field.description for field in Settings.model_fields.values())
 
 
-def test_exercises_may_lie_in_several_folders(
+def test_exercises_may_be_in_several_folders(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", f" {tmp_path} {os.pathsep}shipped{os.pathsep}")
@@ -115,7 +117,7 @@ def test_exercises_may_lie_in_several_folders(
         load_settings()
 
 
-def test_solutions_are_not_for_all_and_reloading_is_off(
+def test_solutions_and_reloading_are_off_by_default(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert (load_settings().solutions, load_settings().reload_exercises) == (None, False)

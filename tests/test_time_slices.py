@@ -1,4 +1,4 @@
-"""Long work is done in slices, and comes to the same result."""
+"""Work in time slices gives the same result."""
 
 import asyncio
 import threading
@@ -23,12 +23,12 @@ _NAME = ContextVar("name", default="")
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let each checkpoint end a slice."""
+    """End a slice at each checkpoint."""
     monkeypatch.setattr(time_slices, "SLICE", 0.0)
 
 
-async def nobody() -> None:
-    """Give way to whatever is ready."""
+async def give_way() -> None:
+    """Let other tasks run that are ready."""
     await asyncio.sleep(0)
 
 
@@ -42,27 +42,27 @@ def counting(name: str, log: list[str]) -> Callable[[], str]:
     return work
 
 
-def test_two_works_take_turns_at_their_checkpoints() -> None:
+def test_two_tasks_take_turns_at_their_checkpoints() -> None:
     log: list[str] = []
 
     async def both() -> list[str]:
-        works = (in_slices(counting(name, log), nobody) for name in "ab")
+        works = (in_slices(counting(name, log), give_way) for name in "ab")
         return await asyncio.gather(*works)
 
     assert asyncio.run(both()) == ["a", "b"]
     assert log == ["a0", "b0", "a1", "b1", "a2", "b2"]
 
 
-def test_an_error_is_raised_where_the_work_is_awaited() -> None:
+def test_an_exception_is_raised_where_the_work_is_awaited() -> None:
     def work() -> None:
         checkpoint()
         raise KeyError("x")
 
     with pytest.raises(KeyError):
-        asyncio.run(in_slices(work, nobody))
+        asyncio.run(in_slices(work, give_way))
 
 
-def test_work_that_is_given_up_is_ended() -> None:
+def test_abandoned_work_ends_at_its_checkpoint() -> None:
     ended = []
 
     def work() -> None:
@@ -79,7 +79,7 @@ def test_work_that_is_given_up_is_ended() -> None:
     assert ended == ["work"]
 
 
-def test_each_work_keeps_its_context_and_its_handling_of_floats() -> None:
+def test_each_task_keeps_its_context_variables_and_float_errors() -> None:
     def work() -> tuple[str, str]:
         with np.errstate(divide="raise"):
             checkpoint()
@@ -89,7 +89,7 @@ def test_each_work_keeps_its_context_and_its_handling_of_floats() -> None:
 
     async def named(name: str) -> tuple[str, str]:
         _NAME.set(name)
-        return await in_slices(work, nobody)
+        return await in_slices(work, give_way)
 
     async def both() -> list[tuple[str, str]]:
         return await asyncio.gather(*(named(name) for name in "ab"))
@@ -98,7 +98,7 @@ def test_each_work_keeps_its_context_and_its_handling_of_floats() -> None:
     assert np.geterr()["divide"] == "warn"
 
 
-def test_other_threads_are_not_stopped() -> None:
+def test_other_threads_are_not_suspended() -> None:
     def work() -> str:
         found = []
         thread = threading.Thread(target=lambda: found.append(counting("t", [])()))
@@ -106,10 +106,10 @@ def test_other_threads_are_not_stopped() -> None:
         thread.join()
         return found[0]
 
-    assert asyncio.run(in_slices(work, nobody)) == "t"
+    assert asyncio.run(in_slices(work, give_way)) == "t"
 
 
-def test_the_time_of_others_does_not_count() -> None:
+def test_working_time_excludes_suspension() -> None:
     async def slow() -> None:
         await asyncio.sleep(0.05)
 
@@ -121,7 +121,7 @@ def test_the_time_of_others_does_not_count() -> None:
     assert asyncio.run(in_slices(work, slow)) < 0.04
 
 
-def test_gradings_in_turns_give_the_reports_of_gradings_alone() -> None:
+def test_interleaved_gradings_give_the_same_reports() -> None:
     catalogue = shipped_exercises()
 
     def works() -> Iterator[Callable[[], Any]]:
@@ -132,6 +132,6 @@ def test_gradings_in_turns_give_the_reports_of_gradings_alone() -> None:
             yield partial(grade, known, submission)
 
     async def all_in_turns() -> list[Any]:
-        return await asyncio.gather(*(in_slices(work, nobody) for work in works()))
+        return await asyncio.gather(*(in_slices(work, give_way) for work in works()))
 
     assert asyncio.run(all_in_turns()) == [work() for work in works()]

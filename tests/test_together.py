@@ -1,4 +1,4 @@
-"""A test of many cases fails where one of them does, and says which."""
+"""A test of many cases fails if one of them does, and names it."""
 
 import pytest
 
@@ -12,14 +12,12 @@ def limit() -> int:
 
 @together("number", range(3))
 @together(("text", "size"), [("", 0), ("ab", 2)])
-def test_every_case_is_tried_with_the_fixtures(
-    number: int, text: str, size: int, limit: int
-) -> None:
+def test_every_case_runs_with_the_fixtures(number: int, text: str, size: int, limit: int) -> None:
     assert number < limit
     assert len(text) == size
 
 
-def test_each_case_that_fails_is_told_and_none_stops_the_others() -> None:
+def test_each_failed_case_is_reported_and_none_stops_the_others() -> None:
     tried = []
 
     @together(("number", "how"), [(1, "raises"), (2, "passes"), (3, "raises not"), (4, "is wrong")])
@@ -40,6 +38,6 @@ def test_each_case_that_fails_is_told_and_none_stops_the_others() -> None:
     ]  # fmt: skip
 
 
-def test_no_case_is_a_mistake() -> None:
+def test_at_least_one_case_is_required() -> None:
     with pytest.raises(AssertionError, match="no case"):
         together("number", [])(print)

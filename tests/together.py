@@ -1,4 +1,4 @@
-"""Many small cases in one test, since to start and report a test costs more than such a case."""
+"""Run many small cases in one test: starting and reporting a test costs more than such a case."""
 
 import inspect
 from collections.abc import Callable, Iterable
@@ -13,10 +13,10 @@ SHOWN = 20
 def together(
     names: str | tuple[str, ...], cases: Iterable[Any]
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Let one test try all cases; it tells which of them failed, and why.
+    """Run all cases in one test; report which of them failed, and why.
 
-    To be used like ``pytest.mark.parametrize``. A case of several parameters is a tuple. All cases
-    share the fixtures: use it where a case leaves nothing behind.
+    Use it like ``pytest.mark.parametrize``. A case of several parameters is a tuple. All cases
+    share the fixtures, so that no case may change them.
     """
     parameters = (names,) if isinstance(names, str) else names
     each: list[tuple[Any, ...]] = [case if isinstance(names, tuple) else (case,) for case in cases]
@@ -32,8 +32,8 @@ def together(
                     error.add_note(f"The case: {', '.join(map(repr, values)):.500}")
                     failures.append(error)
             if failures:
-                said = f"{len(failures)} of {len(each)} cases failed"
-                raise BaseExceptionGroup(said, failures[:SHOWN])
+                message = f"{len(failures)} of {len(each)} cases failed"
+                raise BaseExceptionGroup(message, failures[:SHOWN])
 
         assert each, "there is no case"
         signature = inspect.signature(test)

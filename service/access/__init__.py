@@ -1,1 +1,1 @@
-"""Who may do what: keys with scopes, tokens of learners, limits on rates."""
+"""Authorization and rate limits: API keys with scopes, and tokens of learners."""

@@ -1,4 +1,4 @@
-"""Who asks, and what they may do."""
+"""The caller of a request and its rights."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,7 +7,7 @@ from typing import Final
 
 
 class Scope(StrEnum):
-    """What a key is for. Each key may grade, whatever else it may do."""
+    """A right of a key. Each key may grade."""
 
     GRADE = "grade"
     RECORD = "record"
@@ -16,9 +16,9 @@ class Scope(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """Who asks: the holder of a key, of a token that a key has made, or anybody.
+    """The caller of a request: the holder of a key or of a token, or an anonymous client.
 
-    ``exercises`` and ``learner`` are what they are bound to; None is no bound.
+    ``exercises`` and ``learner`` restrict the caller; None means no restriction.
     """
 
     scopes: frozenset[Scope]
@@ -27,15 +27,14 @@ class Caller:
     key_id: str = ""
 
     def reaches(self, exercise: str) -> bool:
-        """Whether what is asked for may be of this exercise."""
+        """True if the caller may use this exercise."""
         return self.exercises is None or exercise in self.exercises
 
     @property
     def owner(self) -> str:
-        """Whom requests and what they record belong to, 32 characters at most.
+        """The owner of the caller's requests and attempts, at most 32 characters.
 
-        All of a key's own requests are of one owner, those by its tokens of one for each learner;
-        it is empty for anybody.
+        It is the id of the key, a hash for each learner with a token, or "" for anonymous clients.
         """
         if self.learner is None:
             return self.key_id

@@ -1,12 +1,12 @@
-"""The client that an address belongs to, for turns, room and rates alike."""
+"""The client of an address. Scheduling, connection limits and rate limits count by client."""
 
 import ipaddress
 
 
 def client_key(address: str) -> str:
-    """Return the client of an address: with IPv6 its /64 network, of which a client has all.
+    """Return the IPv4 address, or the /64 network of an IPv6 address: a client may own all of it.
 
-    An IPv4 address that an IPv6 socket has written as ``::ffff:10.0.0.7`` is the IPv4 address.
+    An IPv4 address in IPv6 notation, ``::ffff:10.0.0.7``, is returned as the IPv4 address.
     """
     if ":" not in address:
         return address

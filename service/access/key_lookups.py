@@ -1,4 +1,4 @@
-"""Look-ups of keys in the database: all that wait go into one statement."""
+"""Look up keys in the database, many in one statement."""
 
 import asyncio
 from collections import deque
@@ -11,25 +11,25 @@ from service.access.keys import Key, KeysBusyError, KeysUnreachableError
 # A column of the table of keys, ``id`` or ``digest``, and the value to find there.
 KeyPlace = tuple[str, str]
 
-# How many keys one statement looks up.
-TOGETHER: Final = 128
-# How many may wait: more than the connections of a process.
-WAITING: Final = 4096
-# Seconds that a look-up may take. A database that is paused raises no error.
-PATIENCE: Final = 15.0
+# The most keys in one statement.
+BATCH: Final = 128
+# The most waiting look-ups: more than the connections of a process.
+MAX_WAITING: Final = 4096
+# The time limit of a look-up (seconds). A paused database raises no error.
+TIMEOUT: Final = 15.0
 
 
 class KeyLookups:
-    """Look-ups in one thread, one statement after the other, with a pause in between.
+    """Looks up keys in one thread, with a pause between two statements.
 
-    A client that invents keys can have any number of them looked up. So their number costs the
-    database and the process little: at most ``1 / pause`` statements a second.
+    A client may send any number of invented keys. They cost the database and the process little: at
+    most ``1 / pause`` statements per second.
     """
 
     def __init__(
         self, find: Callable[[Collection[KeyPlace]], Mapping[KeyPlace, Key]], pause: float = 0.0
     ) -> None:
-        """Take the function that finds keys in the database; it runs in the thread."""
+        """Start the thread. It calls ``find``, which reads keys from the database."""
         self._find = find
         self._pause = pause
         self._thread = ThreadPoolExecutor(1, "keys-read")
@@ -41,32 +41,32 @@ class KeyLookups:
         """Return the key there, or None. Raises KeysUnreachableError, KeysBusyError."""
         asked = self._asked.get(place)
         if asked is None:
-            if len(self._waiting) >= WAITING:
+            if len(self._waiting) >= MAX_WAITING:
                 raise KeysBusyError
             asked = self._asked[place] = asyncio.get_running_loop().create_future()
-            # A failure that nobody waits for any more is no failure of the program.
+            # If all callers have gone, ignore the exception instead of logging it.
             asked.add_done_callback(lambda done: done.cancelled() or done.exception())
             self._waiting.append(place)
             if self._working is None or self._working.done():
-                self._working = asyncio.create_task(self._work_off())
+                self._working = asyncio.create_task(self._process_waiting())
         try:
-            # Others may wait for it when this client has gone.
-            return await asyncio.wait_for(asyncio.shield(asked), PATIENCE)
+            # Shield it: others may wait for the same key when this client has gone.
+            return await asyncio.wait_for(asyncio.shield(asked), TIMEOUT)
         except TimeoutError as error:
             raise KeysUnreachableError from error
 
     def close(self) -> None:
-        """End the thread."""
+        """Stop the thread."""
         self._thread.shutdown()
 
-    async def _work_off(self) -> None:
+    async def _process_waiting(self) -> None:
         loop = asyncio.get_running_loop()
         try:
             while self._waiting:
-                batch = [self._waiting.popleft() for _ in range(min(TOGETHER, len(self._waiting)))]
+                batch = [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
                 try:
                     found = await loop.run_in_executor(self._thread, self._find, batch)
-                except Exception as error:  # noqa: BLE001 - each that waits gets it
+                except Exception as error:  # noqa: BLE001 - passed to every waiting caller
                     for place in batch:
                         self._asked.pop(place).set_exception(error)
                 else:
@@ -74,7 +74,7 @@ class KeyLookups:
                         self._asked.pop(place).set_result(found.get(place))
                 await asyncio.sleep(self._pause)
         finally:
-            # Only where the loop ends in the midst is anything left.
+            # Something is left only if the event loop ends during a batch.
             for asked in self._asked.values():
                 asked.cancel()
             self._asked.clear()

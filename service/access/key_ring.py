@@ -1,4 +1,4 @@
-"""The keys of the database, kept for some seconds in memory."""
+"""The keys of the database, memoized for a few seconds."""
 
 import asyncio
 from collections import OrderedDict
@@ -22,19 +22,19 @@ from service.attempts.storage.database import in_transaction
 
 R = TypeVar("R")
 
-# So many seconds a revoked key goes on working at the most, if the database answers.
-KEPT: Final = 5.0
-# How many keys are kept.
+# How long a known key is memoized (seconds). A revoked key works at most this long.
+MEMOIZED_SECONDS: Final = 5.0
+# The most memoized keys.
 _MOST: Final = 2000
-# How many unknown keys are kept, and for how many seconds: one may be made meanwhile.
+# The most memoized unknown keys, and for how long (seconds): a key may be created meanwhile.
 _MOST_UNKNOWN: Final = 4000
-_UNKNOWN: Final = 2.0
-# Seconds between two look-ups of keys that are not known: anybody may invent any number of them.
+_UNKNOWN_SECONDS: Final = 2.0
+# The pause between look-ups of unknown keys (seconds): a client may invent any number of them.
 _PAUSE: Final = 0.01
-# A key's last use is written so seldom (seconds).
-_NOTED: Final = timedelta(minutes=1)
-# So long a known key is not asked about again, while the database is down (seconds).
-_DOWN: Final = 15.0
+# The interval in which the last use of a key is written.
+_USE_INTERVAL: Final = timedelta(minutes=1)
+# How long a known key is not looked up again after the database has failed (seconds).
+_DOWN_SECONDS: Final = 15.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,43 +44,45 @@ class _Found:
 
 
 class KeyRing:
-    """The keys of one database. One that was known stays so while the database is down."""
+    """The keys of one database. Known keys work while the database is down."""
 
-    def __init__(self, engine: Engine, secret: Secret | None, seconds: float = KEPT) -> None:
-        """Look whether there are keys. Raises KeysUnreachableError."""
+    def __init__(
+        self, engine: Engine, secret: Secret | None, seconds: float = MEMOIZED_SECONDS
+    ) -> None:
+        """Check whether there are keys. Raises KeysUnreachableError."""
         self._engine = engine
         self._secret = secret
         self._seconds = seconds
         self._found: OrderedDict[KeyPlace, _Found] = OrderedDict()
         self._unknown: OrderedDict[KeyPlace, float] = OrderedDict()
-        # Neither a known key nor a note of its use waits for unknown ones.
-        self._known_ones = KeyLookups(self._find)
-        self._new_ones = KeyLookups(self._find, _PAUSE)
+        # Separate threads: known keys and notes of their use do not wait for unknown keys.
+        self._known_lookups = KeyLookups(self._find)
+        self._new_lookups = KeyLookups(self._find, _PAUSE)
         self._thread = ThreadPoolExecutor(1, "keys")
-        self._noted: dict[str, datetime] = {}
+        self._noted_uses: dict[str, datetime] = {}
         self.has_keys = self._read(any_key)
         self.has_their_secret = secret is None or self._read(lambda each: fits(each, secret))
-        self._look_again = monotonic() + seconds
-        # No connection may be carried into processes that are started later.
+        self._next_check = monotonic() + seconds
+        # Child processes that start later must not inherit a connection.
         engine.dispose()
 
     async def are_needed(self) -> bool:
-        """Whether there is any key; where there was one, it stays so."""
-        if not self.has_keys and monotonic() >= self._look_again:
-            self._look_again = monotonic() + self._seconds
+        """Return True if a key has ever been created."""
+        if not self.has_keys and monotonic() >= self._next_check:
+            self._next_check = monotonic() + self._seconds
             with suppress(KeysUnreachableError):
                 self.has_keys = await self._in_thread(lambda: self._read(any_key))
         return self.has_keys
 
     async def caller(self, credential: str) -> Caller:
-        """The holder of a key or token.
+        """Return the holder of a key or token.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
         if self._secret is None:
-            raise CredentialError("The service knows no keys: DH_GRADER_SECRET is not set.")
+            raise CredentialError("The service cannot check keys: DH_GRADER_SECRET is not set.")
         if not credential.startswith(PREFIX):
-            # Only here: most installations have no tokens.
+            # Import here: most installations have no tokens.
             from service.access.tokens import verified
 
             token = verified(credential, self._secret.token_secret)
@@ -90,7 +92,7 @@ class KeyRing:
         return await self._holder("digest", self._secret.key_digest(credential))
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """A token with the rights of ``caller``, who is bound to a learner."""
+        """Return a token with the rights of ``caller``, who must be restricted to a learner."""
         from service.access.tokens import LearnerToken, signed
 
         assert self._secret is not None
@@ -100,18 +102,18 @@ class KeyRing:
         return signed(token, expires_at, self._secret.token_secret)
 
     def close(self) -> None:
-        """Write what waits, and end."""
-        self._known_ones.close()
-        self._new_ones.close()
+        """Write pending notes of use and stop the threads."""
+        self._known_lookups.close()
+        self._new_lookups.close()
         self._thread.shutdown()
 
     async def _holder(self, column: str, value: str) -> Caller:
         key = await self._key((column, value))
         if key is None:
-            raise CredentialError("No key of this service reads so.")
+            raise CredentialError("This service has no such key.")
         now = datetime.now(UTC)
         caller = key.caller(now)
-        self._note(key, now)
+        self._note_use(key, now)
         return caller
 
     async def _key(self, at: KeyPlace) -> Key | None:
@@ -122,20 +124,20 @@ class KeyRing:
         if found is None and now < self._unknown.get(at, 0.0):
             return None
         try:
-            key = await (self._new_ones if found is None else self._known_ones).key(at)
+            key = await (self._new_lookups if found is None else self._known_lookups).key(at)
         except KeysUnreachableError:
             if found is None:
                 raise
-            self._found[at] = _Found(found.key, monotonic() + _DOWN)
+            self._found[at] = _Found(found.key, monotonic() + _DOWN_SECONDS)
             return found.key
-        self._keep(at, key)
+        self._memoize(at, key)
         return key
 
-    def _keep(self, place: KeyPlace, key: Key | None) -> None:
+    def _memoize(self, place: KeyPlace, key: Key | None) -> None:
         now = monotonic()
         if key is None:
             self._found.pop(place, None)
-            self._unknown[place] = now + min(_UNKNOWN, self._seconds)
+            self._unknown[place] = now + min(_UNKNOWN_SECONDS, self._seconds)
             self._unknown.move_to_end(place)
             while len(self._unknown) > _MOST_UNKNOWN:
                 self._unknown.popitem(last=False)
@@ -145,14 +147,14 @@ class KeyRing:
         while len(self._found) > _MOST:
             self._found.popitem(last=False)
 
-    def _note(self, key: Key, now: datetime) -> None:
-        before = self._noted.get(key.id, key.last_used_at)
-        if before is None or now - before >= _NOTED:
-            self._noted[key.id] = now
+    def _note_use(self, key: Key, now: datetime) -> None:
+        before = self._noted_uses.get(key.id, key.last_used_at)
+        if before is None or now - before >= _USE_INTERVAL:
+            self._noted_uses[key.id] = now
             self._thread.submit(self._write_use, key.id, now)
 
     def _write_use(self, key_id: str, now: datetime) -> None:
-        # It is noted anew a minute later.
+        # After an error, the next use in a minute or later is written.
         with suppress(SQLAlchemyError):
             in_transaction(self._engine, lambda connection: note_use(connection, key_id, now))
 

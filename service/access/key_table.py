@@ -16,17 +16,17 @@ from service.attempts.storage.tables import key_secrets, keys
 
 
 def any_key(connection: Connection) -> bool:
-    """Whether a key has ever been made."""
+    """True if a key has ever been created."""
     return bool(connection.scalar(select(exists(select(keys.c.id)))))
 
 
 def fits(connection: Connection, secret: Secret) -> bool:
-    """Whether the keys were made with this secret; so it is where the database does not tell."""
+    """True if the keys were created with this secret, or the database has no record of it."""
     return connection.scalar(select(key_secrets.c.digest)) in (None, secret.check)
 
 
 def settle(connection: Connection, secret: Secret, now: datetime) -> bool:
-    """Have keys be made with this secret; False where some are valid that another one has made."""
+    """Record this secret for new keys; return False if valid keys have another secret."""
     valid = exists(select(keys.c.id).where(keys.c.revoked_at.is_(None), keys.c.expires_at > now))
     if not connection.scalar(select(valid)):
         connection.execute(delete(key_secrets))
@@ -44,7 +44,7 @@ def add_key(
     created_at: datetime,
     expires_at: datetime,
 ) -> Key:
-    """Write a new key, of whose text only ``digest`` is kept."""
+    """Insert a new key. Only the ``digest`` of its text is stored."""
     bound = None if exercises is None else frozenset(exercises)
     key = Key(secrets.token_hex(4), name, frozenset(scopes), bound, created_at, expires_at)
     values = asdict(key) | {
@@ -74,7 +74,7 @@ def keys_at(
 
 
 def revoke_key(connection: Connection, key_id: str, now: datetime) -> bool:
-    """Make a key worthless for ever; False where there is none that is not revoked."""
+    """Revoke a key permanently; return False if it is unknown or already revoked."""
     done = connection.execute(
         keys.update().where(keys.c.id == key_id, keys.c.revoked_at.is_(None)).values(revoked_at=now)
     )
@@ -82,7 +82,7 @@ def revoke_key(connection: Connection, key_id: str, now: datetime) -> bool:
 
 
 def note_use(connection: Connection, key_id: str, now: datetime) -> None:
-    """Note when a key was used last."""
+    """Record the time of a key's last use."""
     earlier = or_(keys.c.last_used_at.is_(None), keys.c.last_used_at < now)
     connection.execute(keys.update().where(keys.c.id == key_id, earlier).values(last_used_at=now))
 

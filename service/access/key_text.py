@@ -1,7 +1,7 @@
 """The text of a key: a prefix, random characters, and a checksum.
 
-By the prefix, scanners find keys that were published by mistake. By the checksum, a misspelt key is
-refused without a look at the database.
+The prefix lets scanners find keys that were published by mistake. The checksum lets the service
+refuse a misspelt key without asking the database.
 """
 
 import secrets
@@ -17,13 +17,13 @@ _CHECKSUM: Final = 6
 
 
 def new_key_text() -> str:
-    """A new key."""
+    """Return the text of a new random key."""
     drawn = "".join(secrets.choice(_ALPHABET) for _ in range(_RANDOM))
     return f"{PREFIX}{drawn}{_checksum(drawn)}"
 
 
 def is_spelt_right(text: str) -> bool:
-    """Whether a text has the form of a key, and its checksum is right."""
+    """True if a text has the form of a key and its checksum is right."""
     drawn, checksum = text[len(PREFIX) : -_CHECKSUM], text[-_CHECKSUM:]
     return (
         text.startswith(PREFIX)

@@ -1,4 +1,4 @@
-"""Keys as they are known to the service, which never keeps their text."""
+"""API keys without their texts, which are never stored, and the secret of an installation."""
 
 import hmac
 from dataclasses import dataclass
@@ -7,25 +7,25 @@ from typing import Final, Protocol
 
 from service.access.caller import Caller, Scope
 
-# So many characters a secret has at least; 64 hexadecimal digits are usual.
+# The least number of characters of a secret; 64 hexadecimal digits are usual.
 SHORTEST_SECRET: Final = 32
 
 
 class KeysUnreachableError(Exception):
-    """The database of the keys does not answer."""
+    """The database of the keys does not respond."""
 
 
 class KeysBusyError(Exception):
-    """Too many unknown keys are being looked up; a known one never waits for them."""
+    """Too many unknown keys are being looked up. Known keys do not wait for them."""
 
 
 class CredentialError(Exception):
-    """A key or token that is not valid; the text says why."""
+    """The key or token is not valid; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key. ``exercises`` are those it is bound to, None for all; moments are in UTC."""
+    """A key. ``exercises`` are those that it may use, None for all; times are in UTC."""
 
     id: str
     name: str
@@ -37,7 +37,7 @@ class Key:
     last_used_at: datetime | None = None
 
     def caller(self, now: datetime) -> Caller:
-        """Who holds it. Raises CredentialError where it is not valid any more."""
+        """Return the caller with this key. Raises CredentialError if it is revoked or expired."""
         if self.revoked_at is not None:
             raise CredentialError("The key was revoked.")
         if self.expires_at <= now:
@@ -56,19 +56,19 @@ class Keys(Protocol):
     """The keys of an installation."""
 
     async def are_needed(self) -> bool:
-        """Whether there is any key; revoked and expired ones count."""
+        """Return True if there are keys, including revoked and expired ones."""
 
     async def caller(self, credential: str) -> Caller:
-        """The holder of a key or token.
+        """Return the holder of a key or token.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """A token with the rights of ``caller``."""
+        """Return a token with the rights of ``caller``."""
 
     def close(self) -> None:
-        """Write what waits, and end."""
+        """Write pending notes of use and stop all threads."""
 
 
 class Secret:
@@ -78,17 +78,17 @@ class Secret:
         self._text = text.encode()
 
     def key_digest(self, key: str) -> str:
-        """What is kept of a key: without the secret nobody finds a key that has it."""
+        """Return the keyed hash of a key's text, which is stored instead of the text."""
         return hmac.digest(self._derived("keys"), key.encode(), "sha256").hex()
 
     @property
     def check(self) -> str:
-        """By what another secret is known; it tells nothing of the keys."""
+        """A digest that shows whether two secrets are the same."""
         return self._derived("check").hex()
 
     @property
     def token_secret(self) -> bytes:
-        """What tokens are signed with."""
+        """The key that signs tokens."""
         return self._derived("tokens")
 
     def _derived(self, purpose: str) -> bytes:

@@ -1,4 +1,4 @@
-"""What needs no key."""
+"""The operations that need no key."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -11,9 +11,9 @@ NOTHING: Final = "none"
 
 @dataclass(frozen=True, slots=True)
 class OpenAccess:
-    """The scopes that need no key, ever, and whether all of them need none until there is a key.
+    """The scopes that never need a key. With ``until_keys``, none does until a key exists.
 
-    The latter holds only for requests to the machine's own loopback address, or ``anywhere``.
+    ``until_keys`` applies only to requests to the loopback address, unless ``anywhere`` is set.
     """
 
     scopes: frozenset[Scope] = frozenset()
@@ -21,13 +21,13 @@ class OpenAccess:
     anywhere: bool = False
 
 
-# Of a service that listens to this machine alone, and of one that was told to serve everybody.
+# For a service that listens on localhost only, and for one that is configured to be open.
 OPEN_HERE: Final = OpenAccess()
 OPEN_ANYWHERE: Final = OpenAccess(anywhere=True)
 
 
 def open_access(text: str | None) -> OpenAccess:
-    """What the setting says; None where it says nothing. Raises ValueError."""
+    """Parse the setting ``open``; None means the default. Raises ValueError."""
     match text:
         case None:
             return OPEN_HERE

@@ -1,4 +1,4 @@
-"""How often a key or an address may ask."""
+"""Rate limits for keys and addresses."""
 
 import asyncio
 import logging
@@ -19,27 +19,27 @@ _log = logging.getLogger(__name__)
 
 
 class UnusableRatesError(Exception):
-    """A rate or a store of counts that cannot be used; the text says why."""
+    """A rate or a store of counts cannot be used; the message says why."""
 
 
 def rates_in(text: str) -> Sequence[RateLimitItem]:
-    """The rates in a text such as ``20/second;600/minute``. Raises UnusableRatesError."""
+    """Parse rates such as ``20/second;600/minute``. Raises UnusableRatesError."""
     try:
         return parse_many(text)
     except ValueError as error:
         raise UnusableRatesError(
-            f"{text!r} is no rate; write 600/minute, or several with semicolons between them"
+            f"{text!r} is not a rate; write 600/minute, or several with semicolons between them"
         ) from error
 
 
 class Rates:
-    """Counts of requests: in the memory of this process, or in a Redis that several share.
+    """Counts requests in the memory of this process, or in a Redis that several processes share.
 
-    While Redis does not answer, each process counts for itself.
+    While Redis does not respond, each process counts on its own.
     """
 
     def __init__(self, per_key: str = "", per_address: str = "", store: str = "memory://") -> None:
-        """Take rates as ``rates_in`` reads them. Raises UnusableRatesError."""
+        """Set the limits, as texts for ``rates_in``. Raises UnusableRatesError."""
         self._per_key = rates_in(per_key) if per_key else ()
         self._per_address = rates_in(per_address) if per_address else ()
         self._own = SlidingWindowCounterRateLimiter(MemoryStorage())
@@ -49,9 +49,9 @@ class Rates:
             self._shared = SlidingWindowCounterRateLimiter(_storage(store))
 
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
-        """Count a request; 0 where it is allowed, else when to come again.
+        """Count a request; return 0 if it is allowed, otherwise the seconds to wait.
 
-        Requests with a key count by it, whatever the address; with IPv6, all addresses of a /64
+        Requests with a key are counted by its owner, others by address. All IPv6 addresses of a /64
         network count as one.
         """
         owner = caller.owner
@@ -63,12 +63,12 @@ class Rates:
             loop = asyncio.get_running_loop()
             try:
                 return await loop.run_in_executor(self._threads, _hit, self._shared, rates, counted)
-            except Exception as error:  # noqa: BLE001 - of whatever client limits has chosen
-                _log.warning("the store of rates does not answer: %s", type(error).__name__)
+            except Exception as error:  # noqa: BLE001 - its type depends on the client library
+                _log.warning("The store of rates does not respond: %s", type(error).__name__)
         return _hit(self._own, rates, counted)
 
     def close(self) -> None:
-        """End."""
+        """Stop the threads."""
         self._threads.shutdown(wait=False)
 
 
@@ -86,12 +86,12 @@ def _hit(
 
 def _storage(address: str) -> Storage:
     try:
-        # Both are options of the client of Redis: nobody waits long for a count.
+        # Both are options of the Redis client: no request waits long for a count.
         storage = storage_from_string(address, socket_timeout=1, socket_connect_timeout=1)
     except ConfigurationError as error:
         raise UnusableRatesError(
-            "is no store of counts; write redis://host:6379/0, or leave it out for the memory"
+            "is not a store of counts; write redis://host:6379/0, or leave it out to use memory"
         ) from error
     if not isinstance(storage, Storage):
-        raise UnusableRatesError("is no store of counts; write redis://host:6379/0")
+        raise UnusableRatesError("is not a store of counts; write redis://host:6379/0")
     return storage

@@ -1,6 +1,6 @@
 """Tokens of learners: JSON Web Tokens, signed with the secret of the installation (HS256).
 
-A token is not kept anywhere. It names the key that made it, and is valid as long as this key is.
+Tokens are not stored. A token names its key and is valid at most as long as that key.
 """
 
 import time
@@ -20,7 +20,7 @@ _JWS: Final = jwt.PyJWS()
 
 
 class _Claims(BaseModel):
-    """The claims of a token, in the shape in which ``signed`` writes them and in no other."""
+    """The claims of a token, exactly as ``signed`` writes them."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -34,7 +34,7 @@ class _Claims(BaseModel):
 
 
 class LearnerToken(NamedTuple):
-    """What a token says; ``exercises`` are None for all those of its key."""
+    """The content of a token; ``exercises`` are None for all exercises of its key."""
 
     key_id: str
     learner: str
@@ -42,7 +42,7 @@ class LearnerToken(NamedTuple):
     exercises: frozenset[str] | None
 
     def caller(self, holder: Caller) -> Caller:
-        """Who brings it, where ``holder`` has the key that made it: never more than the key may."""
+        """Return the caller with this token, limited to the current rights of the key's holder."""
         exercises = self.exercises
         if exercises is not None and holder.exercises is not None:
             exercises &= holder.exercises
@@ -55,7 +55,7 @@ class LearnerToken(NamedTuple):
 
 
 def signed(token: LearnerToken, expires_at: datetime, secret: bytes) -> str:
-    """The token as text."""
+    """Return the text of a signed token."""
     claims = {
         "iss": _ISSUER,
         "sub": token.learner,
@@ -69,23 +69,23 @@ def signed(token: LearnerToken, expires_at: datetime, secret: bytes) -> str:
 
 
 def verified(text: str, secret: bytes) -> LearnerToken:
-    """What a token says that this installation has signed. Raises CredentialError."""
+    """Return the content of a token with a valid signature. Raises CredentialError."""
     try:
         claims = _Claims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
         scopes = frozenset(map(Scope, claims.scope.split()))
     except jwt.InvalidTokenError as error:
-        raise CredentialError("This is no key and no token of this service.") from error
+        raise CredentialError("This is neither a key nor a token of this service.") from error
     except ValidationError as error:
         wrong = {str(detail["loc"][0]) if detail["loc"] else "" for detail in error.errors()}
         named = [name for name in _Claims.model_fields if name in wrong] or ["others"]
-        raise CredentialError(_odd(*named)) from error
+        raise CredentialError(_unexpected(*named)) from error
     except ValueError as error:
-        raise CredentialError(_odd("scope")) from error
+        raise CredentialError(_unexpected("scope")) from error
     if claims.exp <= time.time():
         raise CredentialError("The token has expired.")
     exercises = None if claims.exercises is None else frozenset(claims.exercises)
     return LearnerToken(claims.key, claims.sub, scopes, exercises)
 
 
-def _odd(*claims: str) -> str:
-    return f"The token has claims that this service does not make: {', '.join(claims)}."
+def _unexpected(*claims: str) -> str:
+    return f"The token has unexpected claims: {', '.join(claims)}."

@@ -1,1 +1,1 @@
-"""Recorded attempts: a database that a course can do without, and loses nothing with."""
+"""Recording of attempts in a database. Grading works without it."""

@@ -1,4 +1,7 @@
-"""An attempt as it is written, found, listed and asked for; it loads no database driver."""
+"""The data classes of attempts: new, recorded and listed ones, and filters.
+
+This module loads no database driver.
+"""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,7 +12,7 @@ MOST_ON_A_PAGE: Final = 100
 
 
 class GradesFormat(StrEnum):
-    """How attempts are exported: each of them, or the ones that count, for a gradebook."""
+    """The formats of exported attempts: all attempts, or a gradebook of those that count."""
 
     CSV = "csv"
     JSONL = "jsonl"
@@ -18,16 +21,16 @@ class GradesFormat(StrEnum):
 
     @property
     def is_gradebook(self) -> bool:
-        """Whether it has one column, for one exercise."""
+        """True if the format is a gradebook, with one column for one exercise."""
         return self in (GradesFormat.CANVAS, GradesFormat.MOODLE)
 
 
 @dataclass(frozen=True, slots=True)
 class NewAttempt:
-    """An attempt as it is written; ``submission`` and ``report`` are JSON.
+    """An attempt to be recorded; ``submission`` and ``report`` are JSON.
 
-    ``ordinal`` is None for one that does not count. ``owner`` is who sent it, to whom alone the
-    idempotency key belongs.
+    ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent it;
+    idempotency keys are unique for each owner.
     """
 
     exercise: str
@@ -50,7 +53,7 @@ class NewAttempt:
 
 @dataclass(frozen=True, slots=True)
 class RecordedAttempt(NewAttempt):
-    """An attempt as it stands in the database."""
+    """An attempt in the database."""
 
     number: int
     id: str
@@ -58,7 +61,11 @@ class RecordedAttempt(NewAttempt):
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """What is known before an attempt: the ``counted`` ones, or the one that this request made."""
+    """The state of a learner at an exercise before a new attempt.
+
+    ``counted`` is the number of counted attempts; ``earlier`` is the attempt that was already
+    recorded under the same idempotency key, if any.
+    """
 
     counted: int
     earlier: RecordedAttempt | None
@@ -66,7 +73,7 @@ class Standing:
 
 @dataclass(frozen=True, slots=True)
 class AttemptFilter:
-    """Which attempts are read; None asks for nothing. ``since`` belongs to them, ``until`` not."""
+    """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not."""
 
     exercise: str | None = None
     learner: str | None = None
@@ -77,7 +84,7 @@ class AttemptFilter:
 
 @dataclass(frozen=True, slots=True)
 class ListedAttempt:
-    """An attempt without its answers and its report; ``awarded`` are the points of a tutor."""
+    """An attempt without its answers and its report; ``awarded`` are points given by a tutor."""
 
     number: int
     id: str
@@ -94,5 +101,5 @@ class ListedAttempt:
 
     @property
     def earned(self) -> float:
-        """The points that count: those of a tutor before those of the report."""
+        """The points that count: those awarded by a tutor, otherwise those of the report."""
         return self.points if self.awarded is None else self.awarded

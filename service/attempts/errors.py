@@ -1,15 +1,15 @@
-"""The failures that callers of the store tell apart; it loads no database driver."""
+"""The errors that the store of attempts raises. This module loads no database driver."""
 
 
 class StoreDownError(Exception):
-    """The database cannot be reached, cannot write, or does not react.
+    """The database cannot be reached, cannot write, or does not respond.
 
-    What was asked for was not done, unless the answer to a commit was lost.
+    The operation was not done, unless only the answer to a commit was lost.
     """
 
 
 class UnusableDatabaseError(Exception):
-    """The URL names no database that can be used; the text says why."""
+    """The database at this URL cannot be used; the message says why."""
 
 
 class UnknownAttemptError(LookupError):
@@ -17,8 +17,8 @@ class UnknownAttemptError(LookupError):
 
 
 class UnusablePointsError(ValueError):
-    """So many points cannot be given; the text says why."""
+    """The number of points is not allowed; the message says why."""
 
 
 class BadCursorError(ValueError):
-    """The text is no cursor of a page."""
+    """The text is not a valid cursor."""

@@ -1,4 +1,4 @@
-"""An attempt graded: the report that its learner gets, and the outcome that is counted."""
+"""Grading of an attempt: the report for the learner, and the outcome for statistics."""
 
 from dataclasses import dataclass, replace
 
@@ -11,7 +11,7 @@ from service.submissions.body import GradeRequest
 
 @dataclass(frozen=True, slots=True)
 class AttemptReport:
-    """A report, as it is written, and what is counted of it."""
+    """A report, its JSON text, and its outcome for statistics."""
 
     report: Report
     text: str
@@ -19,7 +19,7 @@ class AttemptReport:
 
 
 class AttemptGrading:
-    """The grading of one body: once for all levels below ``full``, and once for that."""
+    """Grades one request: once for level ``full``, and once for all lower levels."""
 
     def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
         self._exercise = exercise
@@ -28,31 +28,32 @@ class AttemptGrading:
         self._reports: dict[FeedbackLevel, AttemptReport] = {}
 
     def has(self, most: FeedbackLevel) -> bool:
-        """Whether the report at this level needs no further grading."""
-        return _graded_for(self._told(most)) in self._graded
+        """True if the report with at most this level needs no further grading."""
+        return _grading_level(self._level(most)) in self._graded
 
     def at(self, most: FeedbackLevel) -> AttemptReport:
-        """The report at a level, and the outcome, which needs more than bare marks."""
-        level = self._told(most)
+        """Return the report with at most the level ``most``, and its outcome."""
+        level = self._level(most)
         if level not in self._reports:
             self._reports[level] = self._report(most, level)
         return self._reports[level]
 
     def _report(self, most: FeedbackLevel, level: FeedbackLevel) -> AttemptReport:
-        enough = _graded_for(level)
+        # The outcome needs rows, which the report at level ``score`` does not have.
+        enough = _grading_level(level)
         if enough not in self._graded:
             submission = replace(self._body.submission(most), feedback=enough)
             self._graded[enough] = graded_answers(self._exercise, submission)
         graded = self._graded[enough]
         report = graded.report(enough)
         outcome = outcome_of(report)
-        told = report if level is enough else graded.report(level)
-        return AttemptReport(told, rendered(told).decode(), outcome)
+        shown = report if level is enough else graded.report(level)
+        return AttemptReport(shown, rendered(shown).decode(), outcome)
 
-    def _told(self, most: FeedbackLevel) -> FeedbackLevel:
+    def _level(self, most: FeedbackLevel) -> FeedbackLevel:
         return self._body.submission(most).feedback
 
 
-def _graded_for(level: FeedbackLevel) -> FeedbackLevel:
-    """The level at which one grades for this one, and for the outcome."""
+def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
+    """Return the level of grading that is enough for a report at ``level`` and its outcome."""
     return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS

@@ -1,4 +1,4 @@
-"""The outcome of a report: verdicts and codes by their places, without what was written."""
+"""The outcome of a report: verdicts and message codes, without the answers."""
 
 import hashlib
 import json
@@ -22,12 +22,12 @@ class Outcome:
 
     @cached_property
     def digest(self) -> str:
-        """What equal outcomes have in common."""
+        """The SHA-256 of the content; equal outcomes have equal digests."""
         return hashlib.sha256(self.content.encode()).hexdigest()
 
 
 def outcome_of(report: Report) -> Outcome:
-    """The outcome of a report that has its rows (feedback level above ``score``)."""
+    """Return the outcome of a report, which must have rows (feedback level above ``score``)."""
     content = {part.part: _part(part) for part in report.parts}
     return Outcome(report.exercise, json.dumps(content, separators=(",", ":")))
 

@@ -1,4 +1,4 @@
-"""Whether an attempt is taken now, as which of its learner, and for which share of its points."""
+"""The rules for attempts: opening and closing times, the limit, and points of late attempts."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -7,7 +7,7 @@ from service.catalogue.attempts import AttemptsSpec
 
 
 class AttemptRefusedError(Exception):
-    """No attempt is taken; the text says why, in words for the learner, ``name`` for programs."""
+    """The attempt is refused. The message tells the learner why; ``name`` is for programs."""
 
     def __init__(self, name: str, message: str) -> None:
         self.name = name
@@ -16,9 +16,10 @@ class AttemptRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Ruling:
-    """An attempt that is taken: ``ordinal`` counts the learner's attempts from 1.
+    """The terms on which an attempt is accepted.
 
-    ``worth`` is the share of its points that it earns.
+    ``ordinal`` counts the learner's attempts from 1; ``worth`` is the share of the points that the
+    attempt earns.
     """
 
     ordinal: int
@@ -27,16 +28,16 @@ class Ruling:
 
 
 def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
-    """The ruling on a learner's next attempt, who has ``counted`` already.
+    """Return the ruling on the next attempt of a learner with ``counted`` counted attempts.
 
     Raises AttemptRefusedError.
     """
     if rules.opens is not None and now < rules.opens:
-        raise AttemptRefusedError("not-open", f"This exercise opens on {_told(rules.opens)}.")
+        raise AttemptRefusedError("not-open", f"This exercise opens on {_formatted(rules.opens)}.")
     is_late = rules.due is not None and now > rules.due
     end = rules.closes or rules.due
     if end is not None and now > end:
-        raise AttemptRefusedError("closed", f"This exercise was closed on {_told(end)}.")
+        raise AttemptRefusedError("closed", f"This exercise was closed on {_formatted(end)}.")
     if rules.limit is not None and counted >= rules.limit:
         attempts = "attempt is" if rules.limit == 1 else f"{rules.limit} attempts are"
         raise AttemptRefusedError(
@@ -45,5 +46,5 @@ def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
     return Ruling(counted + 1, is_late, rules.late_worth if is_late else 1.0)
 
 
-def _told(moment: datetime) -> str:
+def _formatted(moment: datetime) -> str:
     return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()

@@ -1,4 +1,4 @@
-"""Recording an attempt: exactly once, and under the next number of its learner."""
+"""Record each attempt exactly once, under the learner's next number."""
 
 import secrets
 from collections.abc import Callable, Iterable
@@ -11,7 +11,7 @@ from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.outcome import Outcome
 from service.attempts.storage.tables import attempts, outcomes
 
-# The statements are built once: that takes longer than they do.
+# Build the statements once: building one takes longer than running it.
 _WRITTEN: Final = tuple(NewAttempt.__dataclass_fields__)
 _EARLIER: Final = select(
     *(attempts.c[name] for name in RecordedAttempt.__dataclass_fields__)
@@ -32,7 +32,7 @@ _OUTCOMES: Final = select(outcomes.c.id, outcomes.c.exercise, outcomes.c.digest)
 
 
 def insert_or_ignore(table: Table) -> dict[str, postgresql.Insert | sqlite.Insert]:
-    """INSERT that leaves out what another row stands in the way of, by the kind of the database."""
+    """Return INSERT statements that skip conflicting rows, by the name of the SQL dialect."""
     return {
         "postgresql": postgresql.insert(table).on_conflict_do_nothing(),
         "sqlite": sqlite.insert(table).on_conflict_do_nothing(),
@@ -49,7 +49,7 @@ _NEW_ATTEMPT: Final = {
 def standing(
     connection: Connection, exercise: str, learner: str, owner: str, idempotency_key: str | None
 ) -> Standing:
-    """How a learner stands at an exercise, and what a request with this key has recorded."""
+    """Return how many attempts of a learner count, and the attempt with this idempotency key."""
     earlier = None
     if idempotency_key is not None:
         which = {"owner": owner, "idempotency_key": idempotency_key}
@@ -60,7 +60,7 @@ def standing(
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
-    """Write the attempt; None where another took its ordinal or its key in the meantime."""
+    """Write the attempt; return None if its ordinal or its key has been taken in the meantime."""
     values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
     values["id"] = secrets.token_hex(16)
     number = connection.scalar(
@@ -70,16 +70,16 @@ def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> Recorde
     return None if number is None else RecordedAttempt(**values, number=number)
 
 
-# The attempt that a standing allows; None where it allows none, or another than was prepared.
+# Returns the next attempt after a standing, or None if none is allowed or prepared.
 AttemptAfter = Callable[[Standing], tuple[NewAttempt, Outcome] | None]
 
 
 def record_next(
     connection: Connection, before: Standing, attempt_after: AttemptAfter
 ) -> RecordedAttempt | Standing:
-    """Write the attempt that the standing allows, also where others came first in the meantime.
+    """Write the attempt that ``attempt_after`` returns; if another came first, ask it again.
 
-    Gives the standing instead where ``attempt_after`` has none for it.
+    Return the current standing instead if ``attempt_after`` returns None.
     """
     now = before
     while (attempt := attempt_after(now)) is not None:
@@ -87,14 +87,14 @@ def record_next(
         written = record(connection, new, outcome)
         if written is not None:
             return written
-        # Each round another attempt has been recorded, by a job before or by another process.
+        # In each round an earlier job or another process has recorded an attempt.
         now = standing(connection, new.exercise, new.learner, new.owner, new.idempotency_key)
     return now
 
 
 def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
-    """The rows of outcomes, written where they are new."""
-    # Always in one order: two workers that wait for each other's outcomes would wait for ever.
+    """Return the row ids of the outcomes, after inserting those that are new."""
+    # Always in the same order: otherwise two workers could deadlock.
     ordered = sorted(set(wanted), key=lambda each: (each.exercise, each.digest))
     ids = _written_outcomes(connection, ordered)
     if new := [each for each in ordered if each not in ids]:
@@ -105,7 +105,7 @@ def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outco
 
 
 def _written_outcomes(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
-    """The rows of those outcomes that are written."""
+    """Return the row ids of those outcomes that are already in the database."""
     by_digest = {(each.exercise, each.digest): each for each in wanted}
     exercises, digests = zip(*by_digest, strict=True)
     which = {"exercises": list(set(exercises)), "digests": list(digests)}

@@ -1,4 +1,4 @@
-"""The store of attempts: what a route of the service asks of it."""
+"""The store of attempts, as the routes of the service use it."""
 
 import asyncio
 import tempfile
@@ -37,34 +37,33 @@ from service.contract.statistics import ExerciseStatistics
 
 R = TypeVar("R")
 
-# Changes no row, and fails where the tables are missing or may not be written to.
+# Changes no row, but fails if the tables are missing or not writable.
 _ALIVE: Final = update(attempts).values(number=attempts.c.number).where(false())
-# So many tutors read at once; others wait.
+# The most queries of tutors at once; others wait.
 _READERS: Final = 2
-# How long a tutor's reading may take, its wait for others included (seconds): longer than a
-# statement may take in PostgreSQL.
-_READING: Final = 70.0
-# An export that is larger waits for its reader on the disk (bytes).
+# The time limit of a tutor's query, including its wait for others (seconds): longer than the
+# limit of a statement in PostgreSQL.
+_READ_TIMEOUT: Final = 70.0
+# Larger exports are buffered on the disk (bytes).
 _IN_MEMORY: Final = 1024 * 1024
 
 
 class AttemptStore:
     """The recorded attempts of one database.
 
-    Every method raises StoreDownError where the database fails; what it was to write is then not
-    written.
+    Every method raises StoreDownError if the database fails; nothing is written then.
     """
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self._writer: AttemptWriter | None = None
         self._readers: ThreadPoolExecutor | None = None
-        # What surrounds each operation, by its name.
+        # Returns a context for the operation of this name, for example to measure it.
         self.measure: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext()
 
     @classmethod
     def open(cls, url: str) -> "AttemptStore":
-        """The store at a URL or in an SQLite file. Raises UnusableDatabaseError."""
+        """Open the store at a URL or in an SQLite file. Raises UnusableDatabaseError."""
         engine = open_database(url)
         try:
             with engine.begin() as connection:
@@ -73,17 +72,17 @@ class AttemptStore:
             problem = f"{safe_url(engine)}: attempts cannot be recorded there: {reason(error)}"
             raise UnusableDatabaseError(problem) from error
         finally:
-            # No connection may be carried into processes that are started later.
+            # Child processes that start later must not inherit a connection.
             engine.dispose()
         return cls(engine)
 
     def start(self) -> None:
-        """Begin to take attempts, in the process that serves."""
+        """Start the threads that write and read. Call it in the process that serves requests."""
         self._writer = AttemptWriter(self.engine, lambda: finish_overwriting(self.engine))
         self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 
     def close(self) -> None:
-        """Write what waits, and end."""
+        """Flush pending attempts, stop the threads and close all connections."""
         if self._writer is not None:
             self._writer.close()
             self._writer = None
@@ -95,7 +94,7 @@ class AttemptStore:
     async def standing(
         self, exercise: str, learner: str, owner: str, idempotency_key: str | None
     ) -> Standing:
-        """How a learner stands at an exercise, and what a request with this key has recorded."""
+        """Return how many attempts of a learner count, and the attempt with this key."""
         with self.measure("standing"):
             return await self._running.run(
                 lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
@@ -104,9 +103,9 @@ class AttemptStore:
     async def record(
         self, before: Standing, attempt_after: AttemptAfter
     ) -> RecordedAttempt | Standing:
-        """Write the attempt that a standing allows, durably; see ``record_next``.
+        """Write the next attempt durably; see ``record_next``.
 
-        ``attempt_after`` is called in the thread that writes, while others wait for it.
+        The writer thread calls ``attempt_after`` while other jobs wait.
         """
         with self.measure("record"):
             return await self._running.run(
@@ -114,25 +113,25 @@ class AttemptStore:
             )
 
     async def check(self) -> None:
-        """Make sure that the database answers."""
+        """Raise StoreDownError unless the database responds."""
         with self.measure("check"):
             await self._running.run(lambda connection: connection.execute(_ALIVE))
 
     async def page(
         self, wanted: AttemptFilter, cursor: str | None, most: int
     ) -> tuple[list[ListedAttempt], str | None]:
-        """At most ``most`` attempts, the newest first, and the cursor of the next page if any.
+        """Return at most ``most`` attempts, the newest first, and the cursor of the next page.
 
         Raises BadCursorError.
         """
         return await self._read(lambda connection: page(connection, wanted, cursor, most))
 
     async def history(self, attempt_id: str) -> AttemptHistory | None:
-        """An attempt with its answers, reports and overrides; None where there is none."""
+        """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
         return await self._read(lambda connection: history(connection, attempt_id))
 
     async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
-        """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
+        """Return the statistics of the wanted attempts at ``wanted.exercise``."""
         return await self._read(lambda connection: exercise_statistics(connection, wanted))
 
     async def export(
@@ -142,7 +141,7 @@ class AttemptStore:
         title: str,
         counting: Callable[[str], Counting],
     ) -> IO[bytes]:
-        """The attempts in a format, as a file that the caller closes; see ``written``."""
+        """Return the attempts in a format, as a file that the caller closes; see ``written``."""
         return await self._read(
             lambda connection: _file_of(
                 written(graded_attempts(connection, wanted, counting), form, title)
@@ -152,7 +151,7 @@ class AttemptStore:
     async def override(
         self, attempt_id: str, points: float | None, reason_given: str, author: str
     ) -> ListedAttempt:
-        """The attempt with these points in place of its report's; None withdraws earlier ones.
+        """Override the points of an attempt's report; ``points=None`` withdraws the override.
 
         Raises UnknownAttemptError, UnusablePointsError.
         """
@@ -168,36 +167,38 @@ class AttemptStore:
             return await self._running.run(work)
 
     async def data_of(self, learner: str) -> LearnerData:
-        """How much is recorded of a learner."""
+        """Count the records of a learner."""
         return await self._read(lambda connection: data_of(connection, learner))
 
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
-        """Delete all that is recorded of a learner; return how much it was.
+        """Delete all records of a learner; return their counts and the state of erasure.
 
-        With it, whether it is overwritten by now; see ``overwrite_deleted``. If not, the thread
-        that writes tries again every minute.
+        The state is that of ``overwrite_deleted``. If it is False, the writer thread tries again
+        every minute.
         """
         with self.measure("forget"):
             deleted = await self._running.run(lambda connection: forget(connection, learner))
             try:
                 erased = await asyncio.to_thread(overwrite_deleted, self.engine)
             except SQLAlchemyError:
-                # It is deleted all the same.
+                # The rows are deleted, but not yet overwritten.
                 erased = False
         return deleted, erased
 
     async def _read(self, work: Callable[[Connection], R]) -> R:
-        """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
+        """Run ``work``, which only reads, in a reader thread; return its result."""
         assert self._readers is not None, "the store has not been started"
         loop = asyncio.get_running_loop()
         with self.measure("read"):
-            found = loop.run_in_executor(self._readers, self._read_by, work)
+            found = loop.run_in_executor(self._readers, self._run_read, work)
             try:
-                return await asyncio.wait_for(found, _READING)
+                return await asyncio.wait_for(found, _READ_TIMEOUT)
             except TimeoutError as error:
-                raise StoreDownError(f"the database has not answered for {_READING:g} s") from error
+                raise StoreDownError(
+                    f"the database has not answered for {_READ_TIMEOUT:g} s"
+                ) from error
 
-    def _read_by(self, work: Callable[[Connection], R]) -> R:
+    def _run_read(self, work: Callable[[Connection], R]) -> R:
         try:
             with self.engine.connect() as connection:
                 return work(connection)
@@ -211,9 +212,9 @@ class AttemptStore:
 
 
 def _file_of(lines: Iterable[bytes]) -> IO[bytes]:
-    """Lines as a file that is read from its beginning.
+    """Return the lines as a file, positioned at its start.
 
-    So the database is done with them, however slowly they are then read.
+    A slow reader of the file does not keep a connection to the database open.
     """
     file = tempfile.SpooledTemporaryFile(_IN_MEMORY)  # noqa: SIM115 - the caller closes it
     try:

@@ -1,4 +1,4 @@
-"""What tutors change: points in place of a report's, and the data of a learner deleted."""
+"""What tutors change: they override points, and delete the data of a learner."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,7 +10,7 @@ from sqlalchemy.exc import IntegrityError
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
 from service.attempts.storage.tables import attempts, earlier_reports, overrides, regrade_queue
 
-# So often others may write of a learner in PostgreSQL while the learner is forgotten.
+# How often PostgreSQL may report a concurrent write while a learner is being deleted.
 _TRIES: Final = 4
 
 
@@ -22,7 +22,7 @@ def override(
     author: str,
     at: datetime,
 ) -> None:
-    """Give an attempt these points in place of its report's; None withdraws what was given.
+    """Override the points of an attempt's report; ``points=None`` withdraws the override.
 
     Raises UnknownAttemptError, UnusablePointsError.
     """
@@ -45,7 +45,7 @@ def override(
 
 @dataclass(frozen=True, slots=True)
 class LearnerData:
-    """How many rows of each kind belong to a learner."""
+    """The number of rows of each kind that belong to a learner."""
 
     attempts: int
     earlier_reports: int
@@ -53,7 +53,7 @@ class LearnerData:
 
 
 def data_of(connection: Connection, learner: str) -> LearnerData:
-    """What is recorded of a learner."""
+    """Count the records of a learner."""
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     columns = (attempts.c.number, earlier_reports.c.attempt, overrides.c.attempt)
     counts = (select(func.count(column)).where(column.in_(mine)) for column in columns)
@@ -61,16 +61,16 @@ def data_of(connection: Connection, learner: str) -> LearnerData:
 
 
 def forget(connection: Connection, learner: str) -> LearnerData:
-    """Delete all that is recorded of a learner, and tell how much it was.
+    """Delete all records of a learner; return their counts.
 
-    Outcomes stay: they hold verdicts and codes, and neither learners nor answers.
+    Outcomes stay: they contain verdicts and codes, but no learners and no answers.
     """
     for _ in range(_TRIES):
         try:
             with connection.begin_nested():
                 return _forget(connection, learner)
         except IntegrityError:
-            # Since its rows were deleted, another process has given points or begun a regrade.
+            # After the rows were deleted, another process has given points or begun a regrade.
             continue
     return _forget(connection, learner)
 

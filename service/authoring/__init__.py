@@ -1,4 +1,4 @@
-"""Remarks for the author of an exercise, before students see it."""
+"""Checks of an exercise for its author, before students see it, and a template for a new one."""
 
 from service.authoring.examine import examine
 from service.authoring.lazy import lazy_shares

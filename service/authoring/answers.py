@@ -1,4 +1,4 @@
-"""Answers that are graded for the author's sake: the model's, those of the checks, duplicates."""
+"""Checks by grading: model answers, the file's own checks, and parts with the same answer."""
 
 import math
 from collections import Counter
@@ -18,15 +18,15 @@ from service.grading.report import messages_of
 from service.solutions import solve
 
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
-# So many checks of each kind make a mistake in the exercise unlikely.
+# The recommended number of checks of each kind, which makes a mistake in the exercise unlikely.
 WANTED: Final = {"right": 1, "equivalent": 1, "wrong": 2}
-# A tutor writes points with two decimals.
+# Tutors write points with two decimals.
 _SAME_POINTS: Final = 0.005
 _SAME_NUMBER: Final = 1e-9
 
 
 def model_answer(exercise: Exercise) -> Iterator[Remark]:
-    """Parts in which the model solution does not get full marks, in radians or in degrees."""
+    """Yield parts in which the model answer does not get full marks, in radians or in degrees."""
     answers = solve(exercise).answers
     fields = {part.id: f"parts[{i}]" for i, part in enumerate(exercise.parts)}
     too_long = [part for part, answer in answers.items() if _longest(answer) > LIMITS.characters]
@@ -34,7 +34,7 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
         yield failed(
             fields[part],
             f"the right answer to {part} has an entry of more than the {LIMITS.characters} "
-            f"characters that are read, so nobody can hand it in; ask for less, such as the pose "
+            f"characters that are read, so nobody can submit it; ask for less, such as the pose "
             f"of a frame in between",
         )
     for unit in UNITS:
@@ -64,7 +64,7 @@ def _longest(answer: object) -> float:
 
 
 def failed_checks(exercise: Exercise) -> Iterator[Remark]:
-    """Checks whose answer does not get the result that the file expects."""
+    """Yield checks whose answer does not get the expected result."""
     for i, check in enumerate(exercise.checks):
         reports = _graded(exercise, check.answers, check.angle_unit)
         for part, problem in _problems(check, reports):
@@ -72,7 +72,7 @@ def failed_checks(exercise: Exercise) -> Iterator[Remark]:
 
 
 def missing_checks(exercise: Exercise) -> Iterator[Remark]:
-    """A warning where the file has too few checks of a kind."""
+    """Yield a warning if the file has too few checks of a kind."""
     kinds = Counter[str](check.kind for check in exercise.checks)
     short = [kind for kind, wanted in WANTED.items() if kinds[kind] < wanted]
     if short:
@@ -80,7 +80,7 @@ def missing_checks(exercise: Exercise) -> Iterator[Remark]:
         wanted = ", ".join(f"{number} {kind}" for kind, number in WANTED.items())
         yield warning(
             "checks",
-            f"{have}; write {wanted} or more, so that no later change goes wrong unseen",
+            f"{have}; write {wanted} or more, so that later mistakes are detected",
         )
 
 
@@ -91,7 +91,7 @@ def _problems(check: CheckSpec, reports: dict[str, PartReport]) -> Iterator[tupl
     answered = [reports[part] for part in check.answers]
     full = [report for report in answered if report.verdict is Verdict.CORRECT]
     if check.kind == "wrong" and len(full) == len(answered):
-        yield full[0].part, "should lose points, for it is of kind 'wrong'; it got full marks"
+        yield full[0].part, "should lose points, as its kind is 'wrong'; it got full marks"
     if check.kind != "wrong":
         for report in answered:
             if report.part not in check.expect and report not in full:
@@ -114,7 +114,7 @@ def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
 
 
 def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
-    """Parts whose right answers are the same for all values of the symbols, told together."""
+    """Yield one warning for each group of parts with the same right answer."""
     pairs = list(combinations(exercise.parts, 2))
     if not any(_task(one) == _task(other) for one, other in pairs):
         return
@@ -133,13 +133,13 @@ def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
             have = "has" if len(same) == 1 else "have"
             yield warning(
                 f"parts[{exercise.parts.index(same[0])}]",
-                f"{names} {have} the same answer as {one.id}: whoever has one copies it; ask for "
-                f"something else, or leave one part",
+                f"{names} {have} the same answer as {one.id}: students can copy it; ask for "
+                f"something else, or keep only one part",
             )
 
 
 def _task(part: PartSpec) -> dict[str, object]:
-    """The task without its formulas and frames, which are compared by value, and its terms."""
+    """The fields that define the task, except formulas and frames, which are compared by value."""
     return part.model_dump(exclude={*PosePartSpec.model_fields, *part.answer_fields})
 
 
@@ -155,14 +155,14 @@ def _equal(one: PartSpec, other: PartSpec, answers: dict[str, object], exercise:
 def _graded(
     exercise: Exercise, answers: Mapping[str, object], angle_unit: AngleUnit = "radians"
 ) -> dict[str, PartReport]:
-    """The report on each part, by its id."""
+    """Grade answers; return the report on each part by its id."""
     submission = Submission(answers, angle_unit, FeedbackLevel.FULL)
     return {part.part: part for part in grade(exercise, submission).parts}
 
 
 def _in_words(report: PartReport) -> str:
-    """Verdict, points and the first message of a part, for a remark."""
-    # A message on a single cell tells more than one on the whole part.
+    """The verdict, the points and one message of a part, for a remark."""
+    # Prefer a message on a single cell: it says more than one on the whole part.
     message = next((f": {each.message}" for each, *_ in reversed([*messages_of(report)])), "")
     points = f"{round(report.points, 2):g} of {report.max_points:g} points"
     return f"{report.verdict.value}, {points}{message}"

@@ -1,4 +1,4 @@
-"""All examinations of an exercise."""
+"""All checks of an exercise for its author."""
 
 from collections.abc import Callable, Iterator
 
@@ -24,5 +24,5 @@ EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
 
 
 def examine(exercise: Exercise) -> list[Remark]:
-    """All remarks on an exercise: failures, and warnings."""
+    """Return all remarks on an exercise: failures and warnings."""
     return [remark for examination in EXAMINATIONS for remark in examination(exercise)]

@@ -1,4 +1,4 @@
-"""A reference robot that moves in fewer ways than its joints suggest."""
+"""The check that the reference robot has no superfluous joints."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ WAYS = 6
 
 
 def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
-    """Joints of the reference on one axis, or more joints than ways to move."""
+    """Yield warnings for joints on the same axis, and for fewer degrees of freedom than joints."""
     robot = exercise.reference
     if robot is None:
         return
@@ -34,13 +34,13 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
     if ways < min(joints, WAYS) and not len(pairs):
         yield warning(
             "robot",
-            f"the {joints} joints move the tool in {ways} ways only, wherever they stand; check "
+            f"the {joints} joints move the tool in {ways} ways only, in every configuration; check "
             f"the rows, or say in the statement that the arm is redundant",
         )
 
 
 def _jacobian(exercise: Exercise, robot: Reference) -> Numbers:
-    """The space Jacobian ``(samples, 6, joints)``, lengths in the exercise's typical length.
+    """The space Jacobian ``(samples, 6, joints)``, with lengths divided by ``length_scale``.
 
     Source: Lynch and Park, *Modern Robotics*, eq. 5.11.
     """

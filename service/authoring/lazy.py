@@ -1,4 +1,4 @@
-"""The marks of a student who knows nothing, for the author of an exercise to look at."""
+"""The marks of lazy answers, which need no knowledge: zeros and joint variables."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -8,13 +8,14 @@ from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, PartReport, Submission, grade
 
-# Half of a pose is its rotation, which a lazy student may know where all axes are parallel.
+# The largest share without a warning. A pose may earn more: with parallel axes, the lazy answer to
+# its rotation, half of the pose, is right.
 MOST: Final = 0.25
 MOST_OF_A_POSE: Final = 0.5
 
 
 def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
-    """The largest share of its points that a lazy answer earns, for each part by its id."""
+    """Return the largest share of points that a lazy answer earns in each part, by part id."""
     from service.solutions.kinds import LAZY
 
     return {
@@ -26,14 +27,14 @@ def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
 
 
 def lazy_answers(exercise: Exercise) -> Iterator[Remark]:
-    """Parts in which a lazy answer earns much."""
+    """Yield a warning for each part in which a lazy answer earns much."""
     shares = lazy_shares(exercise)
     for i, part in enumerate(exercise.parts):
         share = shares[part.id]
         if share > (MOST_OF_A_POSE if part.kind == "transform" else MOST):
             yield warning(
                 f"parts[{i}]",
-                f"an answer of zeros and bare joint variables earns {math.floor(100 * share)} % of "
+                f"an answer of only zeros and joint variables earns {math.floor(100 * share)} % of "
                 f"{part.id}; ask for more, or mark it by content",
             )
 

@@ -1,4 +1,4 @@
-"""The remarks on an exercise file that can be read."""
+"""Remarks on a readable exercise file."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -6,7 +6,7 @@ from functools import partial
 
 
 class Level(StrEnum):
-    """A failure must be mended; a warning is worth a look."""
+    """The level of a remark: a failure must be fixed, a warning should be checked."""
 
     FAILED = "failed"
     WARNING = "warning"
@@ -14,7 +14,7 @@ class Level(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """One remark on a field of the file; empty where it is about the whole."""
+    """A remark on a field of the file; ``field`` is empty if it is about the whole file."""
 
     level: Level
     field: str

@@ -1,4 +1,4 @@
-"""Symbols and numbers that may be taken for something else, or whose ranges hide a mistake."""
+"""Checks of symbols and numbers: ambiguous names, bad ranges, and degrees without a unit."""
 
 import math
 import re
@@ -13,7 +13,7 @@ from service.expressions.parsing.degrees import in_degrees
 from service.expressions.tree import Node, Number, Unit, children
 
 _SHORTHAND: Final = re.compile(r"[cCsS][0-9]+")
-# The reading that each is mistaken for.
+# Names, and what students may mistake them for.
 _MISLEADING: Final = {
     "e": "Euler's number",
     "E": "Euler's number, or a power of ten",
@@ -26,17 +26,17 @@ _MISLEADING: Final = {
     "c": "a cosine",
     "s": "a sine",
 }
-# Small lengths drown beyond this: a slip in one changes the last digits of a pose.
+# Beyond this ratio, a slip in a small length changes only the last digits of a pose.
 MOST_RATIO: Final = 1000.0
-# A constant that is right to a thousandth counts as rounded.
+# In a narrower range, a constant differs by a thousandth only and would count as rounded.
 LEAST_WIDTH: Final = 0.01
-# Nobody writes more than a full turn in radians without π.
+# Larger numbers without π are probably degrees.
 FULL_TURN: Final = 2 * math.pi
 _LOOK_ALIKE: Final = str.maketrans("IlO", "110")
 
 
 def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
-    """Names that also are a shorthand, another joint's variable, or look like something else."""
+    """Yield names that are also a shorthand or a joint variable, or look like something else."""
     for variable in exercise.variables:
         for problem in _problems(variable, exercise):
             yield warning(f"symbols.{variable.name}", problem)
@@ -48,18 +48,18 @@ def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
         if len(names) > 1:
             yield warning(
                 f"symbols.{names[1]}",
-                f"looks like {names[0]}: a student may type the one for the other; rename one",
+                f"looks like {names[0]}: students may confuse them; rename one",
             )
 
 
 def unused_symbols(exercise: Exercise) -> Iterator[Remark]:
-    """Symbols that no formula of the file holds."""
+    """Yield symbols that no formula of the file uses."""
     used = {name for _, formula, _ in exercise.fields() for name in formula.symbols}
     for variable in exercise.variables:
         if variable.joint is None and variable.name not in used:
             yield warning(
                 f"symbols.{variable.name}",
-                "is in no formula: take it out, or say in the statement that it is not needed",
+                "is in no formula: remove it, or say in the statement that it is not needed",
             )
 
 
@@ -71,8 +71,8 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
     if _SHORTHAND.fullmatch(name) and set(map(int, name[1:])) <= joints:
         function = "cosine" if name[0] in "cC" else "sine"
         yield (
-            f"takes the place of the shorthand {name} for a {function}: whoever writes "
-            f"{name} for that is marked wrong; rename it"
+            f"takes the place of the shorthand {name} for a {function}: students who write "
+            f"{name} for that are marked wrong; rename it"
         )
     if variable.joint is None:
         for joint in exercise.joints:
@@ -85,7 +85,7 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
 
 
 def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
-    """Ranges that hardly vary, lengths that cross 0, and lengths of very different size."""
+    """Yield narrow ranges, lengths that may be 0, and lengths of very different size."""
     for variable in exercise.variables:
         yield from _range(variable)
     sizes = {v.name: max(abs(v.low), abs(v.high)) for v in exercise.variables if v.kind == "length"}
@@ -95,8 +95,8 @@ def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
     if sizes[most] > MOST_RATIO * sizes[least]:
         yield warning(
             f"symbols.{least}.range",
-            f"reaches {sizes[least]:g} where {most} reaches {sizes[most]:g}: beside that a slip in "
-            f"{least} is too small to be seen; write lengths of one unit and similar size",
+            f"reaches {sizes[least]:g} where {most} reaches {sizes[most]:g}, so that a slip in "
+            f"{least} is too small to be detected; write lengths of one unit and similar size",
         )
 
 
@@ -106,27 +106,27 @@ def _range(variable: Variable) -> Iterator[Remark]:
     if variable.high - variable.low < LEAST_WIDTH * size:
         yield warning(
             field,
-            f"is so narrow that the number {variable.low:g} may pass for {variable.name}; widen "
-            f"it, or write the number in the formulas",
+            f"is so narrow that the number {variable.low:g} may be accepted for {variable.name}; "
+            f"widen it, or write the number in the formulas",
         )
     is_constant_length = variable.kind == "length" and variable.joint is None
     if is_constant_length and variable.low <= 0 <= variable.high:
         yield warning(
             field,
-            f"holds 0, where axes that are apart come to meet; begin above 0, as in "
+            f"holds 0, where separate axes would intersect; begin above 0, as in "
             f"[{size / 3:.1g}, {size:.1g}]",
         )
     ends = sorted((abs(variable.low), abs(variable.high)))
     if 0 < ends[0] * MOST_RATIO < ends[1]:
         yield warning(
             field,
-            f"goes from {variable.low:g} to {variable.high:g}; narrow it, for a mistake that "
-            f"counts at one end is not seen at the other",
+            f"goes from {variable.low:g} to {variable.high:g}; narrow it, because mistakes at one "
+            f"end are not detected at the other",
         )
 
 
 def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
-    """Constants without a unit of more than a full turn, where an angle is asked for."""
+    """Yield angles without a unit of more than a full turn, which are probably degrees."""
     for field, formula, quantity in exercise.fields():
         for term in _bare_terms(formula.tree, is_angle=quantity == "angle"):
             constant = Expression(formula.source, term, (), frozenset())
@@ -139,7 +139,7 @@ def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _bare_terms(tree: Node, *, is_angle: bool) -> Iterator[Node]:
-    """Terms that would be in degrees if the file's numbers were, by the rule for students."""
+    """Yield the terms without a unit that students' degree mode would read as degrees."""
     written = {(unit.start, unit.end) for unit in _units(tree)}
     for unit in _units(in_degrees(tree, is_angle=is_angle, notes=[])):
         if (unit.start, unit.end) not in written:

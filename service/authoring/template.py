@@ -1,4 +1,4 @@
-"""A new exercise file to start from."""
+"""The template of a new exercise file."""
 
 from pathlib import Path
 from typing import Final
@@ -10,17 +10,17 @@ _SHOWN: Final = 60
 
 
 class UnusableIdError(ValueError):
-    """A text that cannot be the id of an exercise."""
+    """The text cannot be the id of an exercise."""
 
     def __init__(self, exercise_id: str) -> None:
         super().__init__(f"{exercise_id[:_SHOWN]!r} cannot be an exercise's id: {ID_ADVICE}")
 
 
 def template(exercise_id: str, like: Path | None = None) -> str:
-    """The text of a new exercise file, with comments; it passes every check as it is.
+    """Return the text of a new exercise file, with comments, or that of the file ``like``.
 
-    It is that of the file ``like``, where one is named. Raises UnusableIdError: the id becomes the
-    file's name and a part of web addresses.
+    The text passes every check. Raises UnusableIdError, because the id becomes the file's name and
+    a part of web addresses.
     """
     if not is_exercise_id(exercise_id):
         raise UnusableIdError(exercise_id)

@@ -1,4 +1,4 @@
-"""What grading platforms want uploaded: a zip file with the program, an assignment and scripts."""
+"""Bundles for grading platforms: zip files with the program, an assignment and scripts."""
 
 from collections.abc import Callable, Mapping
 from typing import Final

@@ -1,4 +1,4 @@
-"""Files -> a zip file, the same bytes for the same files."""
+"""Pack files into a reproducible zip file."""
 
 import io
 import stat
@@ -6,13 +6,13 @@ import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-# The first moment that a zip file can tell.
+# The earliest time that a zip file can represent.
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
 class BundledFile:
-    """A file of a bundle; ``name`` is its path in there, with ``/``."""
+    """A file of a bundle; ``name`` is its path in the bundle, with ``/``."""
 
     name: str
     content: bytes
@@ -20,13 +20,13 @@ class BundledFile:
 
 
 def zipped(files: Iterable[BundledFile]) -> bytes:
-    """The zip file of all files, in the order of their names."""
+    """Return a zip file of the files, sorted by name; equal files give equal bytes."""
     written = io.BytesIO()
     with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in sorted(files, key=lambda file: file.name):
             entry = zipfile.ZipInfo(file.name, _NO_TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.create_system = 3  # Unix, whose modes follow
+            entry.create_system = 3  # Unix, so that the modes below are used
             entry.external_attr = (stat.S_IFREG | (0o755 if file.is_executable else 0o644)) << 16
             archive.writestr(entry, file.content)
     return written.getvalue()

@@ -1,11 +1,11 @@
-"""The grader for a job of continuous integration, which knows no platform: docs/ci uses it."""
+"""The bundle for jobs of continuous integration on any platform; see docs/ci."""
 
 from service.bundles.archive import BundledFile
 from service.bundles.content import BundleContent, setup_script, template
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """The files of a folder: ``setup.sh`` installs the program in it, ``grade`` runs it."""
+    """Return the files of a folder: ``setup.sh`` installs the grader in it, ``grade`` runs it."""
     return [
         *content.program(),
         *content.files,

@@ -1,4 +1,4 @@
-"""What every bundle holds: the program, its pinned dependencies, the assignment, its exercises."""
+"""The content of every bundle: the program, pinned dependencies, the assignment, its exercises."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -13,15 +13,15 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 
 class BundleError(Exception):
-    """An assignment that cannot be bundled; the text says why."""
+    """The assignment cannot be bundled; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class BundleContent:
-    """An assignment with the files that grading it needs anywhere.
+    """An assignment with all files that are needed to grade it.
 
-    ``exercises`` are those that are set, with the parts that are set only. ``image`` names the
-    container image of the grader, where a platform wants one.
+    ``exercises`` are the assigned exercises with only the assigned parts. ``image`` is the name of
+    the grader's container image, if the platform uses one.
     """
 
     title: str
@@ -30,7 +30,7 @@ class BundleContent:
     image: str = ""
 
     def program(self) -> Iterator[BundledFile]:
-        """The program as a wheel, and its dependencies."""
+        """Yield the program as a wheel, and its pinned dependencies."""
         yield own_wheel()
         yield locked_requirements()
 
@@ -38,10 +38,10 @@ class BundleContent:
 def content_of(
     assignment: Assignment, file: Path | None, catalogue: dict[str, Path], image: str = ""
 ) -> BundleContent:
-    """The content for an assignment, of this file or without one. Raises BundleError.
+    """Return the content for an assignment, from ``file`` if it has one. Raises BundleError.
 
-    ``catalogue`` has the exercise files of this installation by id: those that are set are bundled,
-    so that the platform grades by the version that is here.
+    ``catalogue`` has the exercise files of this installation by id. The assigned ones are bundled,
+    so that the platform grades with the same version.
     """
     files = [BundledFile("assignment.toml", _assignment_text(assignment, file))]
     exercises = []
@@ -56,12 +56,12 @@ def content_of(
 
 
 def setup_script() -> BundledFile:
-    """The script that installs the program beside itself."""
+    """Return the script that installs the program in its own folder."""
     return BundledFile("setup.sh", (_TEMPLATES / "setup.sh").read_bytes(), is_executable=True)
 
 
 def template(platform: str, name: str) -> bytes:
-    """A file of a platform, as it is bundled."""
+    """Return the content of a platform's file."""
     return (_TEMPLATES / platform / name).read_bytes()
 
 
@@ -69,19 +69,19 @@ def _assignment_text(assignment: Assignment, file: Path | None) -> bytes:
     if file is not None:
         return file.read_bytes()
     [only] = assignment.exercises
-    # An id is made of letters, digits, - and _, so it needs no escaping.
+    # An id has only letters, digits, - and _, so it needs no escaping.
     name = only.exercise.id
     return f'title = "{name}"\n\n[[exercises]]\nid = "{name}"\n'.encode()
 
 
 def _below(path: Path, file: Path | None) -> str:
-    """The place of an exercise file beside the assignment's. Raises BundleError."""
+    """The path of an exercise file relative to the assignment's folder. Raises BundleError."""
     folder = (file.parent if file else Path()).resolve()
     try:
         name = path.resolve().relative_to(folder).as_posix()
     except ValueError:
         raise BundleError(
-            f"{path} lies outside the folder of the assignment; put it beside the assignment file"
+            f"{path} is outside the folder of the assignment; put it beside the assignment file"
         ) from None
     if name in ("assignment.toml", "requirements.lock"):
         raise BundleError(f"{path} has the name of another file of the bundle; give it another")

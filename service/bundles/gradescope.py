@@ -1,4 +1,4 @@
-"""The autograder of Gradescope: ``setup.sh`` builds its image, ``run_autograder`` grades.
+"""The bundle for Gradescope: ``setup.sh`` builds the image, ``run_autograder`` grades.
 
 Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "File hierarchy".
 """
@@ -8,7 +8,7 @@ from service.bundles.content import BundleContent, setup_script, template
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """The files of the zip that is uploaded, the two scripts at its top."""
+    """Return the files of the autograder, with both scripts at the top."""
     script = template("gradescope", "run_autograder")
     return [
         *content.program(),

@@ -1,7 +1,7 @@
-"""The wheel of the program that runs, made anew from its files.
+"""Build a wheel of the running program from its installed files.
 
-So a bundle needs no package index for the program itself, and holds the version that made it,
-installed from a wheel or from a checkout.
+A bundle then needs no package index for the program itself, and has the same version, whether that
+is installed from a wheel or from a checkout.
 
 Source: https://packaging.python.org/en/latest/specifications/binary-distribution-format/.
 """
@@ -23,7 +23,7 @@ _PACKAGE = Path(__file__).parents[1]
 
 
 def own_wheel() -> BundledFile:
-    """The wheel, named as installers want it named."""
+    """Return the wheel, with the file name that installers expect."""
     installed = distribution(_NAME)
     stem = f"{_NAME.replace('-', '_')}-{installed.version}"
     files = [*_program(), *_metadata(installed, f"{stem}.dist-info")]
@@ -33,14 +33,14 @@ def own_wheel() -> BundledFile:
 
 
 def locked_requirements() -> BundledFile:
-    """The pinned dependencies with their hashes: in the package, or at the top of a checkout."""
+    """Return the pinned dependencies with hashes, from the package or the top of a checkout."""
     packaged = _PACKAGE / "_requirements.lock"
     lock = packaged if packaged.is_file() else _PACKAGE.parent / "requirements.lock"
     return BundledFile("requirements.lock", lock.read_bytes())
 
 
 def _program() -> Iterator[BundledFile]:
-    """The package and the catalogue, where a wheel has them."""
+    """Yield the package and the catalogue, with the paths that they have in a wheel."""
     yield from _below(_PACKAGE, "service")
     if not (_PACKAGE / "_exercises").is_dir():
         yield from _below(shipped_folder(), "service/_exercises")
@@ -62,7 +62,7 @@ def _metadata(installed: Distribution, folder: str) -> Iterator[BundledFile]:
 
 
 def _record(files: list[BundledFile], record: str) -> bytes:
-    """Each file with its hash and size; the record itself without."""
+    """The file RECORD: each file with its hash and size, and RECORD itself without them."""
     written = io.StringIO()
     rows = csv.writer(written, lineterminator="\n")
     for file in files:

@@ -1,4 +1,4 @@
-"""The external grader of PrairieLearn: an image, and a question that it grades.
+"""The bundle for PrairieLearn's external grader: an image, and a question that it grades.
 
 Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/.
 """
@@ -16,14 +16,14 @@ from service.catalogue import Exercise
 ENTRY_POINT: Final = "/usr/local/bin/grade-submission"
 # The program starts and grades within two seconds; a container on a busy machine takes longer.
 _SECONDS: Final = 60
-# What pl-file-upload takes: the endings of files that `dh-grader grade` reads.
+# The files that pl-file-upload accepts: those that `dh-grader grade` reads.
 _PATTERNS: Final = ", ".join(
     f"*.{ending}" for ending in ("json", "toml", "csv", "tsv", "md", "tex", "m", "py", "txt")
 )
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """The folders ``image``, to be built, and ``question``, to be put into a course."""
+    """Return the folders ``image``, to build the grader, and ``question``, to add to a course."""
     dockerfile = template("prairielearn", "Dockerfile")
     script = template("prairielearn", "grade-submission")
     return [
@@ -43,7 +43,7 @@ def _moved(folder: str, file: BundledFile) -> BundledFile:
 def _info(content: BundleContent) -> bytes:
     ids = " ".join(exercise.id for exercise in content.exercises)
     info = {
-        # The same question keeps its uuid when it is bundled anew.
+        # A question keeps its uuid when it is bundled again.
         "uuid": str(uuid.uuid5(uuid.NAMESPACE_URL, f"dh-grader {content.title} {ids}")),
         "title": content.title,
         "topic": "Forward kinematics",
@@ -74,7 +74,7 @@ def _page(content: BundleContent) -> bytes:
 
 
 def _exercise(exercise: Exercise) -> Iterator[str]:
-    """The statement, and each part with the names of the files that may answer it."""
+    """Yield the HTML of the statement and the parts."""
     yield f"  <h4>{_text(exercise.title)}</h4>\n"
     for paragraph in exercise.statement.split("\n\n"):
         yield f"  <p>{_text(' '.join(paragraph.split()))}</p>\n"
@@ -87,5 +87,5 @@ def _exercise(exercise: Exercise) -> Iterator[str]:
 
 
 def _text(text: str) -> str:
-    """Text as HTML shows it; PrairieLearn would fill in what stands between double braces."""
+    """Escape text for HTML, and braces, because PrairieLearn replaces text in double braces."""
     return escape(text).replace("{", "&#123;").replace("}", "&#125;")

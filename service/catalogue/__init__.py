@@ -1,4 +1,4 @@
-"""Exercise files, validated and compiled. Knows nothing of answers."""
+"""Exercise files, validated and compiled. This package does not handle students' answers."""
 
 from service.catalogue.exercise import Exercise
 from service.catalogue.feedback_level import FeedbackLevel, least

@@ -1,4 +1,4 @@
-"""How often and until when an exercise may be attempted, where attempts are recorded."""
+"""The rules for recorded attempts in an exercise file: their limit, times and late marks."""
 
 from typing import Annotated, Literal
 
@@ -10,21 +10,21 @@ Worth = Annotated[float, Field(ge=0, le=1)]
 
 
 class AttemptsSpec(StrictModel):
-    """How often and until when an exercise may be attempted. Only recorded attempts are limited."""
+    """The rules for recorded attempts: their limit, times and late marks."""
 
     limit: Annotated[int, Field(ge=1, strict=True)] | None = None
-    """The most attempts of one learner; without it as many as they like. An attempt in which
-    nothing could be read does not count."""
+    """The most attempts of each learner. Default: no limit. An attempt in which nothing could be
+    read does not count."""
     opens: AwareDatetime | None = None
-    """The moment from which attempts are taken, with its time zone: 2026-10-01T08:00:00+02:00."""
+    """The time from which attempts are accepted, with a time zone: 2026-10-01T08:00:00+02:00."""
     due: AwareDatetime | None = None
-    """The moment until which an attempt earns all its points."""
+    """The time until which an attempt earns all its points."""
     closes: AwareDatetime | None = None
-    """The moment until which late attempts are taken; without it none is taken after ``due``."""
+    """The time until which late attempts are accepted. Default: none is accepted after ``due``."""
     late_worth: Worth = 0.5
     """The share of its points that a late attempt earns."""
     counts: Literal["best", "last"] = "best"
-    """Which of a learner's attempts counts: the one with the most points, or the last one."""
+    """The attempt of a learner that counts: the one with the most points, or the last one."""
 
     @model_validator(mode="after")
     def _in_order(self) -> "AttemptsSpec":

@@ -1,7 +1,7 @@
-"""From the shape of an exercise file to an exercise that can be graded.
+"""Compile the validated content of an exercise file into an exercise that can be graded.
 
-What pydantic cannot see is checked here, where the symbols are known: that each formula can be
-read, that each row holds its joint variable in the right column, that the ranges make sense.
+This module knows the symbols, so it checks what pydantic cannot: each formula can be read, each row
+has its joint variable in the right column, and each range is valid.
 """
 
 import hashlib
@@ -47,12 +47,12 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "length": (0.2, 1.0),
     "number": (0.5, 2.0),
 }
-# The fields of a file that change no grading.
+# The fields of a file that do not affect grading.
 _NOT_GRADING = {"checks", "feedback", "attempts", "view"}
 
 
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
-    """The exercise that ``spec`` describes. Raises FieldError where a value cannot stand."""
+    """Return the exercise that ``spec`` describes. Raises FieldError for an invalid value."""
     joints = _joints(spec.robot) if spec.robot is not None else ()
     variables = _variables(joints, spec.symbols)
     vocabulary = _vocabulary(variables)
@@ -86,7 +86,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
 def _formulas(
     parts: Sequence[PartSpec], reference: Reference | None, reader: FormulaReader
 ) -> Mapping[str, FormulaGrid]:
-    """The formulas of each part that has its own, by the part's id. Raises FieldError."""
+    """The formulas of each part whose answer is in the file, by part id. Raises FieldError."""
     found: dict[str, FormulaGrid] = {}
     for i, part in enumerate(parts):
         written = part.formulas()
@@ -98,7 +98,7 @@ def _formulas(
 
 
 def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:
-    """Check that every check names parts of the exercise. Raises FieldError."""
+    """Raise FieldError if a check names an unknown part or expects too many points."""
     most = {part.id: part.points for part in parts}
     for i, check in enumerate(checks):
         for field, named in (("answers", check.answers), ("expect", check.expect)):
@@ -118,7 +118,7 @@ def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> Non
 
 
 def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) -> float:
-    """The longest length: of the letters, and of the numbers that the reference's table has."""
+    """The longest length in the ranges of the symbols and in the reference table."""
     lengths = [max(abs(v.low), abs(v.high)) for v in variables if v.kind == "length"]
     if isinstance(reference, Robot):
         nothing = {variable.name: np.zeros(1) for variable in variables}
@@ -132,12 +132,10 @@ def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLeve
 
 
 def _version(spec: ExerciseSpec) -> str:
-    """A digest of the file's content; comments, layout and checks do not change it.
+    """The digest of all fields that affect grading; comments and layout do not change it.
 
-    Nor do ``feedback``, ``attempts`` and ``view``: they change when there is a grading and what is
-    told and shown of it, not the grading.
-    What the file leaves to the default is left out, so that a new field of the schema does not
-    give every exercise a new version.
+    Fields with default values are left out, so that a new field of the schema does not change the
+    version of every exercise.
     """
     written = spec.model_dump(mode="json", exclude_defaults=True, exclude=_NOT_GRADING)
     content = json.dumps(written, sort_keys=True)
@@ -145,7 +143,7 @@ def _version(spec: ExerciseSpec) -> str:
 
 
 def _joints(robot: RobotSpec | ScrewRobotSpec) -> tuple[Joint, ...]:
-    """The joints, numbered as their variables are (a wrist's joints may begin at 4)."""
+    """The joints, numbered like their variables (the joints of a wrist may begin at 4)."""
     digits = "".join(character for character in robot.joints[0] if character.isdigit())
     named = zip(robot.joints, robot.structure, strict=True)
     return tuple(
@@ -155,9 +153,9 @@ def _joints(robot: RobotSpec | ScrewRobotSpec) -> tuple[Joint, ...]:
 
 
 def _variables(joints: tuple[Joint, ...], symbols: dict[str, SymbolSpec]) -> tuple[Variable, ...]:
-    """All letters: the joint variables first, then the symbols in the file's order.
+    """All variables: the joint variables first, then the symbols in the file's order.
 
-    A symbol entry with a joint variable's name says more about that joint (range, description).
+    A symbol with the name of a joint variable sets that joint's range and description.
     """
     joint_names = {joint.variable for joint in joints}
     of_joints = [_joint_variable(joint, symbols.get(joint.variable)) for joint in joints]
@@ -210,7 +208,7 @@ def _vocabulary(variables: tuple[Variable, ...]) -> Vocabulary:
 
 
 def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
-    """The usual names of a joint variable, less those that the exercise gives to another symbol."""
+    """The usual names of a joint variable that no other symbol of the exercise has."""
     if variable.joint is None:
         return ()
     letters = ("q", "d") if variable.kind == "length" else ("q", "theta", "th")
@@ -220,7 +218,7 @@ def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
 
 def _robot(spec: RobotSpec, joints: tuple[Joint, ...], reader: FormulaReader) -> Robot:
     rows = tuple(_row(i, cells, joints, reader) for i, cells in enumerate(spec.table))
-    reader.tried(rows, lambda i, j: f"robot.table[{i}].{COLUMNS[j]}")
+    reader.trial_numbers(rows, lambda i, j: f"robot.table[{i}].{COLUMNS[j]}")
     zero = reader.read("robot.table", 0, "number")
     tables = tables_in_both_conventions(joints, rows, spec.convention, zero)
     return Robot(spec.structure, spec.convention, joints, tables)
@@ -231,7 +229,7 @@ def _screw_robot(
 ) -> ScrewRobot:
     home = reader.grid(transform_of("robot.home", spec.home))
     axes = reader.grid(screws_of("robot.screws", spec.screws))
-    omega = reader.tried(axes, lambda i, _: f"robot.screws[{i}]")[:, :3]
+    omega = reader.trial_numbers(axes, lambda i, _: f"robot.screws[{i}]")[:, :3]
     turns = np.abs(omega).max(axis=(1, 2)) > EXACT
     for i, (joint, turning) in enumerate(zip(joints, turns.tolist(), strict=True)):
         if turning == joint.prismatic:
@@ -262,7 +260,10 @@ def _row(i: int, cells: Four, joints: tuple[Joint, ...], reader: FormulaReader) 
 
 
 def _check_moves_once(field: str, formula: Expression, joint: Joint) -> None:
-    """A joint variable enters its cell as +q: the reference fixes the sense of each joint."""
+    """Raise FieldError unless the cell is the joint variable plus a constant.
+
+    The reference defines the positive direction of each joint.
+    """
     at = np.array([0.0, 0.7, -1.3])
     values = {name: np.full(3, 0.4) for name in formula.symbols} | {joint.variable: at}
     cell = formula.evaluate(values)

@@ -1,4 +1,4 @@
-"""An exercise, compiled: its vocabulary, its reference robot, and its parts."""
+"""A compiled exercise: its vocabulary, its reference robot, and its parts."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -21,12 +21,11 @@ _ANY_TIME: Final = AttemptsSpec()
 class Exercise:
     """One exercise of the catalogue.
 
-    ``version`` changes with anything in its file that changes a grading: not with its checks and
-    its ``view``, nor with ``feedback_by_attempt``, the most that a student is told at each attempt
-    (at later ones as at the last of them), nor with the rules for ``attempts``.
-    ``reference`` is the robot, None where there is none; ``formulas`` holds the answers that the
-    file gives, by the part's id. ``length_scale`` is the longest length, the scale of small
-    differences. ``view`` is where the author has its figure seen from.
+    ``version`` changes with every field that affects grading: not with ``checks``, ``view``,
+    ``attempts`` and ``feedback_by_attempt``, the highest feedback level of each attempt (the last
+    one is for all later attempts). ``reference`` is the robot, if any; ``formulas`` has the answers
+    in the file by part id. ``length_scale`` is the longest length, to which small differences are
+    compared. ``view`` is the viewpoint of the figure.
     """
 
     id: str
@@ -47,16 +46,16 @@ class Exercise:
 
     @property
     def feedback(self) -> FeedbackLevel:
-        """The most that a student is told at the first attempt, and where none is recorded."""
+        """The highest feedback level of the first attempt, and of gradings without recording."""
         return self.feedback_by_attempt[0]
 
     def feedback_at(self, ordinal: int) -> FeedbackLevel:
-        """The most that a student is told at this attempt, counted from 1."""
+        """The highest feedback level of an attempt; ``ordinal`` counts from 1."""
         return self.feedback_by_attempt[min(ordinal, len(self.feedback_by_attempt)) - 1]
 
     @property
     def robot(self) -> Robot:
-        """The robot by its table. Raises LookupError where there is none.
+        """The robot given by a table. Raises LookupError if the exercise has none.
 
         An exercise with a part that asks for a table always has one.
         """
@@ -66,12 +65,12 @@ class Exercise:
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """The robot's joints; none where there is no robot."""
+        """The robot's joints; empty without a robot."""
         return self.reference.joints if self.reference else ()
 
     @property
     def structure(self) -> str | None:
-        """The robot's joints by their letters, such as "RRP"; None where there is no robot."""
+        """The letters of the robot's joints, such as "RRP"; None without a robot."""
         return self.reference.structure if self.reference else None
 
     def part(self, part_id: str) -> PartSpec | None:
@@ -79,7 +78,7 @@ class Exercise:
         return next((part for part in self.parts if part.id == part_id), None)
 
     def fields(self) -> Iterator[FormulaField]:
-        """Every formula of the file, with its field and quantity."""
+        """Yield every formula of the file with its field and quantity."""
         if self.reference is not None:
             yield from self.reference.fields()
         for i, part in enumerate(self.parts):

@@ -1,13 +1,13 @@
-"""How much a report tells."""
+"""The levels of feedback in a report."""
 
 from enum import StrEnum
 
 
 class FeedbackLevel(StrEnum):
-    """How much a report tells, from the most to the least.
+    """The level of feedback in a report, from the most to the least.
 
-    ``full``: hints and corrections. ``hints``: what to look at, never the value. ``verdicts``:
-    right and wrong, and what could not be read. ``score``: bare marks, and what could not be read.
+    ``full``: hints and corrections. ``hints``: hints without values. ``verdicts``: right and wrong
+    entries. ``score``: only marks. All levels name unreadable entries.
     """
 
     FULL = "full"
@@ -20,5 +20,5 @@ _FROM_THE_MOST = tuple(FeedbackLevel)
 
 
 def least(*levels: FeedbackLevel) -> FeedbackLevel:
-    """That of the levels which tells the least."""
+    """Return the level with the least feedback."""
     return max(levels, key=_FROM_THE_MOST.index)

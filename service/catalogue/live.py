@@ -1,4 +1,4 @@
-"""A catalogue that follows its files while the service runs."""
+"""A catalogue that reloads changed files while the service runs."""
 
 import logging
 import time
@@ -10,7 +10,7 @@ from service.catalogue.exercise import Exercise
 from service.catalogue.files.toml_file import CatalogueError
 from service.catalogue.load import exercise_files, load_catalogue, load_exercise
 
-# The seconds between two looks at the disk.
+# The time between two checks of the files (seconds).
 REFRESH_SECONDS: Final = 1.0
 
 Stamp = tuple[int, int, int]
@@ -19,18 +19,18 @@ _log = logging.getLogger(__name__)
 
 
 def open_catalogue(folders: Sequence[Path], *, reload: bool) -> Mapping[str, Exercise]:
-    """The exercises of these folders; with ``reload`` as their files are from now on.
+    """Return the exercises of these folders; with ``reload``, changed files are read again.
 
-    Raises CatalogueError: a service never starts with a file that is broken.
+    Raises CatalogueError, so that a service does not start with a broken file.
     """
     return LiveCatalogue(folders) if reload else load_catalogue(*folders)
 
 
 class LiveCatalogue(Mapping[str, Exercise]):
-    """The exercises by id, read again where a file has changed.
+    """The exercises by id; changed files are read again.
 
-    A question looks at the files' times, at most once in ``REFRESH_SECONDS``, and reads the files
-    that differ. A file that cannot be used keeps its last good version, and the log says why.
+    Each access checks the files' times, at most once in ``REFRESH_SECONDS``, and reads changed
+    files. For an unusable file, the last good version stays, and the log has the reason.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps = _stamps(exercise_files(*self._folders))
         self._exercises: Mapping[str, Exercise] = load_catalogue(*self._folders)
         self._complaint = ""
-        self._look_at = clock() + REFRESH_SECONDS
+        self._next_check = clock() + REFRESH_SECONDS
 
     def __getitem__(self, exercise_id: str) -> Exercise:
         return self._current()[exercise_id]
@@ -52,23 +52,23 @@ class LiveCatalogue(Mapping[str, Exercise]):
     def __len__(self) -> int:
         return len(self._current())
 
-    # All exercises at one time: one by one, a file could vanish in between.
+    # All exercises of one moment: in the default implementation, a file could vanish in between.
     def values(self) -> ValuesView[Exercise]:
-        """The exercises as they are now."""
+        """The current exercises."""
         return self._current().values()
 
     def items(self) -> ItemsView[str, Exercise]:
-        """The exercises as they are now, with their ids."""
+        """The current exercises with their ids."""
         return self._current().items()
 
     def _current(self) -> Mapping[str, Exercise]:
         now = self._clock()
-        if now >= self._look_at:
-            self._look_at = now + REFRESH_SECONDS
-            self._follow()
+        if now >= self._next_check:
+            self._next_check = now + REFRESH_SECONDS
+            self._refresh()
         return self._exercises
 
-    def _follow(self) -> None:
+    def _refresh(self) -> None:
         try:
             stamps = _stamps(exercise_files(*self._folders))
         except CatalogueError as error:
@@ -87,14 +87,14 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps, self._exercises = stamps, found
 
     def _complain(self, complaint: str) -> None:
-        """Log the fault of the folders, once as long as it lasts."""
+        """Log a fault of the folders, once as long as it lasts."""
         if complaint != self._complaint:
             _log.error("The exercises stay as they were:\n%s", complaint)
         self._complaint = complaint
 
 
 def _stamps(files: Sequence[Path]) -> dict[Path, Stamp]:
-    """The stamp of each file, which changes with it; none while the file is being replaced."""
+    """A stamp for each file that changes with its content; missing files are left out."""
     stamps = {}
     for file in files:
         try:

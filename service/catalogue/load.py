@@ -1,4 +1,4 @@
-"""Reading the folder of exercise files."""
+"""Load exercise files from folders."""
 
 import re
 from functools import partial
@@ -23,9 +23,9 @@ _LONGEST_ID = 60
 
 
 def shipped_folder() -> Path:
-    """The folder of the exercises that come with the program.
+    """The folder of the shipped exercises.
 
-    A wheel carries it inside the package; a checkout has it at the top.
+    A wheel has it inside the package; a checkout has it at the top.
     """
     package = Path(__file__).parents[1]
     packaged = package / "_exercises"
@@ -33,9 +33,10 @@ def shipped_folder() -> Path:
 
 
 def exercise_files(*folders: Path) -> list[Path]:
-    """The exercise files of folders, folder by folder, in the order of their names.
+    """The exercise files of folders, folder by folder, sorted by name.
 
-    Raises CatalogueError where a folder is missing or holds none, or a name stands in two of them.
+    Raises CatalogueError if a folder is missing or has no exercises, or two folders have a file of
+    the same name.
     """
     files: dict[str, Path] = {}
     faults: list[Fault] = []
@@ -57,9 +58,9 @@ def exercise_files(*folders: Path) -> list[Path]:
 
 
 def load_catalogue(*folders: Path) -> dict[str, Exercise]:
-    """All exercises of one or more folders by id, in the order of their file names.
+    """Load all exercises of one or more folders by id, sorted by file name.
 
-    Raises CatalogueError naming the faults of all files, those of shape before those of formulas.
+    Raises CatalogueError with the faults of all files.
     """
     exercises: dict[str, Exercise] = {}
     faults: list[Fault] = []
@@ -74,18 +75,18 @@ def load_catalogue(*folders: Path) -> dict[str, Exercise]:
 
 
 def is_exercise_id(name: str) -> bool:
-    """Whether ``name`` can be the name of a file, without .toml, and a part of web addresses."""
+    """True if ``name`` can be an exercise's id, its file name without .toml."""
     return re.fullmatch(IDENTIFIER, name) is not None and len(name) <= _LONGEST_ID
 
 
 def load_exercise(file: Path) -> Exercise:
-    """The exercise of one file; its id is the file's name. Raises CatalogueError."""
+    """Load the exercise of a file; its id is the file's name. Raises CatalogueError."""
     _require_id(file)
     return load_toml(file, partial(_compiled, file.stem), exercise_table)
 
 
 def read_exercise(file: Path, text: str) -> Exercise:
-    """The exercise of the text that a file holds, or would hold. Raises CatalogueError."""
+    """Read an exercise from a text as if it were the content of ``file``. Raises CatalogueError."""
     _require_id(file)
     return read_toml(file, text, partial(_compiled, file.stem), exercise_table)
 

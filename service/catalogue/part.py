@@ -1,6 +1,6 @@
-"""The keys that every part has, and the questions that the program asks of its kind.
+"""The base classes of answer kinds: the keys of every part, and the interface of a kind.
 
-The kinds themselves are the modules of ``parts/``.
+The kinds are the modules of ``parts/``.
 """
 
 from abc import ABC, abstractmethod
@@ -25,16 +25,15 @@ from service.kinematics.dh import Convention
 
 
 class PartSpec(StrictModel, ABC):
-    """A part of an exercise, as a tutor writes it.
+    """A part of an exercise in an exercise file.
 
-    A kind is a subclass with ``kind: Literal["its_name"]``. It says by class variables how its
-    parts are used:
+    A kind is a subclass with ``kind: Literal["its_name"]``. Class variables describe its parts:
 
-    - ``answer_fields``: the fields that may hold the answer itself, in place of the robot;
-    - ``can_be_followed``: whether its answer is a chain that a later part can follow from;
-    - ``pasted_as``: what a pasted answer is, a table or a matrix of numbers or angles;
-    - ``holds_links``: whether its answer holds the link transforms;
-    - ``compared_by_formulas``: whether two parts may have one answer and still be two tasks.
+    - ``answer_fields``: the fields that may give the answer instead of the robot;
+    - ``can_be_followed``: True if the answer is a chain that a later part can follow from;
+    - ``pasted_as``: the content of pasted answers, a table or a matrix of numbers or angles;
+    - ``holds_links``: True if the answer contains the link transforms;
+    - ``compared_by_formulas``: True if two parts with equal answers may be different tasks.
     """
 
     answer_fields: ClassVar[tuple[str, ...]] = ("expected",)
@@ -48,28 +47,28 @@ class PartSpec(StrictModel, ABC):
     title: Text
     """The title that students see."""
     prompt: LooseText = ""
-    """The task, in one sentence or more: Markdown, like the statement."""
+    """The task in one or more sentences: Markdown, like the statement."""
     points: Annotated[float, Field(gt=0, le=1000, strict=True), NotBool] = 1.0
     """The points for a right answer; its rows share them."""
     marking: Marking = "content"
-    """How the points are shared: "content" by what one has to know (a lazy answer earns little),
-    "cells" evenly over the cells, "rows" to rows that are all right, "whole" to an answer that is
-    all right."""
+    """The way in which points are distributed: "content" by the knowledge that each cell needs
+    (a lazy answer earns little), "cells" evenly over the cells, "rows" only to rows that are
+    completely right, "whole" only to a completely right answer."""
     follows: Identifier | None = None
-    """The id of an earlier part that this one builds on. An answer that is wrong for the robot,
-    but right for the student's own answer to that part, earns its points."""
+    """The id of an earlier part that this one builds on. An answer earns its points if it is right
+    for the robot or for the student's own answer to that part."""
     follows_from: Annotated[float, Field(ge=0, le=1, strict=True), NotBool] = 0.5
-    """The share of its points that the student's answer to the earlier part must have earned
-    before this part may follow from it."""
+    """The share of its points that the earlier answer must have earned, so that this part may
+    follow from it."""
     if TYPE_CHECKING:
         kind: str
 
     def formulas(self) -> WrittenFormulas | None:
-        """The right answer, where the file gives it in formulas; None where the robot gives it."""
+        """The right answer if the file gives it in formulas; None if the robot determines it."""
         return None
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Check that the robot gives the answer to the part at ``field``. Raises FieldError."""
+        """Raise FieldError unless the robot determines the answer to the part at ``field``."""
         if reference is None:
             raise FieldError(
                 f"{field}.expected",
@@ -78,25 +77,25 @@ class PartSpec(StrictModel, ABC):
 
     @abstractmethod
     def shape(self, reference: Reference | None) -> AnswerShape:
-        """The shape of an answer."""
+        """The shape of an answer on this robot."""
 
 
 class PosePartSpec(PartSpec):
-    """Something that a pose of the robot has: that of frame ``to`` seen from frame ``from``.
+    """A part about the pose of frame ``to`` in frame ``from``, such as its rotation.
 
-    A part of another robot, or of none, has the answer itself in one of its ``answer_fields``.
+    A part that is not about the exercise's robot gives its answer in one of its ``answer_fields``.
     """
 
     start: FrameName = Field("base", alias="from")
-    """The frame that the pose is seen from: "base", "tool", or a number of the robot's own
+    """The frame in which the pose is expressed: "base", "tool", or a number of the robot's own
     table."""
     to: FrameName = "tool"
     """The frame whose pose is asked for."""
     home: StrictBool = False
-    """Whether all joint variables are 0."""
+    """True if all joint variables are 0."""
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Check that the robot has both frames. Raises FieldError."""
+        """Raise FieldError unless the robot has both frames."""
         super().check_reference(field, reference)
         assert reference is not None
         for name, frame in (("from", self.start), ("to", self.to)):
@@ -117,7 +116,7 @@ class PosePartSpec(PartSpec):
 
 
 class TablePartSpec(PartSpec):
-    """Something that a DH table of the robot has; a robot given by screws has no table."""
+    """A part about a DH table of the robot. A robot given by screws has no table."""
 
     answer_fields: ClassVar[tuple[str, ...]] = ()
     can_be_followed: ClassVar[bool] = True
@@ -126,7 +125,7 @@ class TablePartSpec(PartSpec):
         convention: Convention | str
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Check that the robot has a table in the convention asked for. Raises FieldError."""
+        """Raise FieldError unless the robot has a table in the convention of the part."""
         if not isinstance(reference, Robot):
             raise FieldError(
                 f"{field}.kind",

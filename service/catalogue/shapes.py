@@ -1,4 +1,4 @@
-"""The shape of an answer, as a student sees it before answering."""
+"""The shape of an answer, which students see before they answer."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
@@ -10,10 +10,7 @@ from service.expressions import Kind
 
 
 class AnswerShape(BaseModel, ABC):
-    """The shape of an answer; ``form`` tells a client which of the shapes it is.
-
-    ``posted`` says how such an answer is posted.
-    """
+    """The shape of an answer. ``form`` names the kind of shape; ``posted`` is its JSON form."""
 
     posted: ClassVar[str]
     if TYPE_CHECKING:
@@ -48,14 +45,16 @@ class ComponentView(BaseModel):
 
 
 class ListShape(AnswerShape):
-    """The shape of a list of values; of Euler angles also the axes, in order."""
+    """The shape of a list of values; for Euler angles with their axes in order."""
 
     posted: ClassVar[str] = "a list of entries"
 
     form: Literal["list"] = "list"
     rows: list[str]
     components: list[ComponentView]
-    sequence: str | None = Field(None, description='Such as "ZYZ"; "RPY" is Rz(α) Ry(β) Rx(γ).')
+    sequence: str | None = Field(
+        None, description='Axes such as "ZYZ"; "RPY" is Rz(α) Ry(β) Rx(γ).'
+    )
     axes: Literal["moving", "fixed"] | None = None
 
     def _clauses(self) -> Iterator[str]:
@@ -81,7 +80,7 @@ def numbered(count: int) -> list[str]:
 
 
 def choices(**stated: str) -> Iterator[str]:
-    """A clause on the free choices and one on the given ones, by their keys in the file."""
+    """Yield a clause with the free choices and one with the given ones."""
     for choice in ("free", "given"):
         names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
         if names:

@@ -5,10 +5,10 @@ import gc
 
 def main() -> None:
     """Run the command line of this process."""
-    # What is loaded stays to the end: looking through it for garbage costs a tenth of a short run.
+    # Loaded modules stay to the end: searching them for garbage takes a tenth of a short run.
     gc.disable()
     try:
-        # Only here, so that Ctrl-C while it is loaded shows no traceback either.
+        # Import here, so that Ctrl-C during the import shows no traceback.
         from service.cli.program import run
 
         run()

@@ -1,4 +1,4 @@
-"""One of several words on the command line."""
+"""Options of the command line that take one of several words."""
 
 from collections.abc import Callable, Iterable
 from enum import StrEnum
@@ -12,7 +12,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 
 
 def one_of(name: str, known: Iterable[str]) -> str:
-    """The word, if it is known. Raises typer.BadParameter, which names the nearest."""
+    """Return the word if it is known. Raises typer.BadParameter with the nearest known word."""
     names = list(known)
     if name in names:
         return name
@@ -22,10 +22,10 @@ def one_of(name: str, known: Iterable[str]) -> str:
 
 
 def choice(of: type[_Choice]) -> Callable[[str], _Choice]:
-    """The parser of an option that takes one of these."""
+    """Return the parser of an option that takes one of the values of an enumeration."""
     return lambda text: of(one_of(text, [each.value for each in of]))
 
 
 def listed(of: type[StrEnum]) -> str:
-    """The words, as a help shows them."""
+    """The values of an enumeration as ``--help`` shows them: ``[a|b]``."""
     return f"[{'|'.join(each.value for each in of)}]"

@@ -1,6 +1,6 @@
-"""`python -m service.cli.licences`: the installed packages that the program needs, with licences.
+"""`python -m service.cli.licences`: list the packages that the program needs, with licences.
 
-The image has this list as a file.
+The container image includes this list as a file.
 """
 
 import re
@@ -28,12 +28,12 @@ def licences() -> Iterator[str]:
 
 
 def needed(name: str) -> dict[str, Distribution]:
-    """Return the installed packages that one needs, directly or not, by their names."""
+    """Return the installed direct and indirect dependencies of a package, by name."""
     found: dict[str, Distribution] = {}
     waiting = [name]
     while waiting:
         for requirement in distribution(waiting.pop()).requires or ():
-            # What is not installed is for another platform, or for an extra that nobody asked for.
+            # A missing package is for another platform, or for an extra that is not installed.
             match = _NAME.match(requirement)
             key = match[0].lower().replace("_", "-") if match else ""
             if key and key not in found:
@@ -46,14 +46,13 @@ def needed(name: str) -> dict[str, Distribution]:
 
 
 def licence_of(package: Distribution) -> str:
-    """Return what a package says of its licence."""
-    told = (_all(package, "License-Expression") or _all(package, "License") or [""])[0].strip()
-    # Some write the whole text there.
-    if told and "\n" not in told:
-        return told
-    classifiers = _all(package, "Classifier")
-    named = [each.rpartition(" :: ")[2] for each in classifiers if each.startswith(_CLASSIFIER)]
-    return ", ".join(named) or "see its files"
+    """Return the licence that the metadata of a package names."""
+    named = (_all(package, "License-Expression") or _all(package, "License") or [""])[0].strip()
+    # Some packages have the whole text there.
+    if named and "\n" not in named:
+        return named
+    classified = [each for each in _all(package, "Classifier") if each.startswith(_CLASSIFIER)]
+    return ", ".join(each.rpartition(" :: ")[2] for each in classified) or "see its files"
 
 
 def _urls(package: Distribution) -> Iterator[str]:

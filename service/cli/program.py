@@ -1,4 +1,4 @@
-"""The commands put together."""
+"""The program `dh-grader`, which loads its commands when they are called."""
 
 import gc
 import os
@@ -9,22 +9,22 @@ from typing import Annotated, Any, Final
 import typer
 from typer.core import TyperGroup
 
-# Each is a file of ``commands/`` whose ``commands`` are loaded when the command is called: the help
-# of the program needs neither the grader nor the web framework.
+# The help of each command. Each is a file of ``commands/``, which is imported when the command is
+# called: the help of the program needs neither the grader nor the web framework.
 COMMANDS: Final = {
-    "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
+    "serve": "Start the service. Configure it by environment variables DH_GRADER_….",
     "exercises": "The catalogue of exercises.",
-    "assignments": "Several exercises that are set together.",
+    "assignments": "Assignments of several exercises.",
     "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
     "py, …).",
     "attempts": "Recorded attempts: read, export, regrade, forget.",
-    "keys": "Who may use the service, and for what: create, list, revoke keys.",
-    "bundle": "Write the zip file that a grading platform takes.",
+    "keys": "API keys of the service: create, list, revoke.",
+    "bundle": "Write a zip file for a grading platform.",
 }
 
 
 class _Commands(TyperGroup):
-    """The commands; each ends with the reason where something that it was given is unusable."""
+    """Loads and runs commands; prints the reason of an error and ends with its exit code."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name, _, rest = super().resolve_command(ctx, args)
@@ -35,7 +35,7 @@ class _Commands(TyperGroup):
         return name, typer.main.get_command(commands), rest
 
     def invoke(self, ctx: Any) -> Any:
-        # Only here, for the same reason.
+        # Import here: the help of the program needs none of this.
         from service.catalogue import CatalogueError
         from service.cli.running.interrupts import INTERRUPTED
         from service.cli.terminal import BROKEN_PIPE, complain, give_up
@@ -54,7 +54,7 @@ class _Commands(TyperGroup):
             complain("Interrupted.")
             raise SystemExit(INTERRUPTED) from None
         except BrokenPipeError:
-            _forget_output()
+            _discard_output()
             raise SystemExit(BROKEN_PIPE) from None
 
 
@@ -68,12 +68,12 @@ program = typer.Typer(
 )
 
 
-def _stand_in() -> None:
-    """Stand in the program's help for a command that is not loaded."""
+def _placeholder() -> None:
+    """Represent a command that is not loaded in the program's help."""
 
 
 for _name, _line in COMMANDS.items():
-    program.command(_name, help=_line)(_stand_in)
+    program.command(_name, help=_line)(_placeholder)
 
 
 def _show_version(wanted: bool) -> None:
@@ -94,15 +94,15 @@ def _options(
     pass
 
 
-def _forget_output() -> None:
-    """Drop what standard output still holds: Python would fail over it again at its end."""
+def _discard_output() -> None:
+    """Discard buffered output: Python would fail again when it flushes standard output at exit."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
 
 
 def _open_closed_streams() -> None:
-    """Let what is written to a stream that was closed before the start go nowhere."""
+    """Redirect standard streams that were closed before the start to the null device."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123
@@ -111,7 +111,7 @@ def _open_closed_streams() -> None:
 def run() -> None:
     """Run the command line of this process."""
     _open_closed_streams()
-    # What a stream cannot show is replaced, not a reason to stop half-way through a report.
+    # Replace characters that a stream cannot encode instead of failing within a report.
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
@@ -120,5 +120,5 @@ def run() -> None:
     except OSError as error:  # of a full disk, or of a name that no file can have
         from service.cli.terminal import give_up
 
-        _forget_output()
+        _discard_output()
         give_up(f"{error.filename or 'The output'}: cannot be written: {error.strerror}")

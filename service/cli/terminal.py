@@ -1,4 +1,4 @@
-"""The terminal that every command writes to, and the ways to give up."""
+"""Output to the terminal, errors that end the program, and the installed exercises."""
 
 import os
 import sys
@@ -13,34 +13,34 @@ from service.settings import load_settings
 from service.submissions.lookup import find_exercise
 
 UNUSABLE = 2
-# As a shell says it: 128 and the number of the signal of a pipe that nobody reads any more.
+# The exit code of a shell for SIGPIPE (the reader of a pipe has gone): 128 plus its number.
 BROKEN_PIPE = 141
 
 
 class _Terminal(Console):
-    """A console that ends the program as a closed pipe ends others."""
+    """A console that ends the program with the exit code of SIGPIPE if its pipe is closed."""
 
     def on_broken_pipe(self) -> None:
         try:
-            # Drops what is left: Python would fail over it again at its end.
+            # Discards buffered output: Python would fail again when it flushes it at exit.
             super().on_broken_pipe()
         except SystemExit:
             raise SystemExit(BROKEN_PIPE) from None
 
 
 def stdout() -> Console:
-    """The terminal, or 80 columns without colour where the output goes elsewhere."""
+    """A console for standard output, with 80 columns unless it is a terminal."""
     width = None if sys.stdout.isatty() or "COLUMNS" in os.environ else 80
     return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 
 
 def complain(message: str) -> None:
-    """Write a fault to standard error."""
+    """Write a message to standard error."""
     print(message, file=sys.stderr)  # noqa: T201 - a program's own error output
 
 
 def give_up(message: str) -> NoReturn:
-    """Write a fault and end with the exit code for unusable input."""
+    """Write a message to standard error and end with the exit code for unusable input."""
     complain(message)
     raise SystemExit(UNUSABLE)
 
@@ -51,7 +51,7 @@ def installed() -> Mapping[str, Exercise]:
 
 
 def installed_exercise(exercise_id: str) -> Exercise:
-    """The exercise of this installation with this id; the files of the others are not read.
+    """Return the exercise of this installation with this id; read no other exercise files.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """
@@ -59,6 +59,9 @@ def installed_exercise(exercise_id: str) -> Exercise:
 
 
 def installed_file(exercise_id: str) -> Path:
-    """The file of the exercise of this installation with this id. Raises the same errors."""
+    """Return the file of the exercise of this installation with this id.
+
+    Raises SettingsError, CatalogueError or UnknownExerciseError.
+    """
     files = {file.stem: file for file in exercise_files(*load_settings().exercises_dir)}
     return find_exercise(files, exercise_id)

@@ -1,9 +1,9 @@
 """A typed client of the service, with and without ``await``. Loads httpx; import it where needed.
 
-GraderClientError         a call has no result
-├── RequestRefusedError     the service answered with a problem
-├── ServerUnreachableError  no answer came
-└── UnexpectedAnswerError   no DH Grader answers so
+GraderClientError         a call failed
+├── RequestRefusedError     the service answered with an error
+├── ServerUnreachableError  there was no complete answer
+└── UnexpectedAnswerError   the answer is not that of a DH Grader
 """
 
 from service.catalogue import FeedbackLevel

@@ -1,4 +1,4 @@
-"""The server that a client calls, and the options of httpx for it."""
+"""The address of a server, and the options of httpx for it."""
 
 import re
 from typing import Any, Final
@@ -12,33 +12,33 @@ _KEY: Final = re.compile(r"[A-Za-z0-9._~+/-]+=*")
 
 
 def checked_server(server: str) -> str:
-    """The address of a service, without a slash at its end.
+    """Return the address of a service without a trailing slash.
 
-    Raises ValueError for what is no such address; a password in it would be shown in messages.
+    Raises ValueError for an invalid address, and for a password, which messages would show.
     """
     try:
         url = httpx.URL(server)
     except httpx.InvalidURL as error:
-        raise ValueError(f"{server!r} is no address of a server: {error}") from error
+        raise ValueError(f"{server!r} is not the address of a server: {error}") from error
     if url.scheme not in ("http", "https") or not url.host or server.split() != [server]:
-        raise ValueError(f"{server!r} is no address of a server; write https://grader.example.edu")
+        raise ValueError(
+            f"{server!r} is not the address of a server; write https://grader.example.edu"
+        )
     if url.userinfo or url.query or url.fragment:
-        raise ValueError("The address of a server is only scheme, host, port and path.")
+        raise ValueError("The address of a server has only scheme, host, port and path.")
     return str(url).rstrip("/")
 
 
 def client_options(server: str, key: str | None, timeout: float) -> dict[str, Any]:
-    """The options of an httpx client, sync or async, for a checked server.
+    """Return the options of an httpx client, sync or async, for a checked server.
 
-    Raises ValueError for a key that no header can hold; the error does not show it.
+    Raises ValueError for a key with invalid characters; the message does not show the key.
     """
-    # An answer that is not compressed has no more bytes than are received.
+    # No compression, so that the size of an answer is limited by the bytes received.
     headers = {"User-Agent": f"dh-grader/{VERSION}", "Accept-Encoding": "identity"}
     if key is not None:
         if not _KEY.fullmatch(key):
-            raise ValueError(
-                "The key is empty or holds a character that no key has; copy it again."
-            )
+            raise ValueError("The key is empty or has a character that no key has; copy it again.")
         headers["Authorization"] = f"Bearer {key}"
     return {
         "base_url": server,

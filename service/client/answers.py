@@ -1,4 +1,4 @@
-"""The answer of a server: received within bounds, and the error where it is no success."""
+"""Receive the answers of a server within limits, and convert failures to exceptions."""
 
 import ssl
 import time
@@ -19,13 +19,13 @@ from service.client.errors import (
 )
 from service.contract.problems import TYPE_PREFIX, ProblemDocument
 
-# Far over the reports on as many submissions as one request may hold.
+# Far larger than the reports on the most submissions in one request (bytes).
 MAX_ANSWER: Final = 64 * 1024 * 1024
 
 
 @dataclass(frozen=True, slots=True)
 class HttpAnswer:
-    """A whole answer."""
+    """A complete answer."""
 
     status: int
     headers: httpx.Headers
@@ -34,10 +34,10 @@ class HttpAnswer:
 
 @dataclass
 class AnswerPieces:
-    """The pieces of an answer as they come; ``seconds`` is the time for all of them.
+    """Collects the pieces of an answer; ``seconds`` is the time limit for all of them.
 
-    The time limits of httpx count from piece to piece, so that a server which sends a byte now and
-    then would never reach them.
+    The time limits of httpx apply to each piece, so that a server that sends a byte now and then
+    would never reach them.
     """
 
     response: httpx.Response
@@ -50,25 +50,26 @@ class AnswerPieces:
         self._content += piece
         if len(self._content) > MAX_ANSWER:
             raise UnexpectedAnswerError(
-                f"The answer has more than {MAX_ANSWER // 1024**2} MiB, as no report has."
+                f"The answer has more than {MAX_ANSWER // 1024**2} MiB; no report is so large."
             )
         if time.monotonic() - self._began > self.seconds:
-            raise httpx.ReadTimeout(f"no whole answer within {self.seconds:g} seconds")
+            raise httpx.ReadTimeout(f"no complete answer within {self.seconds:g} seconds")
 
     def whole(self) -> HttpAnswer:
-        """The answer, of which all pieces have come."""
+        """Return the complete answer, after the last piece."""
         return HttpAnswer(self.response.status_code, self.response.headers, bytes(self._content))
 
 
 def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableError:
-    """The error for one of the connection to this server."""
+    """Convert a connection error of httpx."""
     reason = str(error) or type(error).__name__
     message = f"{server} cannot be reached: {reason}"
-    return ServerUnreachableError(message, is_temporary=not any(map(_stays, _causes(error))))
+    is_temporary = not any(map(_is_permanent, _causes(error)))
+    return ServerUnreachableError(message, is_temporary=is_temporary)
 
 
 def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
-    """The error for an answer that is no success."""
+    """Return the exception for an answer with another status than 200."""
     if location := answer.headers.get("location"):
         return UnexpectedAnswerError(
             f"{server} redirects to {location}; if you trust that address, call it instead."
@@ -77,7 +78,7 @@ def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
     try:
         problem = ProblemDocument.model_validate_json(answer.content)
     except ValidationError:
-        # Of a proxy, perhaps: the page that it shows to people says nothing to a program.
+        # Perhaps the answer of a proxy: its page for people is useless to a program.
         message = f"{server} answers with the status {answer.status}."
         return RequestRefusedError(answer.status, message, retry_after=wait)
     name = problem.type.removeprefix(TYPE_PREFIX) if problem.type.startswith(TYPE_PREFIX) else ""
@@ -88,7 +89,7 @@ def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
 
 
 def _seconds(retry_after: str) -> float:
-    """The seconds of a header ``Retry-After``, which may be a date; 0 where it says nothing."""
+    """Parse a header ``Retry-After``, in seconds or as a date; return 0 if it is invalid."""
     if retry_after.isascii() and retry_after.isdigit():
         return float(retry_after[:9])
     try:
@@ -98,8 +99,8 @@ def _seconds(retry_after: str) -> float:
     return max(0.0, date.timestamp() - time.time())
 
 
-def _stays(cause: BaseException) -> bool:
-    """Whether a failure will be there again: no such host, or a certificate that is not trusted."""
+def _is_permanent(cause: BaseException) -> bool:
+    """True if a retry is useless: the host is unknown or its certificate is not trusted."""
     if isinstance(cause, gaierror):
         return cause.errno == EAI_NONAME
     return isinstance(cause, ssl.SSLCertVerificationError)

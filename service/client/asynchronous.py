@@ -1,4 +1,4 @@
-"""The same client for programs with ``await``, on asyncio."""
+"""The client for asyncio."""
 
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Mapping
@@ -27,9 +27,9 @@ T = TypeVar("T")
 class AsyncGraderClient:
     """Calls a DH Grader; several tasks may share it. Every method raises GraderClientError.
 
-    ``server`` is its address, with the path before ``/v1`` if there is one. ``key`` is sent to it
-    and to nobody else. ``timeout`` are the seconds for one answer. ``transport`` is that of httpx,
-    for certificates or proxies of one's own. Raises ValueError for another address or key.
+    ``server`` is its address, including a path before ``/v1``. ``key`` is sent only to this server.
+    ``timeout`` is the limit for one answer in seconds. ``transport`` is that of httpx, for your own
+    certificates or proxies. Raises ValueError for an invalid address or key.
     """
 
     def __init__(
@@ -48,11 +48,11 @@ class AsyncGraderClient:
         self._http = httpx.AsyncClient(transport=transport, **options)
 
     async def exercises(self) -> list[ExerciseSummary]:
-        """The exercises of the service."""
+        """Return the exercises of the service."""
         return await self._result(calls.listing())
 
     async def exercise(self, exercise: str) -> ExerciseView:
-        """The exercise with this id, as a student sees it."""
+        """Return the exercise with this id as students see it."""
         return await self._result(calls.showing(exercise))
 
     async def grade(
@@ -65,10 +65,10 @@ class AsyncGraderClient:
         echo: bool = False,
         idempotency_key: str | None = None,
     ) -> Report:
-        """The report on answers to the parts of an exercise, by the ids of the parts.
+        """Grade answers to the parts of an exercise, given by part id; return the report.
 
-        ``idempotency_key`` tells the service that two calls are one submission; by default each
-        call is a submission of its own, however often it is tried.
+        Calls with the same ``idempotency_key`` are one submission for the service. By default, each
+        call is a new submission; its retries are not.
         """
         request = calls.submission(answers, angle_unit, feedback, echo=echo)
         return await self._result(calls.grading(exercise, request, idempotency_key))
@@ -76,9 +76,9 @@ class AsyncGraderClient:
     async def grade_many(
         self, submissions: Iterable[ExerciseSubmission]
     ) -> AsyncIterator[GradeResult]:
-        """The results of submissions, in their order: each a report, or a problem of that one.
+        """Grade submissions; yield the results in order, each a report or a problem.
 
-        They come as they are graded, in as few requests as the service's limits allow.
+        The submissions are sent in as few requests as the service's limits allow.
         """
         for call in calls.grading_many(submissions):
             for result in await self._result(call):
@@ -93,7 +93,7 @@ class AsyncGraderClient:
         angle_unit: AngleUnit = "radians",
         quantity: Kind = "number",
     ) -> PreviewAnswer:
-        """The reading of a text, or the reason why it cannot be read."""
+        """Return how the service reads a text, or why it cannot read it."""
         request = PreviewRequest(
             text=text, exercise=exercise, part=part, angle_unit=angle_unit, quantity=quantity
         )

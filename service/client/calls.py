@@ -1,4 +1,4 @@
-"""The calls of the service: what is sent, and how the answer is read."""
+"""The calls of the service: how requests are built, and how answers are read."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -30,9 +30,9 @@ def _new_key() -> str:
 
 @dataclass(frozen=True, slots=True)
 class HttpCall(Generic[T]):
-    """One call: GET, or POST where there is a body. ``read`` takes the answer to the result.
+    """One call: POST if it has a body, otherwise GET. ``read`` parses the answer.
 
-    ``idempotency_key`` is the same at each retry, so that the service can tell that it is one.
+    Retries have the same ``idempotency_key``, by which the service recognizes them.
     """
 
     path: str
@@ -42,7 +42,7 @@ class HttpCall(Generic[T]):
 
     @property
     def method(self) -> str:
-        """The method of HTTP."""
+        """The HTTP method."""
         return "GET" if self.body is None else "POST"
 
     @property
@@ -53,37 +53,37 @@ class HttpCall(Generic[T]):
         return {"Content-Type": "application/json", "Idempotency-Key": self.idempotency_key}
 
     def result(self, server: str, answer: HttpAnswer) -> T:
-        """The result of the call. Raises GraderClientError."""
+        """Parse the answer; return the result. Raises GraderClientError."""
         if answer.status != 200:
             raise error_in(server, answer)
         try:
             return self.read(answer.content)
         except ValidationError as error:
             raise UnexpectedAnswerError(
-                f"{server} answers as no DH Grader of this version does."
+                f"The answer of {server} is not that of a DH Grader of this version."
             ) from error
 
 
 def listing() -> HttpCall[list[ExerciseSummary]]:
-    """The call for the list of exercises."""
+    """Return the call that lists the exercises."""
     return HttpCall("v1/exercises", _exercises)
 
 
 def showing(exercise: str) -> HttpCall[ExerciseView]:
-    """The call for the exercise with this id."""
+    """Return the call that reads an exercise."""
     return HttpCall(_path(exercise), ExerciseView.model_validate_json)
 
 
 def submission(
     answers: Mapping[str, Any], angle_unit: AngleUnit, feedback: FeedbackLevel | None, *, echo: bool
 ) -> GradeRequest:
-    """The body of a request to grade. Raises pydantic.ValidationError, a ValueError."""
+    """Return the body of a request to grade. Raises pydantic.ValidationError, a ValueError."""
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
     return GradeRequest.model_validate(fields | {"echo": echo})
 
 
 def grading(exercise: str, request: GradeRequest, idempotency_key: str | None) -> HttpCall[Report]:
-    """The call that has answers to an exercise graded."""
+    """Return the call that grades answers to an exercise."""
     return HttpCall(
         f"{_path(exercise)}/grade", read_report, encoded(request), idempotency_key or _new_key()
     )
@@ -92,7 +92,7 @@ def grading(exercise: str, request: GradeRequest, idempotency_key: str | None) -
 def grading_many(
     submissions: Iterable[ExerciseSubmission],
 ) -> Iterator[HttpCall[list[GradeResult]]]:
-    """The calls that have submissions graded, as few as the service's limits allow."""
+    """Yield as few calls as the service's limits allow to grade all submissions."""
     waiting: list[bytes] = []
     for content in map(encoded, submissions):
         if waiting and not _fits([*waiting, content]):
@@ -104,13 +104,13 @@ def grading_many(
 
 
 def previewing(request: PreviewRequest) -> HttpCall[PreviewAnswer]:
-    """The call that has a text read."""
+    """Return the call that previews how a text is read."""
     return HttpCall("v1/preview", PreviewAnswer.model_validate_json, encoded(request))
 
 
 def encoded(body: BaseModel) -> bytes:
-    """The body as JSON, without the fields that have their defaults."""
-    # By Python's own encoder: a NaN in an answer is sent as such, for the service to explain.
+    """Return the body as JSON, without fields with default values."""
+    # Python's own encoder sends a NaN in an answer as such, and the service explains it.
     content = body.model_dump(exclude_defaults=True)
     try:
         return json.dumps(content, ensure_ascii=False, separators=(",", ":")).encode()
@@ -119,7 +119,7 @@ def encoded(body: BaseModel) -> bytes:
 
 
 def _path(exercise: str) -> str:
-    """The path of an exercise; whatever the id is, it stays one step of it."""
+    """The path of an exercise. The id is escaped, so that it is a single path segment."""
     return "v1/exercises/" + quote(exercise, safe="").replace(".", "%2E")
 
 
@@ -128,7 +128,7 @@ def _together(submissions: list[bytes]) -> bytes:
 
 
 def _fits(submissions: list[bytes]) -> bool:
-    """Whether one request may hold these."""
+    """True if one request may have all these submissions."""
     body = _together(submissions)
     return (
         len(submissions) <= MAX_SUBMISSIONS

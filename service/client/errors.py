@@ -1,11 +1,11 @@
-"""The reasons why a call has no result."""
+"""The exceptions of the client."""
 
 from http import HTTPStatus
 from typing import Final
 
 from service.contract.problems import Reason
 
-# The service has too much to do, or a proxy before it finds none while it is started again.
+# The service is overloaded, or it restarts behind a proxy.
 _TEMPORARY: Final = {
     HTTPStatus.TOO_MANY_REQUESTS,
     HTTPStatus.BAD_GATEWAY,
@@ -15,10 +15,10 @@ _TEMPORARY: Final = {
 
 
 class GraderClientError(Exception):
-    """A call has no result; the text says why.
+    """A call failed; the message says why.
 
-    ``is_temporary`` says that the same call may succeed later, ``retry_after`` in how many seconds
-    at the earliest.
+    If ``is_temporary``, the same call may succeed later, ``retry_after`` seconds from now at the
+    earliest.
     """
 
     def __init__(
@@ -30,11 +30,11 @@ class GraderClientError(Exception):
 
 
 class RequestRefusedError(GraderClientError):
-    """The service answered with a problem.
+    """The service answered with an error.
 
-    ``status`` is that of HTTP, ``code`` the name of the problem (such as ``unknown-exercise``) or
-    empty, ``message`` its explanation. ``reasons`` has one entry for each fault, with its place in
-    the body.
+    ``status`` is the HTTP status, ``code`` the name of the problem (such as ``unknown-exercise``)
+    or empty, ``message`` its explanation. ``reasons`` has an entry for each fault, with its place
+    in the body.
     """
 
     def __init__(
@@ -54,11 +54,11 @@ class RequestRefusedError(GraderClientError):
 
 
 class ServerUnreachableError(GraderClientError):
-    """No answer came, or not the whole of it."""
+    """There was no answer, or it was incomplete."""
 
 
 class UnexpectedAnswerError(GraderClientError):
-    """The server answered as no DH Grader does, or none of this version.
+    """The answer is not that of a DH Grader of this version.
 
-    A redirection counts as such: a client that follows one may give its key away.
+    This includes redirections: a client that follows one may reveal its key.
     """

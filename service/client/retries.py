@@ -1,4 +1,4 @@
-"""When a call that failed is tried again."""
+"""The rules by which failed calls are retried."""
 
 import random
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ from service.client.errors import GraderClientError
 
 @dataclass(frozen=True, slots=True)
 class Retries:
-    """How often a call is tried again, and the seconds to wait before that.
+    """The number of retries, and the waits before them in seconds.
 
-    The waits double from ``first_wait`` on, up to ``longest_wait``: with these numbers 15 seconds
-    in all, in which a service is started again. Each is drawn between half and the whole of that,
-    so that clients which failed together do not come back together. A service that names a time
-    gets at least that; one that names more than ``longest_wait`` is not asked again.
+    The waits double from ``first_wait`` up to ``longest_wait``: by default 15 seconds in all, in
+    which a service can restart. Each is random between 50 % and 100 % of that, so that clients that
+    failed together do not retry together. If the service asks for a wait, it is added; if it asks
+    for more than ``longest_wait``, the client gives up.
     """
 
     number: int = 5
@@ -21,9 +21,9 @@ class Retries:
     longest_wait: float = 30.0
 
     def wait(self, failures: int, error: GraderClientError) -> float | None:
-        """The seconds to wait after so many failures, or None where the last one stands.
+        """Return the seconds to wait after this number of failures, or None to give up.
 
-        Only what is temporary is tried again: no answer, or one of the statuses 429, 502, 503, 504.
+        Only temporary failures are retried: no answer, or the status 429, 502, 503 or 504.
         """
         if failures > self.number or not error.is_temporary:
             return None

@@ -27,9 +27,9 @@ T = TypeVar("T")
 class GraderClient:
     """Calls a DH Grader; several threads may share it. Every method raises GraderClientError.
 
-    ``server`` is its address, with the path before ``/v1`` if there is one. ``key`` is sent to it
-    and to nobody else. ``timeout`` are the seconds for one answer. ``transport`` is that of httpx,
-    for certificates or proxies of one's own. Raises ValueError for another address or key.
+    ``server`` is its address, including a path before ``/v1``. ``key`` is sent only to this server.
+    ``timeout`` is the limit for one answer in seconds. ``transport`` is that of httpx, for your own
+    certificates or proxies. Raises ValueError for an invalid address or key.
     """
 
     def __init__(
@@ -49,11 +49,11 @@ class GraderClient:
         self._http = httpx.Client(transport=transport, **options)
 
     def exercises(self) -> list[ExerciseSummary]:
-        """The exercises of the service."""
+        """Return the exercises of the service."""
         return self._result(calls.listing())
 
     def exercise(self, exercise: str) -> ExerciseView:
-        """The exercise with this id, as a student sees it."""
+        """Return the exercise with this id as students see it."""
         return self._result(calls.showing(exercise))
 
     def grade(
@@ -66,18 +66,18 @@ class GraderClient:
         echo: bool = False,
         idempotency_key: str | None = None,
     ) -> Report:
-        """The report on answers to the parts of an exercise, by the ids of the parts.
+        """Grade answers to the parts of an exercise, given by part id; return the report.
 
-        ``idempotency_key`` tells the service that two calls are one submission; by default each
-        call is a submission of its own, however often it is tried.
+        Calls with the same ``idempotency_key`` are one submission for the service. By default, each
+        call is a new submission; its retries are not.
         """
         request = calls.submission(answers, angle_unit, feedback, echo=echo)
         return self._result(calls.grading(exercise, request, idempotency_key))
 
     def grade_many(self, submissions: Iterable[ExerciseSubmission]) -> Iterator[GradeResult]:
-        """The results of submissions, in their order: each a report, or a problem of that one.
+        """Grade submissions; yield the results in order, each a report or a problem.
 
-        They come as they are graded, in as few requests as the service's limits allow.
+        The submissions are sent in as few requests as the service's limits allow.
         """
         for call in calls.grading_many(submissions):
             yield from self._result(call)
@@ -91,14 +91,14 @@ class GraderClient:
         angle_unit: AngleUnit = "radians",
         quantity: Kind = "number",
     ) -> PreviewAnswer:
-        """The reading of a text, or the reason why it cannot be read."""
+        """Return how the service reads a text, or why it cannot read it."""
         request = PreviewRequest(
             text=text, exercise=exercise, part=part, angle_unit=angle_unit, quantity=quantity
         )
         return self._result(calls.previewing(request))
 
     def close(self) -> None:
-        """Close the connections, and try nothing again."""
+        """Close the connections and stop all retries."""
         self._is_closed.set()
         self._http.close()
 
@@ -123,7 +123,7 @@ class GraderClient:
             except GraderClientError as error:
                 failures += 1
                 wait = self._retries.wait(failures, error)
-                # Whoever closes the client need not wait for the waits of other threads.
+                # Closing the client ends the waits of other threads.
                 if wait is None or self._is_closed.wait(wait):
                     raise
 

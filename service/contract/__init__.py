@@ -1,1 +1,1 @@
-"""The bodies that go over HTTP besides submissions and reports; the API writes, clients read."""
+"""The HTTP bodies besides submissions and reports, for the API and its clients."""

@@ -1,4 +1,4 @@
-"""The body of an attempt, and the attempt as recorded."""
+"""The bodies of new and recorded attempts."""
 
 from datetime import datetime
 from typing import Annotated, Any, Final
@@ -8,9 +8,9 @@ from pydantic import BaseModel, Field, StringConstraints
 from service.grading import Report
 from service.submissions.body import GradeRequest
 
-# Characters that nobody sees, or that a list shows as one and the same sign (Unicode: controls,
-# format characters, blanks but the common one, default ignorables, private use, specials).
-_UNSEEN: Final = (
+# Characters that are invisible or look alike in a list (Unicode: controls, format characters, all
+# spaces except U+0020, default ignorables, private use, specials).
+_INVISIBLE: Final = (
     r"\u0000-\u001f\u007f-\u00a0\u00ad\u034f\u0600-\u0605\u061c\u06dd\u070f\u0890-\u0891\u08e2"
     r"\u115f-\u1160\u1680\u17b4-\u17b5\u180b-\u180f\u2000-\u200f\u2028-\u202f\u205f-\u206f\u2800"
     r"\u3000\u3164\ue000-\uf8ff\ufe00-\ufe0f\ufeff\uffa0\ufff0-\uffff"
@@ -18,14 +18,14 @@ _UNSEEN: Final = (
     "\U000110bd\U000110cd\U00013430-\U0001343f\U0001bca0-\U0001bca3\U0001d173-\U0001d17a"
     "\U000e0000-\U0010ffff"
 )
-_WORD: Final = f"[^ {_UNSEEN}]+"
-# Two learners are never shown alike: single blanks stand between words alone.
+_WORD: Final = f"[^ {_INVISIBLE}]+"
+# Words separated by single spaces, so that two different learners never look alike.
 Learner = Annotated[
     str,
     StringConstraints(min_length=1, max_length=200, pattern=f"^{_WORD}( {_WORD})*$"),
     Field(
-        description="Who hands in, as the course names its learners; better an opaque id than a "
-        "name. Nothing but equality is made of it."
+        description="The learner, as the course identifies them; preferably an opaque id instead "
+        "of a name. The service only tests it for equality."
     ),
 ]
 
@@ -44,30 +44,30 @@ class Attempt(BaseModel):
     learner: str
     ordinal: int | None = Field(
         None,
-        description="Which of the learner's attempts it is, from 1. Left out where nothing could "
-        "be read: such an attempt does not count.",
+        description="The number of the attempt among the learner's counted attempts, from 1. "
+        "Absent if nothing could be read: such an attempt does not count.",
     )
     at: datetime
     is_late: bool
-    points: float = Field(description="The report's points, or the share that a late one earns.")
+    points: float = Field(description="The report's points, reduced for a late attempt.")
     max_points: float
 
 
 class AttemptResponse(BaseModel):
-    """The attempt as recorded, and its report."""
+    """The recorded attempt and its report."""
 
     attempt: Attempt
     report: Report
 
 
 class AttemptSummary(Attempt):
-    """A recorded attempt as tutors see it in a list."""
+    """A recorded attempt in a tutor's list."""
 
     awarded: float | None = Field(
-        None, description="The points that a tutor has given instead, where one has."
+        None, description="The points that a tutor has given instead, if any."
     )
-    version: str = Field(description="The version of the exercise that it was graded by.")
-    grader: str = Field(description="The version of the program that graded it.")
+    version: str = Field(description="The version of the exercise that graded the attempt.")
+    grader: str = Field(description="The version of the program that graded the attempt.")
 
 
 class AttemptList(BaseModel):
@@ -75,14 +75,16 @@ class AttemptList(BaseModel):
 
     attempts: list[AttemptSummary]
     next: str | None = Field(
-        None, description="The `cursor` of the next page; left out on the last one."
+        None, description="The `cursor` of the next page; absent on the last page."
     )
 
 
 class AttemptOverride(BaseModel):
     """Points that a tutor has given instead of the report's."""
 
-    points: float | None = Field(None, description="Left out where earlier ones were withdrawn.")
+    points: float | None = Field(
+        None, description="The new points; absent if an earlier override was withdrawn."
+    )
     reason: str
     author: str
     at: datetime
@@ -103,7 +105,7 @@ class AttemptDetail(BaseModel):
     """A recorded attempt with its answers and all its reports."""
 
     attempt: AttemptSummary
-    submission: dict[str, Any] = Field(description="What was sent, without the learner.")
+    submission: dict[str, Any] = Field(description="The request body without the learner.")
     report: Report
-    overrides: list[AttemptOverride] = Field(description="The oldest first.")
-    earlier_reports: list[EarlierReport] = Field(description="The oldest first.")
+    overrides: list[AttemptOverride] = Field(description="The overrides, oldest first.")
+    earlier_reports: list[EarlierReport] = Field(description="The old reports, oldest first.")

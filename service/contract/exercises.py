@@ -1,4 +1,4 @@
-"""The exercises as they are listed and described: everything but the answers."""
+"""The bodies that list and describe exercises, without their answers."""
 
 from pydantic import BaseModel, Field
 
@@ -12,7 +12,7 @@ class PartSummary(BaseModel):
     """A part in the list of exercises."""
 
     id: str
-    kind: str = Field(description="The kind of answer that it asks for.")
+    kind: str = Field(description="The answer kind.")
     points: float
 
 
@@ -23,7 +23,7 @@ class ExerciseSummary(BaseModel):
     title: str
     source: str
     structure: str | None = Field(
-        description="The joints in order: R turns, P slides. Null where there is no robot."
+        description="The joints in order: R turns, P slides. Null without a robot."
     )
     parts: list[PartSummary]
 
@@ -35,47 +35,48 @@ class ExerciseList(BaseModel):
 
 
 class SymbolView(BaseModel):
-    """A letter that may stand in an answer."""
+    """A symbol that answers may contain."""
 
     name: str
     kind: Kind
     unit: str
     description: str
-    joint: int | None = Field(None, description="The joint whose variable this is.")
+    joint: int | None = Field(None, description="The joint's number if it is a joint variable.")
 
 
 class PartView(BaseModel):
-    """A part as a student sees it before answering."""
+    """A part without its answer."""
 
     id: str
     title: str
     prompt: str = Field(description="Markdown, with LaTeX between dollars.")
-    prompt_html: str = Field(description="The same as HTML and MathML, like the statement.")
-    kind: str = Field(description="The kind of answer that it asks for.")
+    prompt_html: str = Field(description="The prompt as HTML and MathML, like `statement_html`.")
+    kind: str = Field(description="The answer kind.")
     points: float
-    marking: Marking = Field(description="How the cells of an answer share its points.")
+    marking: Marking = Field(description="How points are distributed over the cells.")
     follows: str | None = Field(
-        None,
-        description="The earlier part that this one follows from; left out where there is none.",
+        None, description="The earlier part that this part follows from; absent if none."
     )
     shape: AnyShape
 
 
 class ExerciseView(BaseModel):
-    """An exercise as a student sees it before answering."""
+    """An exercise without its answers."""
 
     id: str
     version: str
     title: str
     source: str
-    structure: str | None = Field(None, description="Left out where there is no robot.")
+    structure: str | None = Field(
+        None, description="The joints in order: R turns, P slides. Absent without a robot."
+    )
     statement: str = Field(description="Markdown, with LaTeX between dollars.")
     statement_html: str = Field(
-        description="The same as HTML and MathML, without scripts, styles and pictures."
+        description="The statement as HTML and MathML, without scripts, styles and pictures."
     )
-    figure: bool = Field(description="Whether it has a robot that `figure.svg` draws.")
+    figure: bool = Field(description="True if the exercise has a robot, which `figure.svg` draws.")
     feedback: FeedbackLevel = Field(
-        description="The most that a report on it tells: `full`, `hints`, `verdicts` or `score`."
+        description="The highest feedback level: `full`, `hints`, `verdicts` or `score`."
     )
     symbols: list[SymbolView]
     parts: list[PartView]

@@ -1,4 +1,4 @@
-"""What is to be drawn, and the numbers to draw it with."""
+"""The bodies of requests for the numbers that draw a table or a mechanism."""
 
 from typing import Annotated, Any, Final, Literal
 
@@ -9,7 +9,7 @@ from service.figures.drawing.style import Theme
 from service.figures.tables.table_frames import LARGEST
 from service.kinematics.dh import Convention
 
-# Joint values in one request: a second of a motion at 30 pictures a second.
+# The most configurations in one request: one second of a motion at 30 pictures per second.
 MOST_CONFIGURATIONS: Final = 30
 _MOST_SYMBOLS: Final = 100
 
@@ -23,29 +23,27 @@ Matrix = Annotated[
 
 
 class TableToDraw(BaseModel):
-    """A table as it would be handed in, right or wrong."""
+    """A table as in a submission, right or wrong."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     rows: Any = Field(description='The rows, `[{"a", "alpha", "d", "theta"}, …]`, or pasted text.')
-    convention: Convention = Field(
-        Convention.STANDARD, description="How its rows are put together."
-    )
+    convention: Convention = Field(Convention.STANDARD, description="The convention of the table.")
     structure: Annotated[str, Field(pattern=r"^[RP]{1,10}$")] | None = Field(
         None,
-        description="One letter for each joint, R if it turns and P if it slides; without an "
-        "exercise, which has its own. Joint i moves by theta_i or d_i, or q_i in either case; "
-        "a1, alpha1, d1, theta1, l1 to those of row 12 may stand in the other cells.",
+        description="One letter for each joint, R if it turns and P if it slides. Only without an "
+        "exercise, which has its own. The variable of joint i is theta_i or d_i, or q_i in both "
+        "cases. The other cells may contain a1, alpha1, d1, theta1, l1 up to those of row 12.",
     )
     formulas: bool = Field(
         False,
-        description="Give the table as formulas, too: its cells, its equivalent in the other "
-        "convention, and the pose. Only without an exercise.",
+        description="If true, return the table as formulas, too: its cells, its equivalent in the "
+        "other convention, and the pose. Only without an exercise.",
     )
 
 
 class FramesRequest(BaseModel):
-    """What is to be drawn: a table, the mechanism of an exercise, or both."""
+    """A request to draw a table, the mechanism of an exercise, or both."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -60,31 +58,32 @@ class FramesRequest(BaseModel):
     )
     symbols: Annotated[dict[str, Amount], Field(max_length=_MOST_SYMBOLS)] = Field(
         {},
-        description="Numbers for other symbols, radians and lengths. Each one that is left out "
-        "gets a number from its range.",
+        description="Values of other symbols, radians and lengths. Default: a value in the range "
+        "of each symbol.",
     )
     angle_unit: Literal["radians", "degrees"] = Field(
-        "radians", description="What a bare number means in the angles of the table."
+        "radians", description="The unit of angles without a unit in the table."
     )
     figure: Theme | None = Field(
         None,
-        description="Draw the first picture, too: light, dark, or as the reader's system asks.",
+        description="Draw the first picture as SVG, too: in light or dark colours, or `auto`, by "
+        "the reader's system.",
     )
 
 
 class MovingJoint(BaseModel):
-    """A joint, and how far its variable may go: radians or lengths."""
+    """A joint and the range of its variable, in radians or lengths."""
 
     joint: int
     variable: str
     kind: Literal["R", "P"] = Field(description="R turns, P slides.")
     low: float
     high: float
-    home: float = Field(description="Its value in the home configuration as it is drawn.")
+    home: float = Field(description="The value of its variable in the drawn home configuration.")
 
 
 class UnreadCell(BaseModel):
-    """A cell of the table that has no number, by the labels of a report."""
+    """A cell of the table without a number; labels are those of a report."""
 
     row: str
     column: str
@@ -92,7 +91,7 @@ class UnreadCell(BaseModel):
 
 
 class LostFreedom(BaseModel):
-    """Joints that do no more together than fewer would."""
+    """Joints that together allow no more motions than fewer joints would."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -101,7 +100,7 @@ class LostFreedom(BaseModel):
 
 
 class PrintedFormula(BaseModel):
-    """A formula, as text, LaTeX and MathML."""
+    """A formula as text, LaTeX and MathML."""
 
     text: str
     latex: str
@@ -111,7 +110,7 @@ class PrintedFormula(BaseModel):
 class ConvertedRow(BaseModel):
     """A row of a converted table: a, alpha, d and theta.
 
-    Its `label` is its number, "b" for a fixed row before the first joint, "e" for the tool's row.
+    Its `label` is its number, "b" for a fixed row before the first joint, or "e" for the tool row.
     """
 
     label: str
@@ -119,48 +118,48 @@ class ConvertedRow(BaseModel):
 
 
 class TableInFormulas(BaseModel):
-    """The table as formulas; what needs all cells is absent where one has no formula."""
+    """The table as formulas. `converted` and `pose` are absent if a cell has no formula."""
 
     cells: list[list[PrintedFormula]] = Field(
-        description="Empty for a cell that is not read, or too long to be printed."
+        description="The cells; empty if a cell is unreadable or too long to be printed."
     )
     converted: list[ConvertedRow] | None = Field(
-        None, description="Its equivalent in the other convention."
+        None, description="The equivalent table in the other convention."
     )
     pose: list[list[PrintedFormula]] | None = Field(
         None,
-        description="The last frame in the base frame, 4×4 by rows. Absent where it is too long.",
+        description="The last frame in the base frame, 4×4 by rows. Absent if it is too long.",
     )
 
 
 class FramesOfTable(BaseModel):
     """The frames of the table.
 
-    They end before the first row with a cell that has no number; then `complete` is false.
+    `complete` is false if a cell has no number; the frames end before the first such row.
     """
 
     complete: bool
     frames: list[list[Matrix]] = Field(
-        description="For each picture every frame in the base frame, 4×4 by rows, from the base "
-        "frame on."
+        description="For each picture, all frames from the base frame on, in the base frame, 4×4 "
+        "by rows."
     )
     row_joints: list[int] = Field(
-        description="For each row that has a frame the joint whose variable stands in it, or 0."
+        description="For each row with a frame, the joint whose variable is in the row, or 0."
     )
     unread: list[UnreadCell]
-    error: PreviewError | None = Field(None, description="Why there are no rows at all.")
+    error: PreviewError | None = Field(None, description="The reason if there are no rows at all.")
     degrees_of_freedom: int | None = Field(
-        None, description="Those of the whole table at a generic configuration."
+        None, description="The degrees of freedom of the whole table in a generic configuration."
     )
     lost_freedoms: list[LostFreedom]
-    formulas: TableInFormulas | None = Field(None, description="Only where they are asked for.")
+    formulas: TableInFormulas | None = Field(None, description="Only if requested.")
 
 
 class DrawnConfiguration(BaseModel):
     """The mechanism in one picture, in the base frame.
 
-    A joint's `axes` are unit vectors through `centres`. Link i is a line from joint i to the next,
-    the first one from the base, the last one to the tool.
+    `axes` are unit vectors of the joint axes through `centres`. Link i is a line from joint i to
+    the next; the first link begins at the base, and the last one ends at the tool.
     """
 
     centres: list[Point]
@@ -173,23 +172,24 @@ class DrawnConfiguration(BaseModel):
 
 
 class DrawnMechanism(BaseModel):
-    """The mechanism of the exercise: joint axes, links, base and tool. No frames."""
+    """The mechanism of the exercise: joint axes, links, base and tool, without frames."""
 
-    size: float = Field(description="A length that the sizes of joints and links suit.")
-    azimuth: float = Field(description="Where the figure is seen from: degrees about z0 from x0.")
-    elevation: float = Field(description="Degrees above the plane of x0 and y0.")
+    size: float = Field(description="A reference length for the sizes of drawn joints and links.")
+    azimuth: float = Field(description="The direction to the viewer: degrees about z0 from x0.")
+    elevation: float = Field(description="The viewer's elevation above the x0-y0 plane in degrees.")
     configurations: list[DrawnConfiguration]
 
 
 class FramesAnswer(BaseModel):
-    """Numbers to draw with. Lengths are in the exercise's unit, angles in radians."""
+    """The numbers of the drawing. Lengths are in the exercise's unit, angles in radians."""
 
     symbols: dict[str, float] = Field(
-        description="The number of each symbol that is no joint variable."
+        description="The values of all symbols that are not joint variables."
     )
     joints: list[MovingJoint]
     table: FramesOfTable | None = None
     mechanism: DrawnMechanism | None = None
     figure: str | None = Field(
-        None, description="The first picture as SVG, where it is asked for; no names but of frames."
+        None,
+        description="The first picture as SVG, if requested; only frames have labels.",
     )

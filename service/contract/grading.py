@@ -7,17 +7,17 @@ from service.grading import Report
 
 
 class GradeResult(BaseModel):
-    """The report on one submission, or the problem because of which there is none."""
+    """The report on one submission, or a problem."""
 
     report: Report | None = None
     problem: ProblemDocument | None = Field(
         None,
-        description="What the submission alone would have been refused with; `instance` is its "
-        "place in the request.",
+        description="The problem that the submission would get in a request of its own; `instance` "
+        "is its place in this request.",
     )
 
 
 class GradeManyResponse(BaseModel):
-    """One result for each submission, in their order."""
+    """The results in the order of the submissions."""
 
     results: list[GradeResult]

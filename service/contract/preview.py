@@ -1,4 +1,4 @@
-"""The reading of a text while the student still types."""
+"""The bodies of previews, which show how a text is read while the student types."""
 
 from typing import Final, Literal
 
@@ -8,31 +8,29 @@ from service.expressions import Kind
 
 
 class PreviewRequest(BaseModel):
-    """A text, and the place that it is for."""
+    """A text and its place in an exercise."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    text: str = Field(
-        description="One entry as the student writes it, or a pasted table or matrix."
-    )
+    text: str = Field(description="One entry as typed by the student, or a pasted table or matrix.")
     exercise: str | None = Field(
         None,
-        description="The exercise whose symbols the text may use. Without it: joint angles theta1 "
+        description="The exercise whose symbols the text may use. Default: joint angles theta1 "
         "(or q1) to theta9, link twists alpha1 to alpha9, lengths a1, d1, l1 to a9, d9, l9.",
     )
-    part: str | None = Field(None, description="The part that the text is for; needs `exercise`.")
+    part: str | None = Field(None, description="The part that it answers; requires `exercise`.")
     angle_unit: Literal["radians", "degrees"] = Field(
-        "radians", description="What a bare number means where an angle is asked for."
+        "radians", description="The unit of angles without a unit."
     )
     quantity: Kind = Field(
-        "number", description="What is asked for there; matters for a bare number in degrees."
+        "number", description="The expected quantity; it matters for numbers in degrees."
     )
 
 
 class PreviewNote(BaseModel):
-    """Something worth knowing about how the text was read; ``span`` is [from, to) in it."""
+    """A note on how the text was read; ``span`` is the range [from, to) in the text."""
 
-    # Its fields are picked from the reader's notes and errors.
+    # The fields are read from the attributes of the reader's notes and errors.
     model_config = ConfigDict(from_attributes=True)
 
     code: str
@@ -43,7 +41,7 @@ class PreviewNote(BaseModel):
 class PreviewError(PreviewNote):
     """The reason why the text cannot be read."""
 
-    suggestion: str | None = Field(None, description="The whole text, repaired.")
+    suggestion: str | None = Field(None, description="The whole text after a repair.")
 
 
 class PreviewCell(BaseModel):
@@ -56,8 +54,8 @@ class PreviewCell(BaseModel):
     span: tuple[int, int] = Field(description="[from, to) in the pasted text.")
     typed: str
     entry: str = Field(
-        description="What to write in the cell alone for the same reading. It is another text than "
-        "`typed` where a header names a unit."
+        description="The text that has the same meaning in a single cell. It differs from `typed` "
+        "if a header names a unit."
     )
     text: str
     latex: str
@@ -70,13 +68,13 @@ class PreviewCell(BaseModel):
 class PreviewAnswer(BaseModel):
     """The reading of the text, or the reason why it cannot be read.
 
-    Of one entry there is `text`, `latex`, `mathml` and `symbols`, or only `error`. Of a pasted
-    table or matrix there are `rows` of cells; `ok` then says that every cell was read.
+    For one entry it has `text`, `latex`, `mathml` and `symbols`, or only `error`. For a pasted
+    table or matrix it has `rows` of cells, and `ok` is true if every cell is readable.
     """
 
     ok: bool
     rows: list[list[PreviewCell]] | None = Field(
-        None, description="The cells of a pasted table or matrix; needs `exercise` and `part`."
+        None, description="The cells of a pasted table or matrix; requires `exercise` and `part`."
     )
     text: str | None = None
     latex: str | None = None
@@ -87,32 +85,32 @@ class PreviewAnswer(BaseModel):
 
 
 class EntryToPreview(BaseModel):
-    """One of several entries, and what is asked for in its place."""
+    """One of several entries and its expected quantity."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    text: str = Field(description="The entry as the student writes it.")
-    quantity: Kind = Field("number", description="What is asked for there.")
+    text: str = Field(description="The entry as typed by the student.")
+    quantity: Kind = Field("number", description="The expected quantity.")
 
 
-# All entries of the link transforms of the longest robot that an exercise may have.
+# The number of entries in the link transforms of the longest robot in an exercise.
 MAX_ENTRIES: Final = 192
 
 
 class PreviewManyRequest(BaseModel):
-    """The entries of one part that have changed."""
+    """The changed entries of one part."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     exercise: str = Field(description="The exercise whose symbols the entries may use.")
-    part: str = Field(description="The part that the entries are for.")
+    part: str = Field(description="The part that the entries answer.")
     angle_unit: Literal["radians", "degrees"] = Field(
-        "radians", description="What a bare number means where an angle is asked for."
+        "radians", description="The unit of angles without a unit."
     )
     entries: list[EntryToPreview] = Field(max_length=MAX_ENTRIES)
 
 
 class PreviewManyResponse(BaseModel):
-    """The reading of each entry, in their order."""
+    """The readings in the order of the entries."""
 
     results: list[PreviewAnswer]

@@ -1,20 +1,20 @@
-"""RFC 9457 problem details: the body of every answer that is not a success."""
+"""RFC 9457 problem details: the body of every unsuccessful answer."""
 
 from typing import Final
 
 from pydantic import BaseModel, Field
 
 MEDIA_TYPE: Final = "application/problem+json"
-# What stands before the name of a problem in its ``type``.
+# The prefix of a problem's name in its ``type``.
 TYPE_PREFIX: Final = "urn:dh-grader:problem:"
 
 
 class Reason(BaseModel):
-    """One of several reasons."""
+    """One of the reasons of a problem."""
 
     detail: str
     pointer: str | None = Field(
-        None, description="Where in the body, as a JSON pointer (RFC 6901), or which parameter."
+        None, description="The place in the body as a JSON pointer (RFC 6901), or the parameter."
     )
     line: int | None = None
     column: int | None = None
@@ -23,11 +23,11 @@ class Reason(BaseModel):
 class ProblemDocument(BaseModel):
     """RFC 9457 problem details."""
 
-    type: str = Field(description="`about:blank`, or a stable URN that a program can tell by.")
+    type: str = Field(description="`about:blank`, or a stable URN for programs.")
     title: str
     status: int
     detail: str
-    instance: str = Field(description="The path that was asked for.")
+    instance: str = Field(description="The path of the request.")
     request_id: str | None = Field(
         None, description="The id of the request, also in the header X-Request-ID and in the log."
     )

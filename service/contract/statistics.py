@@ -1,51 +1,51 @@
-"""The statistics of an exercise, as tutors get them."""
+"""The bodies of the statistics of an exercise."""
 
 from pydantic import BaseModel, Field
 
 
 class ShareCorrect(BaseModel):
-    """How many were right, of those who answered."""
+    """The number of answers and of right answers."""
 
-    answered: int = Field(description="Answers; what could not be read is one.")
+    answered: int = Field(description="The number of answers, including unreadable ones.")
     correct: int
-    share: float | None = Field(None, description="correct / answered; left out where nobody did.")
+    share: float | None = Field(None, description="correct / answered; absent without answers.")
 
 
 class CellFigures(ShareCorrect):
-    """A cell in all attempts."""
+    """The figures of a cell in all attempts."""
 
     label: str
 
 
 class RowFigures(ShareCorrect):
-    """A row in all attempts: right where all its cells are."""
+    """The figures of a row in all attempts. A row is right if all its cells are."""
 
     label: str
     cells: list[CellFigures]
 
 
 class PartFigures(ShareCorrect):
-    """A part in all attempts."""
+    """The figures of a part in all attempts."""
 
     part: str
     rows: list[RowFigures]
 
 
 class MisconceptionFigures(BaseModel):
-    """A code of a message in a part."""
+    """The figures of a message code in a part."""
 
     part: str
     code: str
     sentence: str | None = Field(
         None,
-        description="What one of them was told; left out where the report told no more than marks.",
+        description="The message in one of these reports; absent if the report has no messages.",
     )
-    attempts: int = Field(description="The attempts that have it.")
-    by_day: dict[str, int] = Field(description="The same by day, in UTC.")
+    attempts: int = Field(description="The number of attempts with this code.")
+    by_day: dict[str, int] = Field(description="The number of these attempts by day, in UTC.")
 
 
 class IdenticalAnswers(BaseModel):
-    """Wrong answers that several learners sent letter by letter; no proof that anybody copied."""
+    """Exactly equal wrong answers of several learners. They do not prove that anybody copied."""
 
     learners: int
     attempts: int
@@ -54,11 +54,11 @@ class IdenticalAnswers(BaseModel):
 
 
 class ExerciseStatistics(BaseModel):
-    """The attempts at an exercise in counts."""
+    """The statistics of the attempts at an exercise."""
 
     exercise: str
     attempts: int
     learners: int
     parts: list[PartFigures]
-    misconceptions: list[MisconceptionFigures] = Field(description="The commonest first.")
+    misconceptions: list[MisconceptionFigures] = Field(description="The most common ones first.")
     identical: list[IdenticalAnswers] = Field(description="The largest groups first.")

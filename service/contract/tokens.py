@@ -1,4 +1,4 @@
-"""The bodies by which learners get tokens."""
+"""The bodies of requests for tokens."""
 
 from datetime import datetime
 from typing import Annotated, Final
@@ -7,22 +7,22 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from service.contract.attempts import Learner
 
-# A course page asks for a new one before; a token that is lost is worth no more than this.
+# The longest validity, which limits the damage of a lost token. A course page renews its token.
 LONGEST_MINUTES: Final = 8 * 60
 
 _ExerciseId = Annotated[str, StringConstraints(min_length=1, max_length=100)]
 
 
 class TokenRequest(BaseModel):
-    """Whom a token is for."""
+    """A request for a token of a learner."""
 
     model_config = ConfigDict(extra="forbid")
 
     learner: Learner
     exercises: Annotated[list[_ExerciseId], Field(min_length=1, max_length=64)] | None = Field(
-        None, description="The exercises that it is for; left out, all those of the key."
+        None, description="The exercises of the token. Default: all exercises of the key."
     )
-    minutes: int = Field(60, ge=1, le=LONGEST_MINUTES, description="How long it is valid.")
+    minutes: int = Field(60, ge=1, le=LONGEST_MINUTES, description="The validity in minutes.")
 
 
 class TokenResponse(BaseModel):

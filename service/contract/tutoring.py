@@ -1,4 +1,4 @@
-"""The bodies by which tutors change what is recorded."""
+"""The bodies of requests with which tutors change recorded attempts."""
 
 from typing import Annotated
 
@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, StrictBool, StringConstraints
 from service.contract.attempts import Learner
 
 _Apply = Annotated[
-    StrictBool, Field(description="Whether to do it; without it, only what it would do is told.")
+    StrictBool, Field(description="If true, apply the change; otherwise only preview it.")
 ]
 _Line = StringConstraints(
     strip_whitespace=True, min_length=1, pattern=r"^[^\x00-\x1f\x7f\u2028\u2029]+$"
@@ -15,25 +15,25 @@ _Line = StringConstraints(
 
 
 class OverrideRequest(BaseModel):
-    """Points in place of those of an attempt's report."""
+    """Points that override those of an attempt's report."""
 
     model_config = ConfigDict(extra="forbid")
 
     points: Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)] | None = Field(
         None,
-        description="From 0 to the most that the attempt may have. Left out, those that were given "
-        "earlier are withdrawn.",
+        description="The new points, from 0 to `max_points`. Omit them to withdraw an earlier "
+        "override.",
     )
     reason: Annotated[str, _Line, Field(max_length=1000)] = Field(
-        description="Why, in a line. The learner does not read it."
+        description="The reason in one line. The learner does not see it."
     )
     author: Annotated[str, _Line, Field(max_length=150)] | None = Field(
-        None, description="Who says so. The id of the key is noted in any case."
+        None, description="The author of the override. The id of the key is always recorded."
     )
 
 
 class ForgetRequest(BaseModel):
-    """The learner of whom nothing is to be kept."""
+    """A request to delete all records of a learner."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -42,57 +42,57 @@ class ForgetRequest(BaseModel):
 
 
 class ForgottenData(BaseModel):
-    """How much is recorded of a learner, or was until it was deleted."""
+    """The number of records of a learner; `deleted` is true after they were deleted."""
 
     learner: str
     deleted: bool
     attempts: int
     earlier_reports: int
-    overrides: int = Field(description="Points that tutors gave, or withdrew.")
+    overrides: int = Field(description="Points that tutors gave or withdrew.")
     erased: bool | None = Field(
         None,
-        description="Whether the files of SQLite hold none of it any more. If not, another program "
-        "is reading the database; the service overwrites it within a minute after that has ended. "
-        "Left out where nothing was to be deleted, and with PostgreSQL.",
+        description="True if the deleted data is no longer in SQLite's files. If false, another "
+        "program is reading the database; the service overwrites the data within a minute after "
+        "that program has ended. Absent if nothing was to be deleted, and with PostgreSQL.",
     )
 
 
 class RegradeRequest(BaseModel):
-    """A step of a regrade."""
+    """A request for one step of a regrade."""
 
     model_config = ConfigDict(extra="forbid")
 
     apply: _Apply = False
     cursor: Annotated[str, Field(max_length=60)] | None = Field(
-        None, description="The `next` of the step before; left out at the first one."
+        None, description="The `next` of the previous step; omit it in the first step."
     )
 
 
 class AttemptChange(BaseModel):
-    """An attempt whose learner gets another report, or other points by it."""
+    """An attempt whose points or results change."""
 
     id: str
     learner: str
     ordinal: int | None = None
-    before: float = Field(description="The points so far.")
-    after: float
+    before: float = Field(description="The old points.")
+    after: float = Field(description="The new points.")
     max_points: float
     awarded: float | None = Field(
         None, description="The points that a tutor gave instead, if any: they stay and count."
     )
     reasons: list[str] = Field(
-        description="The parts that are judged otherwise. None where only the worth of a late "
-        "attempt is another."
+        description="The parts whose results change. Empty if only the points for a late attempt "
+        "change."
     )
 
 
 class RegradeAnswer(BaseModel):
-    """What one step of a regrade has graded anew."""
+    """The result of one step of a regrade."""
 
     applied: bool
-    regraded: int = Field(description="The attempts of this step.")
-    left: int = Field(description="The attempts that wait after it.")
-    changes: list[AttemptChange] = Field(description="Those of this step that change.")
+    regraded: int = Field(description="The number of attempts in this step.")
+    left: int = Field(description="The number of attempts left after this step.")
+    changes: list[AttemptChange] = Field(description="The attempts of this step that change.")
     next: str | None = Field(
-        None, description="The `cursor` of the next step; left out where nothing waits."
+        None, description="The `cursor` of the next step; absent after the last step."
     )

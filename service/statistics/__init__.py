@@ -1,4 +1,4 @@
-"""A class in numbers, counted from reports one by one: nothing of a report is kept but counts."""
+"""The statistics of a class, counted from reports one by one. The reports are not kept."""
 
 from service.statistics.class_statistics import ClassStatistics
 from service.statistics.identical import IdenticalMistakes, MistakeGroup

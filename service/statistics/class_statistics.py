@@ -1,4 +1,4 @@
-"""All that is counted of the reports of a class."""
+"""All statistics of a class."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -13,10 +13,10 @@ _NO_MESSAGES: Final = (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
 
 
 class ClassStatistics:
-    """Reports in, counts out.
+    """Counts the reports of a class.
 
-    Submissions come one by one, each with a number of its own: its score by ``scores.add``, its
-    reports by ``add``. ``untold`` counts the reports whose feedback level keeps the slips back.
+    Add each submission under its own number: its score by ``scores.add``, its reports by ``add``.
+    ``untold`` is the number of reports whose feedback level hides slips.
     """
 
     def __init__(self) -> None:
@@ -36,5 +36,5 @@ class ClassStatistics:
 
     @property
     def parts(self) -> Mapping[tuple[str, str], PartSuccess]:
-        """Success in each part that a report tells of, by the ids of exercise and part."""
+        """The success in each part, by the ids of exercise and part."""
         return self._parts

@@ -1,6 +1,6 @@
-"""Groups of identical mistakes: the same wrong cells with the same wrong entries as read.
+"""Groups of submissions with identical mistakes: the same wrong entries in the same cells.
 
-They are no proof that anybody copied: a slip that is common leads many to the same entries.
+They do not prove that anybody copied: a common slip leads many students to the same entries.
 """
 
 from array import array
@@ -11,7 +11,7 @@ from hashlib import blake2b
 from service.grading import PartReport, Verdict
 from service.statistics.success import shown_entry
 
-# Row, cell, entry as read.
+# Row, cell, and the entry in the reader's notation.
 Mistake = tuple[str, str, str]
 
 
@@ -19,7 +19,7 @@ Mistake = tuple[str, str, str]
 class MistakeGroup:
     """Submissions with identical mistakes in a part.
 
-    ``mistakes`` has all wrong cells of the part; very long entries are cut.
+    ``mistakes`` are all wrong cells of the part; very long entries are truncated.
     """
 
     exercise: str
@@ -29,9 +29,9 @@ class MistakeGroup:
 
 
 class IdenticalMistakes:
-    """The wrong entries of reports, added part by part.
+    """Groups the wrong entries of reports, which are added part by part.
 
-    Of mistakes that one submission has, only a fingerprint is kept.
+    For mistakes of a single submission, only a fingerprint is stored.
     """
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class IdenticalMistakes:
         self._groups: dict[bytes, MistakeGroup] = {}
 
     def add(self, submission: int, exercise: str, part: PartReport) -> None:
-        """Take the wrong entries of a part; cells that could not be read are left out."""
+        """Add the wrong entries of a part; ignore unreadable cells."""
         mistakes = [
             (row.label, cell.label, cell.read.text)
             for row in part.rows
@@ -60,7 +60,7 @@ class IdenticalMistakes:
 
     @property
     def groups(self) -> Sequence[MistakeGroup]:
-        """The groups of two and more; the largest first, then those with the most wrong cells."""
+        """The groups of at least two, by decreasing size, then by the number of wrong cells."""
         return sorted(
             self._groups.values(), key=lambda group: (-len(group.submissions), -len(group.mistakes))
         )

@@ -1,4 +1,4 @@
-"""Slips by their codes: how many submissions have each, and which."""
+"""The number of submissions with each slip, by code."""
 
 from array import array
 from collections import Counter
@@ -9,9 +9,9 @@ from typing import Final
 from service.grading import Feedback, PartReport, Severity, Verdict
 from service.grading.report import messages_of
 
-# What costs points or may have been a slip; notes and hints are not counted.
+# Messages about lost points or possible slips; notes and hints are not counted.
 COUNTED: Final = (Severity.ERROR, Severity.WARNING)
-# So many different sentences of a code are told apart.
+# The most different sentences that are counted for a code.
 _SENTENCES: Final = 50
 
 
@@ -19,9 +19,9 @@ _SENTENCES: Final = 50
 class CountedSlip:
     """A code in answers of one kind.
 
-    ``is_unreadable`` says that something could not be read, which is no misconception.
-    ``submissions`` has each submission once, ``parts`` how many have it in each part, by the ids of
-    exercise and part.
+    ``is_unreadable`` is True if the code is about an unreadable entry, which is not a
+    misconception. ``submissions`` has each submission once; ``parts`` is the number of submissions
+    by part, with the ids of exercise and part.
     """
 
     slip_code: str
@@ -32,7 +32,7 @@ class CountedSlip:
     _sentences: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: int, part: tuple[str, str], sentence: str) -> None:
-        """Count the slip in a part of a submission; submissions come one by one."""
+        """Count the slip in a part. Add all parts of a submission before those of the next."""
         if not self.submissions or self.submissions[-1] != submission:
             self.submissions.append(submission)
         self.parts[part] += 1
@@ -41,26 +41,26 @@ class CountedSlip:
 
     @property
     def count(self) -> int:
-        """The number of submissions that have it."""
+        """The number of submissions with this slip."""
         return len(self.submissions)
 
     @property
     def sentence(self) -> str:
-        """The message that most were told; the first of those that are equally many."""
+        """The most frequent message; the first one of several."""
         return self._sentences.most_common(1)[0][0]
 
 
 class SlipCounts:
-    """The codes of reports, added part by part: each counts once for a part of a submission.
+    """Counts the codes of reports, each once for a part of a submission.
 
-    The same code is another slip in an answer of another kind.
+    The same code in another kind of answer is a different slip.
     """
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, str, bool], CountedSlip] = {}
 
     def add(self, submission: int, exercise: str, part: PartReport) -> None:
-        """Count the slips of a part; one that is missing has none."""
+        """Count the slips of a part, unless the answer is missing."""
         if part.verdict is Verdict.MISSING:
             return
         for (code, is_unreadable), sentence in _slips(part).items():
@@ -69,13 +69,13 @@ class SlipCounts:
             slip.add(submission, (exercise, part.part), sentence)
 
     def counted(self, *, unreadable: bool = False) -> Sequence[CountedSlip]:
-        """The slips of what was read, or of what was ``unreadable``; the commonest first."""
+        """Return the slips in readable or ``unreadable`` entries, the most common ones first."""
         found = (slip for slip in self._found.values() if slip.is_unreadable is unreadable)
         return sorted(found, key=lambda slip: (-slip.count, slip.slip_code, slip.kind))
 
 
 def _slips(part: PartReport) -> dict[tuple[str, bool], str]:
-    """Each code of the part, and whether nothing could be read there, with its first sentence."""
+    """The first sentence of each code of the part; the key is True for unreadable entries."""
     found: dict[tuple[str, bool], str] = {}
     for message, verdict in _counted(part):
         found.setdefault((message.code, verdict is Verdict.UNREADABLE), message.message)

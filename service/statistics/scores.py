@@ -6,15 +6,15 @@ from statistics import fmean, median
 from typing import Final
 
 BINS: Final = 10
-# A score that is rounded to six digits belongs to the bin that it is the lower edge of.
+# A score on the edge of two bins belongs to the upper one, although it is rounded to six digits.
 _EDGE: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class ScoreBin:
-    """The submissions with a score of at least ``low`` and below ``high``; the last bin has 1, too.
+    """The submissions with a score from ``low`` up to, but not including, ``high``.
 
-    ``passed`` are those among them that reach the pass mark.
+    The last bin includes 1. ``passed`` is the number of them that reach the pass mark.
     """
 
     low: float
@@ -24,7 +24,7 @@ class ScoreBin:
 
 
 class ScoreDistribution:
-    """Scores of 0..1, added one by one; each takes eight bytes."""
+    """Counts scores from 0 to 1; each takes eight bytes."""
 
     def __init__(self) -> None:
         self._scores = array("d")
@@ -50,12 +50,12 @@ class ScoreDistribution:
 
     @property
     def mean(self) -> float:
-        """The mean score; there must be one."""
+        """The mean score. Raises StatisticsError without scores."""
         return fmean(self._scores)
 
     @property
     def median(self) -> float:
-        """The median score; there must be one."""
+        """The median score. Raises StatisticsError without scores."""
         return median(self._scores)
 
     @property

@@ -1,4 +1,4 @@
-"""Success: how many of those who answered were right, for each part, row and cell."""
+"""The share of right answers in each part, row and cell."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -7,32 +7,32 @@ from typing import Final, NamedTuple
 
 from service.grading import CellReport, PartReport, RowReport, Verdict
 
-# Longer entries are cut, and of each cell so many different ones are told apart: what a class
-# writes is counted, and what floods it is not kept.
+# The longest stored entry, and the most different entries of a cell: enough for a class, and a
+# limit against floods.
 LONGEST_ENTRY: Final = 120
 DIFFERENT_ENTRIES: Final = 300
 
 
 @dataclass(slots=True)
 class Share:
-    """How many were right, of those who answered. What could not be read was answered."""
+    """The number of answers, including unreadable ones, and of right answers."""
 
     correct: int = 0
     answered: int = 0
 
     def add(self, verdict: Verdict, times: int = 1) -> None:
-        """Count an answer, or as many with the same verdict; a missing one is none."""
+        """Count ``times`` answers with this verdict; missing answers do not count."""
         self.answered += times * (verdict is not Verdict.MISSING)
         self.correct += times * (verdict is Verdict.CORRECT)
 
     @property
     def value(self) -> float | None:
-        """The share, 0..1; None where nobody answered."""
+        """The share of right answers, 0..1; None without answers."""
         return self.correct / self.answered if self.answered else None
 
 
 class FrequentEntry(NamedTuple):
-    """A wrong entry of a cell as it was read, and how many wrote it."""
+    """A wrong entry of a cell in the reader's notation, and how often it occurs."""
 
     row: str
     cell: str
@@ -42,7 +42,7 @@ class FrequentEntry(NamedTuple):
 
 @dataclass(slots=True)
 class CellSuccess:
-    """A cell in all reports; ``wrong`` counts the wrong entries by their texts as read."""
+    """The counts of a cell; ``wrong`` counts wrong entries by their text."""
 
     share: Share = field(default_factory=Share)
     wrong: Counter[str] = field(default_factory=Counter)
@@ -57,13 +57,13 @@ class CellSuccess:
 
 
 def shown_entry(text: str) -> str:
-    """The entry as it is shown: cut where it is very long."""
+    """Return the entry, truncated if it is very long."""
     return text if len(text) <= LONGEST_ENTRY else f"{text[: LONGEST_ENTRY - 1]}…"
 
 
 @dataclass(slots=True)
 class RowSuccess:
-    """A row in all reports; ``seen`` counts the reports that have it."""
+    """The counts of a row; ``seen`` is the number of reports with this row."""
 
     share: Share = field(default_factory=Share)
     cells: dict[str, CellSuccess] = field(default_factory=dict)
@@ -79,9 +79,9 @@ class RowSuccess:
 
 @dataclass(slots=True)
 class PartSuccess:
-    """A part in all reports: ``seen`` of them, of which ``detailed`` tell of rows.
+    """The counts of a part in ``seen`` reports, of which ``detailed`` have rows.
 
-    ``points`` are summed over those who answered.
+    ``points`` is the sum of all points.
     """
 
     share: Share = field(default_factory=Share)
@@ -101,16 +101,16 @@ class PartSuccess:
 
     @property
     def mean_points(self) -> float | None:
-        """The mean points of those who answered; None where nobody did."""
+        """The mean points of answers; None without answers."""
         return self.points / self.share.answered if self.share.answered else None
 
     @property
     def rows(self) -> Mapping[str, RowSuccess]:
-        """The rows that most reports have: a row too many is no row of the answer."""
+        """The rows in more than half of the detailed reports. Others were added by students."""
         return {label: row for label, row in self._rows.items() if 2 * row.seen > self.detailed}
 
     def commonest_wrong(self, most: int, at_least: int = 2) -> list[FrequentEntry]:
-        """The wrong entries that ``at_least`` so many have, the commonest first."""
+        """Return up to ``most`` wrong entries that occur ``at_least`` times, by frequency."""
         found = [entry for entry in self._wrong() if entry.times >= at_least]
         return sorted(found, key=lambda entry: -entry.times)[:most]
 
@@ -122,5 +122,5 @@ class PartSuccess:
 
 
 def columns(rows: Iterable[RowSuccess]) -> list[str]:
-    """The labels of all cells of the rows, in order."""
+    """Return the labels of all cells of the rows, in order."""
     return list(dict.fromkeys(label for row in rows for label in row.cells))

@@ -1,1 +1,1 @@
-"""Submissions, over HTTP or as files: read strictly, checked, their exercise found."""
+"""Submissions over HTTP or as files: read and validate them, and find their exercise."""

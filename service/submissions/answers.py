@@ -1,7 +1,7 @@
-"""The answers to each exercise of an assignment, in whichever files a student handed them in.
+"""Find the answers to each exercise of an assignment in the files of a student.
 
-The name of a file says which exercise and part it answers. Where it does not, the file says so
-itself by its key ``exercise``, or there is one exercise only.
+The name of a file says which exercise and part it answers. Otherwise its key ``exercise`` says so,
+or the assignment has only one exercise.
 """
 
 import json
@@ -32,20 +32,20 @@ from service.submissions.platform_names import student_and_part, without_copy_nu
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-# Names of files that a message tells.
-_TOLD: Final = 5
+# The most file names in a message.
+_MOST_LISTED: Final = 5
 _LONGEST_NAME: Final = 60
-# No answers, unless their names are among those that the assignment asks for.
-_ABOUT: Final = frozenset({"readme", "license", "licence", "changelog"})
+# The names of files that are not answers, unless the assignment asks for them.
+_NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
 
 
 @dataclass(frozen=True, slots=True)
 class ExerciseAnswers:
     """The answers to one exercise.
 
-    ``file`` is where they stand: a file, the folder of several, or empty where none was handed in.
-    ``body`` is None where there is nothing to grade. ``problem`` says which of it cannot be used,
-    and why.
+    ``file`` is the path of their file, or of the folder of several files; it is empty without
+    files. ``body`` is None if nothing can be graded. ``problem`` says which files are unusable, and
+    why.
     """
 
     file: str
@@ -55,16 +55,16 @@ class ExerciseAnswers:
 
 @dataclass(frozen=True, slots=True)
 class _Claim:
-    """A file that answers an exercise, or the part of it that its name says."""
+    """A file that answers an exercise, or only the part in its name."""
 
     file: HandedFile
     part: str | None = None
 
 
 def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswers, ...]:
-    """The answers to each exercise of the assignment, in order.
+    """Return the answers to each exercise of the assignment, in order.
 
-    An exercise that no file answers has none, with no problem, as long as another one is answered.
+    An exercise without a file has no answers, and no problem if another exercise has a file.
     """
     try:
         claims = _claims(handed.files(), assignment)
@@ -76,7 +76,7 @@ def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswer
 
 
 def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_Claim]]:
-    """The files that answer each exercise. Raises UnusableFileError where there are none at all."""
+    """The files that answer each exercise. Raises UnusableFileError if no file answers any."""
     claims: list[list[_Claim]] = [[] for _ in assignment.exercises]
     unnamed = []
     for file in files:
@@ -95,14 +95,14 @@ def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_C
             if found := student_and_part(file.name, assignment.part_names):
                 claims[0].append(_Claim(file, found[1]))
     if not any(claims):
-        sole = _sole(files, assignment)
-        i = 0 if len(assignment.exercises) == 1 else _stated(sole, assignment)
-        claims[i].append(_Claim(sole))
+        only = _only_file(files, assignment)
+        i = 0 if len(assignment.exercises) == 1 else _stated(only, assignment)
+        claims[i].append(_Claim(only))
     return claims
 
 
 def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
-    """The exercises that a file of this name answers, each with the part; "" where it says none."""
+    """The exercises that the file name matches, each with the part, or "" for the exercise."""
     path = PurePosixPath(name.lower())
     is_one = len(assignment.exercises) == 1
     found = ((i, _place(path, each, is_one)) for i, each in enumerate(assignment.exercises))
@@ -110,7 +110,7 @@ def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
 
 
 def _place(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str | None:
-    """The part that the file answers, "" where its name says none; None where it answers none."""
+    """The part in the file name, "" if it names only the exercise, None if it names neither."""
     for part, patterns in assigned.part_files.items():
         if _is_named(path, patterns):
             return part
@@ -121,7 +121,7 @@ def _place(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str
 
 
 def _is_named(path: PurePosixPath, patterns: Sequence[str]) -> bool:
-    """Whether the path, in small letters, ends as one of the patterns says."""
+    """True if the path, in lower case, matches one of the patterns."""
     return any(path.match(pattern.lower()) for pattern in patterns)
 
 
@@ -137,7 +137,7 @@ def _place_by_id(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) 
     if (is_one or is_inside) and (part := _part_in(path.stem, assigned)):
         return part
     holds_parts = ending(path.name) in DATA_ENDINGS or assigned.only_part is not None
-    return "" if is_inside and holds_parts and path.stem not in _ABOUT else None
+    return "" if is_inside and holds_parts and path.stem not in _NOT_ANSWERS else None
 
 
 def _part_in(stem: str, assigned: AssignedExercise) -> str | None:
@@ -145,12 +145,12 @@ def _part_in(stem: str, assigned: AssignedExercise) -> str | None:
 
 
 def _stems(stem: str) -> tuple[str, ...]:
-    """The name, and the one that it had before it was a copy."""
+    """The name, and the name without the number of a copy."""
     return tuple(dict.fromkeys((stem, without_copy_number(stem))))
 
 
 def _stated(file: HandedFile, assignment: Assignment) -> int:
-    """The exercise that the content of a file says it answers. Raises UnusableFileError."""
+    """The index of the exercise named in the content of a file. Raises UnusableFileError."""
     content = read_content(file.read(), file.name)
     known = [each.exercise.id for each in assignment.exercises]
     if content.is_pasted:
@@ -175,18 +175,18 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
     return known.index(stated)
 
 
-def _sole(files: Sequence[HandedFile], assignment: Assignment) -> HandedFile:
-    """The file that must hold the answers, for no other can. Raises UnusableFileError."""
+def _only_file(files: Sequence[HandedFile], assignment: Assignment) -> HandedFile:
+    """The only file that may have answers. Raises UnusableFileError if there are several."""
     if not files:
         raise UnusableFileError("holds no file")
-    others = [file for file in files if _stem(file) not in _ABOUT] or files
+    others = [file for file in files if _stem(file) not in _NOT_ANSWERS] or files
     data = [file for file in others if ending(file.name) in DATA_ENDINGS]
     pasted = [file for file in others if ending(file.name) in PASTED_ENDINGS]
     candidates = data or pasted or others
     if len(candidates) == 1:
         return candidates[0]
     raise UnusableFileError(
-        "holds no answer that can be told by its name: there are "
+        "holds no file whose name says what it answers: there are "
         f"{_listed([file.name for file in files])}; "
         f"name it as {_example(assignment.exercises[0], ending(candidates[0].name))}"
     )
@@ -197,7 +197,7 @@ def _stem(file: HandedFile) -> str:
 
 
 def _example(assigned: AssignedExercise, suffix: str) -> str:
-    """A name that would say the exercise, and the part where it must."""
+    """An example of a file name for this exercise, with a part if the suffix needs one."""
     if assigned.files:
         return assigned.files[0]
     if suffix in PASTED_ENDINGS:
@@ -206,7 +206,7 @@ def _example(assigned: AssignedExercise, suffix: str) -> str:
 
 
 def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseAnswers:
-    """The answers of all files to one exercise; a file that is unusable costs only itself."""
+    """The answers of all files to one exercise; an unusable file affects only itself."""
     if not claims:
         return ExerciseAnswers("", GradeRequest(answers={}))
     paths = [str(claim.file.path) for claim in claims]
@@ -226,7 +226,7 @@ def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseA
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
-    """The answers of several files together. Raises UnusableFileError where two contradict."""
+    """Merge the answers of several files. Raises UnusableFileError if two files contradict."""
     answers: dict[str, Any] = {}
     came_from: dict[str, str] = {}
     options: dict[str, Any] = {}
@@ -247,7 +247,7 @@ def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
 
 
 def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
-    """The answers in one file. Raises UnusableFileError."""
+    """Read the answers in one file. Raises UnusableFileError."""
     content = read_content(claim.file.read(), claim.file.name)
     return read_body(content, assigned, claim.part)
 
@@ -255,7 +255,7 @@ def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
 def read_body(
     content: FileContent, assigned: AssignedExercise, part: str | None = None
 ) -> GradeRequest:
-    """The answers to the parts that are set; ``part`` may be answered by all of the content.
+    """Read the answers to the assigned parts. With ``part``, the content may be just its answer.
 
     Raises UnusableFileError.
     """
@@ -303,7 +303,7 @@ def _first(error: ValidationError) -> str:
 
 
 def _fault(detail: "ErrorDetails") -> str:
-    """The fault of a field, in plain words."""
+    """The fault of a field in words for students."""
     given = detail["input"]
     shown = json.dumps(given, ensure_ascii=False, default=str)[:_LONGEST_NAME]
     match detail["type"]:
@@ -324,5 +324,6 @@ def _quoted(name: object) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    told = ", ".join(name[:_LONGEST_NAME] for name in names[:_TOLD])
-    return told if len(names) <= _TOLD else f"{told} and {len(names) - _TOLD} more"
+    first = ", ".join(name[:_LONGEST_NAME] for name in names[:_MOST_LISTED])
+    more = len(names) - _MOST_LISTED
+    return f"{first} and {more} more" if more > 0 else first

@@ -1,4 +1,4 @@
-"""An assignment: exercises that are set together, their points, and the files that answer them."""
+"""Assignments: exercises that are set together, their points, and the names of answer files."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -33,21 +33,21 @@ Patterns = Annotated[list[_Pattern], BeforeValidator(_as_list), Field(min_length
 
 
 class AssignedExerciseSpec(StrictModel):
-    """One exercise of an assignment: of the catalogue by its id, or of one's own by its file."""
+    """One exercise of an assignment, given by its id in the catalogue or by its file."""
 
     id: Identifier | None = None
     """The id of an exercise of the catalogue."""
     path: Text | None = None
-    """An exercise file of your own instead, seen from the folder of this file."""
+    """The path of your own exercise file, relative to this file, instead of ``id``."""
     points: Annotated[float, Field(gt=0, le=10_000, strict=True), NotBool] | None = None
-    """The points that it counts; without them those of its parts."""
+    """The points of the exercise. Default: the sum of its parts."""
     parts: Annotated[list[Identifier], Field(min_length=1)] | None = None
-    """The parts that are set; without them all."""
+    """The parts to answer. Default: all."""
     files: Patterns | None = None
-    """The names of files that answer it, as one text or a list; ``*`` stands for any characters.
-    Without them ``ID.json``, ``ID/PART.csv`` and the like."""
+    """The names of answer files, as one text or a list; ``*`` matches any characters. Default:
+    ``ID.json``, ``ID/PART.csv`` and similar names."""
     part_files: dict[Identifier, Patterns] = Field({})
-    """The names of files that answer one part, by the part's id."""
+    """The names of answer files for single parts, by part id."""
 
     @model_validator(mode="after")
     def _names_one_exercise(self) -> "AssignedExerciseSpec":
@@ -67,22 +67,21 @@ class AssignmentSpec(StrictModel):
     title: Text
     """The title of the assignment."""
     pass_mark: Annotated[float, Field(ge=0, le=1, strict=True), NotBool] = PASS_MARK
-    """The score to reach, as a share of 1."""
+    """The score to pass, from 0 to 1."""
     feedback: FeedbackLevel | None = None
-    """The most that students are told: "full", "hints", "verdicts" or "score"; without it as much
-    as each exercise allows."""
+    """The highest feedback level for students: "full", "hints", "verdicts" or "score". Default:
+    that of each exercise."""
     exercises: Annotated[list[AssignedExerciseSpec], Field(min_length=1, max_length=MAX_EXERCISES)]
     """The exercises, one ``[[exercises]]`` for each."""
 
 
 @dataclass(frozen=True, slots=True)
 class AssignedExercise:
-    """An exercise that is set, with the parts that are set only.
+    """An assigned exercise, with only the assigned parts.
 
-    ``worth`` are the points that it counts. ``left_out`` are the ids of its parts that are not set.
-    ``path`` is the exercise's own file, where it is none of the catalogue. ``files`` and
-    ``part_files`` are the names of files that answer it; without ``files``, its id and those of
-    its parts are.
+    ``worth`` is its number of points. ``left_out`` are the ids of the other parts. ``path`` is the
+    exercise file if it is not in the catalogue. ``files`` and ``part_files`` are patterns of the
+    names of answer files; without ``files``, the ids of the exercise and its parts are the names.
     """
 
     exercise: SetExercise
@@ -94,21 +93,21 @@ class AssignedExercise:
 
     @property
     def only_part(self) -> str | None:
-        """The id of its part, where one only is set."""
+        """The id of the only assigned part; None if there are several."""
         parts = self.exercise.parts
         return parts[0].id if len(parts) == 1 else None
 
     def part_named(self, name: str) -> str | None:
-        """The id of the part that is named so, in whatever letters; None where none is."""
+        """The id of the part with this name, ignoring case; None if there is none."""
         lowered = name.lower()
         return next((part.id for part in self.exercise.parts if part.id == lowered), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What is set: exercises in order. One exercise alone is the assignment of that.
+    """Assigned exercises in order; it may be a single one.
 
-    ``feedback`` is the most that students are told, where that is not left to the exercises.
+    ``feedback`` is the highest feedback level for students; None means that of each exercise.
     """
 
     exercises: tuple[AssignedExercise, ...]
@@ -117,30 +116,30 @@ class Assignment:
     feedback: FeedbackLevel | None = None
 
     def ceiling(self, assigned: AssignedExercise) -> FeedbackLevel:
-        """The most that students are told of this exercise."""
+        """The highest feedback level for students in this exercise."""
         return self.feedback or assigned.exercise.feedback
 
     @property
     def part_names(self) -> frozenset[str]:
-        """The ids of the parts, as far as they say which exercise is answered: of one alone."""
+        """The ids of the parts if there is one exercise; otherwise empty, as they are ambiguous."""
         if len(self.exercises) > 1:
             return frozenset()
         return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
 
 
 class UnknownPartNameError(LookupError):
-    """An exercise has no part of this name; the text brings the nearest."""
+    """An exercise has no part of this name; the message suggests the nearest."""
 
 
 def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
-    """The assignment of one exercise, or of one part of it. Raises UnknownPartNameError."""
+    """Return an assignment of one exercise or one part of it. Raises UnknownPartNameError."""
     return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
 
 
 def assigned(
     exercise: SetExercise, parts: list[str] | None = None, worth: float | None = None
 ) -> AssignedExercise:
-    """The exercise with these parts, or all, set for its own points or else for ``worth``.
+    """Return the exercise with these parts, or all, for ``worth`` points, or those of the parts.
 
     Raises UnknownPartNameError.
     """
@@ -159,10 +158,10 @@ def assigned(
 
 
 def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
-    """The exercise with the chosen parts only.
+    """Return the exercise with only the chosen parts.
 
-    One that follows a part which is not set follows the part that this one follows, as it would if
-    that part had no answer.
+    A part that follows a dropped part follows that part's predecessor instead, just as if the
+    dropped part had no answer.
     """
     if isinstance(exercise, ExerciseOutline):
         kept = tuple(part for part in exercise.parts if part.id in chosen)
@@ -180,9 +179,9 @@ def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
 
 
 def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignment:
-    """The assignment in a TOML file. Raises CatalogueError.
+    """Load an assignment from a TOML file. Raises CatalogueError.
 
-    ``find`` brings the exercise of the catalogue with an id, or raises UnknownExerciseError.
+    ``find`` returns the exercise of the catalogue with an id, or raises UnknownExerciseError.
     """
 
     def build(content: dict[str, Any]) -> Assignment:
@@ -204,7 +203,7 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
 def _assigned(
     spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], SetExercise]
 ) -> AssignedExercise:
-    """One exercise of the assignment. Raises FieldError, and CatalogueError for its own file."""
+    """Load an exercise of the assignment. Raises FieldError, or CatalogueError for its file."""
     path = folder / spec.path if spec.path is not None else None
     try:
         exercise = load_exercise(path) if path else find(spec.id or "")

@@ -1,8 +1,7 @@
-"""The one table or matrix in a document: what would be pasted of it.
+"""Find the table or matrix in a LaTeX, Markdown or MATLAB document.
 
-A file of LaTeX or Markdown has words around the answer, and a MATLAB script has statements, which a
-pasted text may not have. Where there is not exactly one table, the text stays as it is, and the
-reader says what it lacks.
+Such a document has words or statements around the answer, which a pasted text may not have. Unless
+there is exactly one table, the text stays as it is, and its reader explains what is wrong.
 """
 
 import re
@@ -18,17 +17,17 @@ _ENVIRONMENT: Final = re.compile(
 _ASSIGNED: Final = re.compile(r"^[ \t]*([A-Za-z]\w{0,60})[ \t]*=[ \t]*\[", re.MULTILINE)
 
 _NAME: Final = re.compile(r"[A-Za-z]\w*")
-# A value for a name, other than itself as a symbol: q1 = sym('q1').
+# An assignment to a variable, except of itself as a symbol: q1 = sym('q1').
 _GIVEN: Final = re.compile(
     r"(?:^|[;,])[ \t]*([A-Za-z]\w{0,60})[ \t]*=(?!=)(?![ \t]*sym\(['\"]\1['\"][,)])", re.MULTILINE
 )
 _SEVERAL_GIVEN: Final = re.compile(r"\][ \t]*=(?!=)")
-# A value for a name, or for some of its entries.
+# An assignment to a variable or to some of its entries.
 _CHANGED: Final = re.compile(r"\b([A-Za-z]\w{0,60})[ \t]*(?:\([^()\n]{0,80}\)[ \t]*)?=(?!=)")
 
 
 def pasted_from(text: str, suffix: str) -> str:
-    """The text that would be pasted of a document whose name has this ending."""
+    """Return the only table in a document with this suffix, or else the whole text."""
     tables = _TABLES.get(suffix)
     if tables is None:
         return text
@@ -38,7 +37,7 @@ def pasted_from(text: str, suffix: str) -> str:
 
 
 def _latex(text: str) -> Iterator[str]:
-    """The environments that hold tables and matrices."""
+    """Yield the environments with tables and matrices."""
     at = 0
     while opening := _ENVIRONMENT.search(text, at):
         end = f"\\end{{{opening[1]}}}"
@@ -50,7 +49,7 @@ def _latex(text: str) -> Iterator[str]:
 
 
 def _markdown(text: str) -> Iterator[str]:
-    """The blocks of code, and the lines with bars that stand together."""
+    """Yield code blocks, and groups of consecutive lines with bars."""
     block: list[str] = []
     is_code = False
     for line in [*text.splitlines(), ""]:
@@ -65,9 +64,9 @@ def _markdown(text: str) -> Iterator[str]:
 
 
 def _matlab(text: str) -> Iterator[str]:
-    """The matrices that are written out and assigned, as far as nothing else changes a letter.
+    """Yield assigned matrices, preceded by the assignments to their variables.
 
-    In front of a matrix stand the statements that give its letters values, for the reader to tell.
+    Yield nothing if the script changes a matrix or a variable in a way that this cannot follow.
     """
     matrices: list[str] = []
     at = 0
@@ -87,7 +86,7 @@ def _matlab(text: str) -> Iterator[str]:
 
 
 def _values_given(text: str, letters: set[str]) -> list[str] | None:
-    """The statements that give these letters values; None where one is given a matrix or a list."""
+    """The assignments to these variables; None if one of them gets a matrix or a list."""
     found = []
     for given in _GIVEN.finditer(text):
         if given[1] in letters:
@@ -99,7 +98,7 @@ def _values_given(text: str, letters: set[str]) -> list[str] | None:
 
 
 def _closing(text: str, start: int) -> int:
-    """The place behind the bracket that closes the one before ``start``, or 0."""
+    """The position after the bracket that closes the one before ``start``, or 0."""
     depth = 1
     for bracket in re.finditer(r"[\[\]]", text[start:]):
         depth += 1 if bracket[0] == "[" else -1

@@ -1,4 +1,4 @@
-"""The content of a file that was handed in: JSON, TOML, or the pasted answer to one part."""
+"""Read the content of a submitted file: JSON, TOML, or the pasted answer to one part."""
 
 import codecs
 import datetime
@@ -18,36 +18,36 @@ from service.submissions.strict_json import (
     read_json,
 )
 
-# Python reads TOML a hundred times slower than JSON, and a key of many dots takes memory that grows
-# with their square.
+# Python reads TOML a hundred times more slowly than JSON, and the memory for a key with many dots
+# grows with their square.
 MAX_TOML_SIZE: Final = 64 * 1024
 MAX_TOML_DOTS: Final = 2_000
 
 STANDARD_INPUT: Final = "-"
 DATA_ENDINGS: Final = (".json", ".toml")
-# A web page is what the online text of Moodle is downloaded as.
+# Moodle exports online texts as web pages.
 PASTED_ENDINGS: Final = (".csv", ".tsv", ".md", ".tex", ".m", ".py", ".txt", ".html", ".htm")
 
 
 class UnusableFileError(Exception):
-    """A file that holds no submission; the text says why."""
+    """The file has no usable submission; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class FileContent:
-    """The value in a JSON or TOML file, or else the text that was pasted into it."""
+    """The value of a JSON or TOML file, or the pasted text."""
 
     value: object
     is_pasted: bool = False
 
 
 def ending(name: str) -> str:
-    """The ending of the name of a file in small letters: ``.json``."""
+    """The suffix of a file name in lower case: ``.json``."""
     return PurePosixPath(name).suffix.lower()
 
 
 def read_file(path: Path) -> bytes:
-    """The bytes of a file, within the limit of a request. Raises UnusableFileError."""
+    """Read a file up to the size limit of a request. Raises UnusableFileError."""
     try:
         return read_regular(path, MAX_BODY_SIZE)
     except OSError as error:
@@ -63,9 +63,9 @@ def _unread(error: OSError) -> str:
 
 
 def read_content(data: bytes, name: str) -> FileContent:
-    """The content of a file of this name. Raises UnusableFileError.
+    """Parse the content of a file with this name. Raises UnusableFileError.
 
-    The ending of the name says what it is. A ``.txt`` file and standard input may be anything.
+    The suffix of the name determines the format; for ``.txt`` and standard input, it is detected.
     """
     if len(data) > MAX_BODY_SIZE:
         raise UnusableFileError(f"is larger than {MAX_BODY_SIZE // 1024} KiB")
@@ -82,22 +82,22 @@ def read_content(data: bytes, name: str) -> FileContent:
         case known if known in DATA_ENDINGS:
             return FileContent(_json(data))
         case other:
-            return FileContent(_json_of_no_name(data, other))
+            return FileContent(_json_without_suffix(data, other))
 
 
 def _in_utf_8(data: bytes) -> bytes:
-    """The same text in UTF-8, where it begins as UTF-16 does: spreadsheets and Windows write it."""
+    """Convert UTF-16, which spreadsheets and Windows write, to UTF-8; keep other data as it is."""
     if not data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data
     try:
         return data.decode("utf-16").encode()
     except UnicodeError as error:
-        raise UnusableFileError("is no text: it begins as UTF-16 does and is not") from error
+        raise UnusableFileError("is not text: it begins like UTF-16, but is invalid") from error
 
 
 def _text(data: bytes) -> str:
     if b"\0" in data:
-        raise UnusableFileError("is no text, but has zero bytes")
+        raise UnusableFileError("is not text: it has zero bytes")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -114,37 +114,37 @@ def _json(data: bytes) -> object:
     try:
         return read_json(data)
     except MalformedError as error:
-        raise UnusableFileError(_no_json(error)) from error
+        raise UnusableFileError(_json_reason(error)) from error
 
 
-def _no_json(error: MalformedError) -> str:
-    """The reason of malformed JSON as the end of one sentence."""
+def _json_reason(error: MalformedError) -> str:
+    """The reason why JSON is malformed, to follow the name of the file in a sentence."""
     place = str(error).removeprefix(error.reason)
     reason = error.reason.removesuffix(".")
     return f"is not usable JSON: {reason[0].lower()}{reason[1:]}{place}"
 
 
-def _json_of_no_name(data: bytes, found: str) -> object:
-    """The value of JSON in a file whose ending promises none."""
+def _json_without_suffix(data: bytes, found: str) -> object:
+    """Read JSON from a file with an unknown suffix."""
     try:
         return _json(data)
     except UnusableFileError as error:
         known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
         kind = f"of a kind that is not read ({found})" if found else "without an ending"
-        # Of a PDF or a photo nobody expects JSON.
+        # Do not complain about JSON in a PDF or a photo.
         reason = f", and {error}" if data.lstrip().startswith(b"{") else ""
         raise UnusableFileError(f"is a file {kind}{reason}; known are {known}") from error
 
 
 def _recognised(data: bytes) -> FileContent:
-    """JSON or TOML with answers, or else a pasted text."""
+    """Detect JSON or TOML with answers; anything else is a pasted text."""
     text = _text(data).strip()
     if text.startswith(("{", "[")):
         try:
             return FileContent(read_json(data))
         except MalformedError as error:
             if '"answers"' in text:
-                raise UnusableFileError(_no_json(error)) from error
+                raise UnusableFileError(_json_reason(error)) from error
     if "answers" in text:
         try:
             value = _toml(data)
@@ -166,18 +166,18 @@ def _toml(data: bytes) -> object:
     except UnicodeDecodeError as error:
         raise UnusableFileError(f"is not UTF-8 text: byte {error.start + 1} is wrong") from error
     except RecursionError as error:
-        raise UnusableFileError("has tables or lists too deep in each other") from error
+        raise UnusableFileError("has tables or lists nested too deep") from error
     except tomllib.TOMLDecodeError as error:
         raise UnusableFileError(f"is not usable TOML: {error}") from error
     except ValueError as error:
         raise UnusableFileError("is not usable TOML: a number has thousands of digits") from error
     if nested_deeper(content, MAX_DEPTH):
-        raise UnusableFileError("has tables or lists too deep in each other")
+        raise UnusableFileError("has tables or lists nested too deep")
     return _as_json(content)
 
 
 def _as_json(value: Any) -> Any:
-    """The value with its dates and times, which JSON does not have, as the text that they are."""
+    """Replace dates and times, which JSON lacks, by their text."""
     if isinstance(value, dict):
         return {key: _as_json(child) for key, child in value.items()}
     if isinstance(value, list):

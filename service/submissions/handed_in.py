@@ -1,7 +1,7 @@
-"""Who handed in which files: a file, a folder of a class, a folder of one student.
+"""Find the submissions in files, folders of a class, and folders of single students.
 
-A file in the folder of a class is the submission of one student, and so is a folder in it with all
-that it holds. What a learning platform names alike belongs to one student.
+In the folder of a class, each file and each subfolder is the submission of one student. Files that
+a learning platform names after the same student belong together.
 """
 
 import os
@@ -16,7 +16,7 @@ from service.submissions.platform_names import platform_name, student_and_part
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 MAX_SUBMISSIONS_IN_FOLDER: Final = 100_000
-# Of one student. A clone of a repository holds more than the answers.
+# The most files and levels of folders of one student: a cloned repository has more than answers.
 MAX_FILES: Final = 2_000
 MAX_FOLDERS_DEEP: Final = 8
 
@@ -25,9 +25,9 @@ _JUNK: Final = frozenset({"__macosx", "thumbs.db", "desktop.ini", "__pycache__",
 
 @dataclass(frozen=True, slots=True)
 class HandedFile:
-    """One file of a submission; ``name`` is its path in there, with ``/``, as a student named it.
+    """One file of a submission; ``name`` is the student's path of it within the submission.
 
-    ``problem`` says why it may not be read; ``content`` is there where it has been read already.
+    ``problem`` says why the file must not be read; ``content`` is set if it has been read already.
     """
 
     path: Path
@@ -36,7 +36,7 @@ class HandedFile:
     content: bytes | None = field(default=None, repr=False)
 
     def read(self) -> bytes:
-        """The bytes of the file. Raises UnusableFileError."""
+        """Return the bytes of the file. Raises UnusableFileError."""
         if self.problem:
             raise UnusableFileError(self.problem)
         return read_file(self.path) if self.content is None else self.content
@@ -44,12 +44,11 @@ class HandedFile:
 
 @dataclass(frozen=True, slots=True)
 class HandedIn:
-    """What one student handed in: files and folders. They are listed by ``files``.
+    """The files and folders that one student handed in.
 
-    ``name`` tells it apart from others, ``learner`` is the student's in a gradebook. ``folder`` is
-    the one that they were found in, which a symbolic link must not leave, nor one in a student's
-    own folder that; without it they were named by the caller. ``problem`` says why nothing of it
-    can be graded.
+    ``name`` is unique; ``learner`` is the student's name in a gradebook. ``folder`` is the class
+    folder, or None if the caller named the files. Symbolic links must not lead out of it, nor out
+    of a student's own folder. ``problem`` says why nothing can be graded.
     """
 
     name: str
@@ -59,7 +58,7 @@ class HandedIn:
     problem: str = ""
 
     def files(self) -> list[HandedFile]:
-        """All files, in the order of their names. Raises UnusableFileError."""
+        """Return all files sorted by name. Raises UnusableFileError."""
         if self.problem:
             raise UnusableFileError(self.problem)
         found: list[HandedFile] = []
@@ -80,11 +79,11 @@ def all_handed_in(
     left_out: Path | None = None,
     parts: Collection[str] = (),
 ) -> Iterator[HandedIn]:
-    """The submissions in files and folders, in the order given and then of their names.
+    """Yield the submissions in files and folders, in the order of ``paths``, then by name.
 
-    ``-`` is standard input, which is read at once. With ``folder_is_one`` a folder is the
-    submission of one student. ``left_out`` is no submission, wherever it stands: the output. Of
-    files named ``STUDENT.PART.csv`` after one of ``parts``, those of one student belong together.
+    ``-`` is standard input, which is read immediately. With ``folder_is_one``, a folder is the
+    submission of one student. ``left_out``, the output file, is not a submission. Files named
+    ``STUDENT.PART.csv``, with one of ``parts``, belong together for each student.
     """
     for path in paths:
         if str(path) == STANDARD_INPUT:
@@ -102,7 +101,7 @@ def all_handed_in(
 
 
 def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> Iterator[HandedIn]:
-    """The submissions in the folder of a class."""
+    """Yield the submissions in the folder of a class."""
     try:
         names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
     except UnusableFileError as error:
@@ -119,9 +118,9 @@ def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> It
 
 
 def _student(folder: Path, name: str, parts: Collection[str]) -> str:
-    """What is alike in all names of one student.
+    """The key by which files of one student are grouped: "/STUDENT", or the whole file name.
 
-    A piece of a name has a / in front, which no name of a file has.
+    No file name begins with "/", so the two do not collide.
     """
     if found := platform_name(name):
         return f"/{found.student}"
@@ -130,7 +129,7 @@ def _student(folder: Path, name: str, parts: Collection[str]) -> str:
 
 
 def _entry(folder: Path, name: str) -> HandedFile:
-    """A file or folder of a class; a folder's files are named by what is below it."""
+    """A file or folder of a class. A folder has the name "", so that names of its files omit it."""
     path = folder / name
     found = platform_name(name)
     own = found.file if found else name
@@ -138,13 +137,13 @@ def _entry(folder: Path, name: str) -> HandedFile:
 
 
 def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[HandedFile]:
-    """The file itself, or the files in the folder, as far as links do not lead out."""
+    """Yield the file, or the files in the folder; links out of ``boundary`` get a problem."""
     if entry.path != boundary and entry.path.is_symlink():
         yield HandedFile(entry.path, entry.name, _link_problem(entry.path, boundary))
     elif entry.content is not None or not entry.path.is_dir():
         yield entry
     elif levels == 0:
-        raise UnusableFileError(f"has folders more than {MAX_FOLDERS_DEEP} deep in each other")
+        raise UnusableFileError(f"has folders nested more than {MAX_FOLDERS_DEEP} deep")
     else:
         for name in _names(entry.path, MAX_FILES):
             below = f"{entry.name}/{name}" if entry.name else name
@@ -152,7 +151,7 @@ def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[Han
 
 
 def _names(folder: Path, most: int) -> list[str]:
-    """The names in a folder in order, without what is hidden or nobody has written."""
+    """The sorted names in a folder, without hidden files and files of the operating system."""
     try:
         names = sorted(name for name in os.listdir(folder) if not _is_junk(name))  # noqa: PTH208
     except OSError as error:
@@ -167,7 +166,7 @@ def _is_junk(name: str) -> bool:
 
 
 def _link_problem(link: Path, boundary: Path) -> str:
-    """Why a symbolic link is not read; empty where it leads to a file inside the folder."""
+    """The reason not to read a symbolic link; empty if its target is a file in the folder."""
     try:
         target = link.resolve(strict=True)
         is_inside = target.is_relative_to(boundary.resolve())
@@ -187,7 +186,7 @@ def _is_same(path: Path, other: Path) -> bool:
 
 
 def _learner(entry: HandedFile, parts: Collection[str] = ()) -> str:
-    """The student: as the platform has it, or else the name of the file or folder."""
+    """The student's name on the platform, or else the name of the file or folder."""
     name = entry.path.name or entry.path.resolve().name
     if found := platform_name(name):
         return found.learner

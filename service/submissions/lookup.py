@@ -1,4 +1,4 @@
-"""Finding an exercise by its id."""
+"""Find an exercise by its id, or suggest the nearest."""
 
 import difflib
 from collections.abc import Iterable, Mapping
@@ -6,12 +6,12 @@ from typing import TypeVar
 
 _T = TypeVar("_T")
 
-# Comparing takes time that grows with the length, and nobody mistypes a name of this length.
+# Longer names are cut: comparing takes more time, and nobody mistypes a name of this length.
 _LONGEST = 64
 
 
 class UnknownExerciseError(LookupError):
-    """No exercise has this id; ``suggestion`` is the nearest that there is, or None."""
+    """No exercise has this id; ``suggestion`` is the nearest known id, or None."""
 
     def __init__(self, exercise_id: str, known: tuple[str, ...]) -> None:
         self.known = known
@@ -21,7 +21,7 @@ class UnknownExerciseError(LookupError):
 
 
 def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
-    """The exercise with this id, or what else stands for it. Raises UnknownExerciseError."""
+    """Return the value for an exercise's id. Raises UnknownExerciseError."""
     try:
         return catalogue[exercise_id]
     except KeyError:
@@ -29,6 +29,6 @@ def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """The known name that this one was probably meant to be, or None."""
+    """Return the known name that was probably meant, or None."""
     matches = difflib.get_close_matches(name[:_LONGEST].lower(), list(known), n=1, cutoff=0.5)
     return matches[0] if matches else None

@@ -1,4 +1,4 @@
-"""An exercise that is somewhere else: as much as one must know of it to hand answers in."""
+"""The outline of an exercise on a server: the data needed to submit answers to it."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from service.catalogue import Exercise, FeedbackLevel
 
 @dataclass(frozen=True, slots=True)
 class PartOutline:
-    """A part of an exercise that is somewhere else."""
+    """A part of an exercise on a server."""
 
     id: str
     title: str
@@ -16,7 +16,7 @@ class PartOutline:
 
 @dataclass(frozen=True, slots=True)
 class ExerciseOutline:
-    """An exercise that is somewhere else. ``feedback`` is the most that its reports tell there."""
+    """An exercise on a server. ``feedback`` is the highest feedback level there."""
 
     id: str
     version: str
@@ -26,5 +26,5 @@ class ExerciseOutline:
     parts: tuple[PartOutline, ...]
 
 
-# An exercise that is set; only one that is here can be graded here.
+# An assigned exercise; this program can grade only an Exercise, not an ExerciseOutline.
 SetExercise = Exercise | ExerciseOutline

@@ -1,7 +1,7 @@
-"""JSON from strangers: bounded, with the place of a mistake, and nothing silently dropped.
+"""Read untrusted JSON with limits, with the place of an error, and without dropping anything.
 
-A number that JSON or a float cannot hold (NaN, 1e999, a thousand digits) is handed on as its text:
-it stands in some student's cell, and the grading says so there while it grades every other cell.
+A number that JSON or a float cannot represent (NaN, 1e999, a thousand digits) becomes text: it is
+the entry of some cell, and the grader explains it there and grades every other cell.
 """
 
 import json
@@ -16,10 +16,10 @@ from typing import Final
 MAX_BODY_SIZE: Final = 256 * 1024
 # The deepest answer, a list of matrices, needs five levels.
 MAX_DEPTH: Final = 64
-# Seven link transforms have 36 lists; thousands of them only take time.
+# Seven link transforms have 36 lists; thousands would only take time.
 MAX_BRACKETS: Final = 5_000
-# Commas, also those in texts. Sixty-four submissions with all answers to an exercise with seven
-# joints have 13,000.
+# The most commas, including those in texts. Sixty-four submissions with all answers to an exercise
+# with seven joints have 13,000.
 MAX_COMMAS: Final = 20_000
 
 _DIGITS_OF_A_FLOAT: Final = 308
@@ -29,24 +29,24 @@ _LONE_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
 
 @dataclass(eq=False)
 class MalformedError(ValueError):
-    """A text that is not the JSON it should be; ``line`` and ``column`` count from 1."""
+    """The text is not valid JSON or exceeds a limit; ``line`` and ``column`` count from 1."""
 
     reason: str
     line: int | None = None
     column: int | None = None
 
     def __str__(self) -> str:
-        """The reason, with its place where there is one."""
+        """The reason, with its place if known."""
         if self.line is None:
             return self.reason
         return f"{self.reason} (line {self.line}, column {self.column})"
 
 
 def read_json(data: bytes) -> object:
-    """The value of a JSON text in UTF-8.
+    """Return the value of a JSON text in UTF-8. Lone surrogates become U+FFFD.
 
-    Raises MalformedError for anything else, for a key that stands twice in one object, and for
-    nesting deeper than ``MAX_DEPTH``. A lone surrogate becomes U+FFFD.
+    Raises MalformedError for anything else, for duplicate keys in an object, and for nesting deeper
+    than ``MAX_DEPTH``.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -64,14 +64,14 @@ def read_json(data: bytes) -> object:
         raise MalformedError(f"{error.msg}.", error.lineno, error.colno) from error
     except RecursionError:
         raise _too_deep() from None
-    # Few brackets cannot stand deep, which spares nearly every body the walk.
+    # Few brackets cannot be nested deep, so nearly every body skips the check of its values.
     if text.count("[") + text.count("{") > MAX_DEPTH and nested_deeper(value, MAX_DEPTH):
         raise _too_deep()
-    return _whole(value) if _SURROGATE_ESCAPE.search(text) else value
+    return _without_surrogates(value) if _SURROGATE_ESCAPE.search(text) else value
 
 
 def nested_deeper(value: object, depth: int) -> bool:
-    """Whether lists and objects stand in each other more than ``depth`` deep."""
+    """True if lists and objects are nested more than ``depth`` deep."""
     level: list[object] = [value]
     for _ in range(depth):
         level = list(chain.from_iterable(map(_inside, level)))
@@ -87,15 +87,15 @@ def _inside(value: object) -> Iterable[object]:
 
 
 def _too_deep() -> MalformedError:
-    return MalformedError(f"Lists and objects stand more than {MAX_DEPTH} deep in each other.")
+    return MalformedError(f"Lists and objects are nested more than {MAX_DEPTH} deep.")
 
 
 def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """An object; JSON leaves open which of two equal keys counts, so neither is chosen."""
+    """Return the object. Raises MalformedError for duplicate keys, which JSON leaves undefined."""
     result = dict(pairs)
     if len(result) != len(pairs):
         [(repeated, _)] = Counter(key for key, _ in pairs).most_common(1)
-        raise MalformedError(f"The key {json.dumps(repeated[:60])} stands twice in one object.")
+        raise MalformedError(f"The key {json.dumps(repeated[:60])} appears twice in one object.")
     return result
 
 
@@ -108,13 +108,15 @@ def _float(text: str) -> float | str:
     return value if math.isfinite(value) else text
 
 
-def _whole(value: object) -> object:
-    """The value with U+FFFD for each lone surrogate, which no encoding can write out again."""
+def _without_surrogates(value: object) -> object:
+    """Replace lone surrogates, which cannot be encoded, by U+FFFD."""
     if isinstance(value, str):
         return _LONE_SURROGATE.sub("\N{REPLACEMENT CHARACTER}", value)
     if isinstance(value, dict):
-        return {_whole(key): _whole(child) for key, child in value.items()}
-    return [_whole(child) for child in value] if isinstance(value, list) else value
+        return {
+            _without_surrogates(key): _without_surrogates(child) for key, child in value.items()
+        }
+    return [_without_surrogates(child) for child in value] if isinstance(value, list) else value
 
 
 _DECODER: Final = json.JSONDecoder(

@@ -18,5 +18,5 @@ from service.access.client_key import client_key
         ("no:address", "no:other", False),
     ],
 )
-def test_a_network_of_ipv6_is_one_client(one: str, other: str, same: bool) -> None:
+def test_the_addresses_of_an_ipv6_network_are_one_client(one: str, other: str, same: bool) -> None:
     assert (client_key(one) == client_key(other)) is same

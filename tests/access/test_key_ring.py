@@ -1,4 +1,4 @@
-"""Keys in memory and in the database: what is kept, for how long, and what becomes of failures."""
+"""Memoized keys, their lifetime, and failures of the database."""
 
 import asyncio
 import threading
@@ -22,8 +22,8 @@ from service.attempts.storage.tables import keys
 from tests.guards import ANSWER
 
 SECRET = Secret("0123456789abcdef" * 4)
-# So long a ring keeps what it has found, here.
-KEPT = 0.05
+# How long the key rings of these tests memoize keys (seconds).
+MEMOIZED_SECONDS = 0.05
 
 
 @pytest.fixture
@@ -49,7 +49,7 @@ def asked(ring: KeyRing, *credentials: str) -> list[Caller]:
     return asyncio.run(ask())
 
 
-def test_of_a_key_only_a_keyed_hash_is_kept(engine: Engine, tmp_path: Path) -> None:
+def test_only_a_keyed_hash_of_a_key_is_stored(engine: Engine, tmp_path: Path) -> None:
     key, known = made(engine, Scope.RECORD)
     with engine.connect() as connection:
         [row] = connection.execute(select(keys)).all()
@@ -59,14 +59,14 @@ def test_of_a_key_only_a_keyed_hash_is_kept(engine: Engine, tmp_path: Path) -> N
     assert key[4:36].encode() not in stored
 
 
-def test_a_first_key_and_a_revoked_one_are_known_within_seconds(engine: Engine) -> None:
-    ring = KeyRing(engine, SECRET, KEPT)
+def test_new_and_revoked_keys_take_effect_within_seconds(engine: Engine) -> None:
+    ring = KeyRing(engine, SECRET, MEMOIZED_SECONDS)
     assert not asyncio.run(ring.are_needed())
     key, known = made(engine)
 
     async def until_needed() -> None:
         while not await ring.are_needed():
-            await asyncio.sleep(KEPT)
+            await asyncio.sleep(MEMOIZED_SECONDS)
 
     asyncio.run(until_needed())
     assert asked(ring, key, key) == 2 * [Caller(frozenset({Scope.GRADE}), key_id=known.id)]
@@ -77,16 +77,16 @@ def test_a_first_key_and_a_revoked_one_are_known_within_seconds(engine: Engine) 
     async def until_refused() -> None:
         while True:
             await ring.caller(key)
-            await asyncio.sleep(KEPT)
+            await asyncio.sleep(MEMOIZED_SECONDS)
 
     with pytest.raises(CredentialError, match="revoked"):
         asyncio.run(until_refused())
-    # A key that is worth nothing any more keeps the service closed.
+    # The service stays closed even if all its keys are revoked.
     assert KeyRing(engine, SECRET).has_keys
     ring.close()
 
 
-def test_a_token_ends_with_the_key_that_made_it(engine: Engine) -> None:
+def test_a_token_is_invalid_after_its_key_is_revoked(engine: Engine) -> None:
     _, known = made(engine, Scope.RECORD, Scope.TUTOR)
     ring = KeyRing(engine, SECRET, 0.0)
     learner = Caller(known.scopes | {Scope.GRADE}, frozenset({"scara"}), "ada", known.id)
@@ -135,7 +135,7 @@ def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
 
 
 def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
-    """The callers of these keys, asked in the midst of keys that nobody has made."""
+    """Look up these keys among invented ones; return their callers."""
 
     async def flood() -> list[BaseException | Caller]:
         before, after = ((new_key_text() for _ in range(invented // 2)) for _ in range(2))
@@ -149,7 +149,7 @@ def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
     return [each for each in told if isinstance(each, Caller)]
 
 
-def test_a_good_key_is_found_among_any_number_of_invented_ones(engine: Engine) -> None:
+def test_a_valid_key_is_found_among_many_invented_ones(engine: Engine) -> None:
     known, new = made(engine), made(engine)
     ring = KeyRing(engine, SECRET, 0.0)
     asked(ring, known[0])
@@ -163,12 +163,12 @@ def test_a_good_key_is_found_among_any_number_of_invented_ones(engine: Engine) -
     callers = flooded(ring, 2000, known[0], new[0])
     event.remove(engine, "before_cursor_execute", count)
     assert [each.key_id for each in callers] == [known[1].id, new[1].id]
-    # Many share one: 128 of the invented ones, then a note of the last use of each key.
+    # One statement for 128 invented keys, and one to note the use of each real key.
     assert statements < 40
     ring.close()
 
 
-def test_a_known_key_waits_for_no_invented_one(
+def test_a_known_key_does_not_wait_for_invented_ones(
     engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     key, known = made(engine)
@@ -199,9 +199,9 @@ def test_a_known_key_waits_for_no_invented_one(
     ring.close()
 
 
-def test_an_unknown_key_is_asked_about_again_within_seconds(engine: Engine) -> None:
+def test_an_unknown_key_is_looked_up_again_within_seconds(engine: Engine) -> None:
     key, now = new_key_text(), datetime.now(UTC)
-    ring = KeyRing(engine, SECRET, KEPT)
+    ring = KeyRing(engine, SECRET, MEMOIZED_SECONDS)
     with pytest.raises(CredentialError):
         asked(ring, key)
     digest = SECRET.key_digest(key)
@@ -214,13 +214,13 @@ def test_an_unknown_key_is_asked_about_again_within_seconds(engine: Engine) -> N
         while True:
             with suppress(CredentialError):
                 return await ring.caller(key)
-            await asyncio.sleep(KEPT)
+            await asyncio.sleep(MEMOIZED_SECONDS)
 
     assert asyncio.run(until_known()).scopes == {Scope.GRADE}
     ring.close()
 
 
-def test_one_wrong_key_is_looked_up_once_in_a_while(engine: Engine) -> None:
+def test_a_repeated_wrong_key_is_looked_up_rarely(engine: Engine) -> None:
     made(engine)
     ring = KeyRing(engine, SECRET, 60.0)
     key, statements = new_key_text(), []
@@ -228,7 +228,7 @@ def test_one_wrong_key_is_looked_up_once_in_a_while(engine: Engine) -> None:
 
     async def again_and_again() -> None:
         for _ in range(50):
-            with pytest.raises(CredentialError, match="No key"):
+            with pytest.raises(CredentialError, match="no such key"):
                 await ring.caller(key)
 
     asyncio.run(again_and_again())
@@ -236,10 +236,10 @@ def test_one_wrong_key_is_looked_up_once_in_a_while(engine: Engine) -> None:
     ring.close()
 
 
-def test_too_many_at_once_are_no_failure_of_the_database(
+def test_too_many_lookups_raise_a_busy_error(
     engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.access.key_lookups.WAITING", 10)
+    monkeypatch.setattr("service.access.key_lookups.MAX_WAITING", 10)
     key, known = made(engine)
     ring = KeyRing(engine, SECRET, 0.0)
     asked(ring, key)
@@ -255,7 +255,7 @@ def test_too_many_at_once_are_no_failure_of_the_database(
     ring.close()
 
 
-def test_a_client_that_goes_away_costs_no_other_its_answer(engine: Engine) -> None:
+def test_a_cancelled_lookup_does_not_affect_others(engine: Engine) -> None:
     key, known = made(engine)
     ring = KeyRing(engine, SECRET, 0.0)
 
@@ -269,13 +269,13 @@ def test_a_client_that_goes_away_costs_no_other_its_answer(engine: Engine) -> No
     ring.close()
 
 
-def test_a_database_that_does_not_react_is_given_up(
+def test_a_lookup_in_a_silent_database_times_out(
     engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(key_lookups, "PATIENCE", 0.05)
+    monkeypatch.setattr(key_lookups, "TIMEOUT", 0.05)
     reacts = threading.Event()
     key, _ = made(engine, Scope.GRADE)
-    ring = KeyRing(engine, SECRET, KEPT)
+    ring = KeyRing(engine, SECRET, MEMOIZED_SECONDS)
 
     def silent(*_: object) -> None:
         reacts.wait(ANSWER)

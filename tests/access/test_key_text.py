@@ -12,7 +12,7 @@ def test_a_key_is_random_and_spelt_right() -> None:
     assert all(map(is_spelt_right, keys))
 
 
-def test_every_slip_of_a_character_is_seen() -> None:
+def test_every_wrong_or_swapped_character_is_detected() -> None:
     key = new_key_text()
     for i in range(len(key)):
         for other in "a0Z_θ ":
@@ -22,5 +22,5 @@ def test_every_slip_of_a_character_is_seen() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "dhg_", "dhg_" + 38 * "0", 42 * "a", "a.b.c"])
-def test_what_is_no_key_is_not_taken_for_one(text: str) -> None:
+def test_other_texts_are_not_keys(text: str) -> None:
     assert not is_spelt_right(text)

@@ -1,4 +1,4 @@
-"""How often anybody may ask, counted in memory and in a real Redis."""
+"""Rate limits, counted in memory and in a real Redis."""
 
 import asyncio
 import subprocess
@@ -34,7 +34,7 @@ def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
 
 
 def waits(rates: Rates, *callers: tuple[Caller, str]) -> list[bool]:
-    """Whether each of these has to wait."""
+    """True for each request that has to wait."""
 
     async def ask() -> list[bool]:
         return [await rates.seconds_to_wait(*each) > 0 for each in callers]
@@ -42,7 +42,7 @@ def waits(rates: Rates, *callers: tuple[Caller, str]) -> list[bool]:
     return asyncio.run(ask())
 
 
-def test_keys_and_addresses_are_counted_apart(store: str) -> None:
+def test_keys_and_addresses_are_counted_separately(store: str) -> None:
     rates = Rates("2/day", "1/day;3/month", store)
     here, there = (NOBODY, "10.0.0.1"), (NOBODY, "10.0.0.2")
     assert waits(rates, here, here, there) == [False, True, False]
@@ -50,7 +50,7 @@ def test_keys_and_addresses_are_counted_apart(store: str) -> None:
     assert waits(rates, course, course, course, ada, grace) == [False, False, True, False, False]
     seconds = asyncio.run(rates.seconds_to_wait(*course))
     assert 0 < seconds <= 2 * 24 * 3600
-    # Those who share a Redis count together.
+    # Processes that share a Redis count together.
     other = Rates("2/day", "1/day;3/month", store)
     assert waits(other, course) == [store.startswith("redis")]
     rates.close()
@@ -67,19 +67,19 @@ def test_all_addresses_of_an_ipv6_network_count_as_one(store: str) -> None:
     rates.close()
 
 
-def test_without_its_store_each_counts_for_itself(caplog: pytest.LogCaptureFixture) -> None:
+def test_without_redis_each_process_counts_on_its_own(caplog: pytest.LogCaptureFixture) -> None:
     rates = Rates("", "1/day", "redis+unix:///nowhere")
     assert waits(rates, (NOBODY, "a"), (NOBODY, "a"), (COURSE, "a")) == [False, True, False]
-    assert "does not answer" in caplog.text
+    assert "does not respond" in caplog.text
     rates.close()
 
 
 @pytest.mark.parametrize("rate", ["often", "1", "1/fortnight", ""])
-def test_what_is_no_rate_is_refused(rate: str) -> None:
-    with pytest.raises(UnusableRatesError, match="is no rate"):
+def test_an_invalid_rate_is_refused(rate: str) -> None:
+    with pytest.raises(UnusableRatesError, match="is not a rate"):
         rates_in(rate)
 
 
-def test_what_is_no_store_is_refused() -> None:
-    with pytest.raises(UnusableRatesError, match="is no store"):
+def test_an_invalid_store_is_refused() -> None:
+    with pytest.raises(UnusableRatesError, match="is not a store"):
         Rates("1/day", "", "somewhere://here")

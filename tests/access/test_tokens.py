@@ -1,4 +1,4 @@
-"""Tokens of any shape, signed with the real secret: they are read, or refused with a reason."""
+"""Tokens with valid signatures and any content are read, or refused with a reason."""
 
 import base64
 import hmac
@@ -25,14 +25,14 @@ CLAIMS: Final[Mapping[str, Any]] = {
     "exp": int(time.time()) + 3600,
     "exercises": ["scara"],
 }
-# Each at the place of each claim, and of each field of the header.
+# Values for each claim and each field of the header.
 ODD: Final[tuple[Any, ...]] = (
     None, True, False, 0, -1, 1e300, 10**400, 10**18, "", " ", "x", "\0", "ada\0", "\ud800",
     "x" * 9000, "1", [], ["ada"], [[]], [None, 1, {}], {}, {"a": 1}, {"$ref": "#"}, [["scara"]],
     "HS256", "none", "RS256", "tutor", "grade root", "0011AAFF", "0011aaff ", "1' OR 1=1 --",
     "99999999999999999999",
 )  # fmt: skip
-# What json.dumps does not write by itself.
+# JSON values, valid and invalid, that json.dumps does not write.
 RAW: Final = (
     b"NaN", b"Infinity", b"-Infinity", b"1e999", b"-0", b"1" * 5000, b"[" * 5000, b"nul", b"\xff",
     b'"\\ud800"', b"0x10", b"01", b"1.0", b"'x'",
@@ -44,7 +44,7 @@ def segment(content: bytes) -> bytes:
 
 
 def token(header: bytes, claims: bytes) -> str:
-    """A token signed with the real secret (RFC 7515, 5.1), without the code under test."""
+    """Sign a token with the real secret (RFC 7515, 5.1), without the code under test."""
     signing_input = segment(header) + b"." + segment(claims)
     signature = hmac.digest(SECRET, signing_input, "sha256")
     return (signing_input + b"." + segment(signature)).decode()
@@ -55,7 +55,7 @@ def text(value: object) -> bytes:
 
 
 def with_raw(fields: Mapping[str, Any], name: str, raw: bytes) -> bytes:
-    """The fields as JSON, in which one has this text as its value."""
+    """The fields as JSON, with ``raw`` as the value of one field."""
     return text({**fields, name: "@@"}).replace(b'"@@"', raw)
 
 
@@ -66,7 +66,7 @@ def outcome(credential: str) -> LearnerToken | str:
         return str(error)
 
 
-def test_a_token_of_this_service_says_what_was_signed() -> None:
+def test_a_signed_token_is_verified() -> None:
     told = LearnerToken("0011aaff", "ada", frozenset({Scope.RECORD}), frozenset({"scara"}))
     until = datetime.now(UTC) + timedelta(minutes=1)
     assert verified(signed(told, until, SECRET), SECRET) == told
@@ -74,11 +74,11 @@ def test_a_token_of_this_service_says_what_was_signed() -> None:
         scopes=frozenset({Scope.GRADE, Scope.RECORD})
     )
     assert outcome(signed(told, until - timedelta(minutes=2), SECRET)) == "The token has expired."
-    assert "no token" in str(outcome(token(text(HEADER), text(CLAIMS))[:-2] + "AA"))
+    assert "nor a token" in str(outcome(token(text(HEADER), text(CLAIMS))[:-2] + "AA"))
 
 
 @pytest.mark.parametrize("claim", [*CLAIMS, "nbf", "iat", "aud", "jti", "other", "\ud800"])
-def test_a_claim_of_odd_shape_is_refused_by_its_name(claim: str) -> None:
+def test_an_unexpected_claim_is_refused_and_named(claim: str) -> None:
     fits: Callable[[Any], bool] = {
         "sub": lambda value: value in ("x", "1", "HS256", "none", "RS256", "tutor", "grade root",
                                        "0011AAFF", "1' OR 1=1 --", "99999999999999999999"),
@@ -95,7 +95,7 @@ def test_a_claim_of_odd_shape_is_refused_by_its_name(claim: str) -> None:
             assert found == "The token has expired."
         else:
             assert isinstance(found, str), value
-            # Half a surrogate pair is no JSON.
+            # A lone surrogate is not valid JSON.
             assert (named if value != "\ud800" else "others") in found, value
     for raw in RAW:
         found = outcome(token(text(HEADER), with_raw(CLAIMS, claim, raw)))
@@ -106,7 +106,7 @@ def test_a_claim_of_odd_shape_is_refused_by_its_name(claim: str) -> None:
         assert isinstance(found, str) != (claim == "exercises")
 
 
-def test_claims_that_are_no_object_are_refused() -> None:
+def test_claims_that_are_not_an_object_are_refused() -> None:
     for value in ODD:
         assert isinstance(outcome(token(text(HEADER), text(value))), str)
     for raw in (*RAW, b"", b"\0", text(CLAIMS) + b"x", text(CLAIMS)[:-1], b"\xef\xbb\xbf{}"):
@@ -114,19 +114,19 @@ def test_claims_that_are_no_object_are_refused() -> None:
 
 
 @pytest.mark.parametrize("field", ["alg", "typ", "kid", "crit", "b64", "zip", "jwk", "x5c", "cty"])
-def test_a_header_of_odd_shape_is_no_failure(field: str) -> None:
+def test_an_unexpected_header_causes_no_exception(field: str) -> None:
     headers = [text({**HEADER, field: value}) for value in ODD]
     headers += [with_raw(HEADER, field, raw) for raw in RAW]
     headers += [text({**HEADER, "b64": False, "crit": value}) for value in ODD]
     headers += [*map(text, ODD), *RAW, b"", b"{}"]
     for header in headers:
         found = outcome(token(header, text(CLAIMS)))
-        # Only the one algorithm counts.
+        # Only one algorithm is accepted.
         if field == "alg" and isinstance(found, LearnerToken):
             assert json.loads(header)["alg"] == "HS256"
 
 
-def test_text_that_is_no_token_is_refused() -> None:
+def test_a_damaged_token_is_refused() -> None:
     right = token(text(HEADER), text(CLAIMS))
     draw = random.Random(8)
     for _ in range(2000):
@@ -135,7 +135,7 @@ def test_text_that_is_no_token_is_refused() -> None:
             place = draw.randrange(len(spoilt))
             spoilt[place] = draw.choice(".=-_ \0\xff/+aZ09")
         if "".join(spoilt) != right:
-            # The last character of a signature holds two bits that say nothing.
+            # Two bits of the last character of a signature are unused.
             found = outcome("".join(spoilt))
             assert isinstance(found, str) or spoilt[:-1] == list(right)[:-1]
     for odd in ("", ".", "..", "...", "a.b", "\xff.\xff.\xff", "." * 9000, "e30.e30."):

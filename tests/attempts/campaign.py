@@ -1,7 +1,7 @@
 """Measure the store with many attempts: ``python -m tests.attempts.campaign [--count N]``.
 
-Prints the time of a page, of the statistics of an exercise and of a regrade. What recording costs a
-POST is a line of ``make bench``.
+Prints the time of a page, of the statistics of an exercise and of a regrade. The cost of recording
+is a line of ``make bench``.
 """
 
 import argparse
@@ -30,7 +30,7 @@ from service.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_f
 from tests.attempts.recorded import NOON, new_attempt
 from tests.benchmarks.timing import floor_seconds
 
-# Entries of a class: most are right, each cell has its common slips.
+# The entries of a class for each cell: the right one first, then common slips.
 CELLS = (
     ("a1", "a1", "0", "d1"), ("0", "0", "0", "180deg"), ("0", "0", "a1"), ("θ1", "θ1", "-θ1", "0"),
     ("a2", "a2", "a1", "0"), ("180deg", "0", "-180deg", "90deg"), ("0", "0", "d2"), ("θ2", "-θ2"),
@@ -52,7 +52,7 @@ def table(dice: random.Random) -> str:
 
 
 def spelled(text: str, i: int) -> str:
-    """The table with its blanks doubled where ``i`` has a 1: another text of the same meaning."""
+    """Double the blank at each bit of ``i`` that is 1: a different text with the same meaning."""
     first, *others = text.split(" ")
     return first + "".join(" " * (1 + (i >> k & 1)) + each for k, each in enumerate(others))
 
@@ -60,14 +60,14 @@ def spelled(text: str, i: int) -> str:
 def fill(
     store: AttemptStore, exercise: Exercise, count: int, *, no_two_alike: bool = False
 ) -> None:
-    """Record ``count`` attempts, as a class sends them or no two alike."""
+    """Record ``count`` attempts, like those of a class or all different."""
     dice = random.Random(1)
     tables = [table(dice) for _ in range(count if no_two_alike else min(TABLES, count))]
     if no_two_alike:
         tables = [spelled(each, i) for i, each in enumerate(tables)]
     graded = [new_attempt(exercise, "l", each) for each in tables]
 
-    # In all of a row that is not its own.
+    # The columns that many rows share.
     texts = [{name: getattr(new, name) for name in new.__dataclass_fields__} for new, _ in graded]
 
     def row(i: int, which: int, outcome: int) -> dict[str, object]:
@@ -89,7 +89,7 @@ def fill(
 
 
 def _insert(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write the rows, to PostgreSQL in the way that is made for millions."""
+    """Insert the rows; PostgreSQL has COPY for millions of them."""
     if connection.dialect.name != "postgresql":
         connection.execute(insert(attempts), rows)
         return
@@ -101,7 +101,7 @@ def _insert(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
 
 
 def timed(what: str, work: Callable[[], object], most: float) -> None:
-    """Print the least milliseconds of five, of the clock and of the processor."""
+    """Print the least wall time and the least processor time of five runs (ms)."""
     clock, processor = [], []
     for _ in range(5):
         begun, used = time.perf_counter(), time.process_time()
@@ -130,7 +130,7 @@ def read(store: AttemptStore) -> None:
 
 
 def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:
-    """Time the regrade of so many attempts in this process."""
+    """Time the regrade of ``most`` attempts in this process."""
     regrading = Regrading(replace(exercise, version="corrected"), FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
     done, begun, used = 0, time.perf_counter(), time.process_time()

@@ -24,7 +24,7 @@ def postgresql() -> Iterator[Any]:
 
 @pytest.fixture(scope="session")
 def killable() -> Any:
-    """Makes processes that begin at once; one of its own imports what they need, for all."""
+    """A class of processes that start quickly: a fork server has imported the service."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(
         ["service.attempts.regrades.outdated", "service.attempts.store", "service.server.start"]
@@ -41,19 +41,19 @@ def file_with_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture
 def sqlite_url(file_with_tables: str, tmp_path: Path) -> str:
-    """A database of SQLite with its tables, made by the migrations."""
+    """The path of an SQLite database with migrated, empty tables."""
     return str(shutil.copy(file_with_tables, new_file(tmp_path)))
 
 
 @pytest.fixture
 def postgresql_url(postgresql: Any) -> str:
-    """The same in PostgreSQL."""
+    """The URL of a PostgreSQL database with migrated, empty tables."""
     return new_database(postgresql, f"attempts{next(_number)}", TEMPLATE)
 
 
 @pytest.fixture(params=KINDS)
 def database_url(request: pytest.FixtureRequest) -> str:
-    """The same of each kind."""
+    """The URL of a database with migrated, empty tables, of each kind in turn."""
     url: str = request.getfixturevalue(f"{request.param}_url")
     return url
 

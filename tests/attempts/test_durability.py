@@ -1,4 +1,4 @@
-"""An acknowledged attempt survives the death of the process that took it, and is recorded once."""
+"""Acknowledged attempts survive when the process is killed, and are recorded exactly once."""
 
 import asyncio
 import os
@@ -35,10 +35,10 @@ TABLE = "a1 0 0 θ1\na2 {} 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 
 
 class Acknowledged:
-    """Posts attempts from several threads while there is a replica; keeps what it was told.
+    """Posts attempts from several threads until all replicas are dead; stores the answered ids.
 
-    Where one has died, a request is sent again to the next, with the same key; every fifth is sent
-    to all of them.
+    If a replica is dead, the request is sent to the next one with the same key. Every fifth request
+    is sent to all of them.
     """
 
     def __init__(self, ports: Sequence[int]) -> None:
@@ -76,7 +76,7 @@ class Acknowledged:
 
 
 def _serve(url: str, log: Path) -> None:
-    """What ``dh-grader serve`` does, with its log in a file."""
+    """Run the service like ``dh-grader serve``, with its log in a file."""
     output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(output, 1)
     os.dup2(output, 2)
@@ -84,7 +84,7 @@ def _serve(url: str, log: Path) -> None:
 
 
 def _port(process: BaseProcess, log: Path) -> int:
-    """Where the server listens, as soon as it says so."""
+    """Wait until the log names the server's port; return it."""
     while True:
         alive = process.is_alive()
         text = log.read_text(encoding="utf-8") if log.exists() else ""
@@ -97,9 +97,9 @@ def _port(process: BaseProcess, log: Path) -> int:
 def killed_at_random(
     url: str, folder: Path, killable: Any, replicas: int, seed: int, most: float
 ) -> None:
-    """Kill one replica and then the others; all that was acknowledged must be there, once.
+    """Kill one replica after the other; assert that acknowledged attempts are recorded once.
 
-    Each lives up to ``most`` seconds after the first answers, or after the death of another.
+    After each kill, wait for an answer of the others and up to ``most`` seconds more.
     """
     dice = random.Random(seed)
     logs = [folder / f"log{i}" for i in range(replicas)]
@@ -119,7 +119,7 @@ def killed_at_random(
 
 
 def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
-    """The database has all of these keys with these ids, and few besides."""
+    """Assert that the database has all these keys with these ids, and few others."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
@@ -128,12 +128,12 @@ def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
     assert acknowledged
     assert {key: recorded.get(key) for key in acknowledged} == acknowledged
     assert len(rows) == len(recorded)
-    # At most the request that each client had under way was recorded without being acknowledged.
+    # For each client, at most one request was recorded without being acknowledged.
     assert len(recorded) - len(acknowledged) <= CLIENTS
 
 
 def _record(url: str, exercise: Exercise, told: Connection) -> None:
-    """Records attempts by several at once, and tells of each that is acknowledged, for ever."""
+    """Record attempts of several clients forever; send each acknowledged one through the pipe."""
     new, outcome = new_attempt(exercise, "ada", RIGHT, None)
     store = AttemptStore.open(url)
     store.start()
@@ -152,7 +152,7 @@ def _record(url: str, exercise: Exercise, told: Connection) -> None:
     asyncio.run(clients())
 
 
-def test_what_was_acknowledged_is_in_the_file_once(
+def test_acknowledged_attempts_are_in_the_file_once(
     sqlite_url: str, catalogue: Mapping[str, Exercise], killable: Any
 ) -> None:
     told, telling = Pipe(duplex=False)
@@ -160,7 +160,7 @@ def test_what_was_acknowledged_is_in_the_file_once(
     process.start()
     telling.close()
     acknowledged: dict[str, str] = {}
-    # The end may come in the midst of a message.
+    # The process may be killed in the middle of a message.
     with suppress(EOFError, OSError):
         while True:
             key, attempt = told.recv()
@@ -171,7 +171,7 @@ def test_what_was_acknowledged_is_in_the_file_once(
     assert_recorded_once(sqlite_url, acknowledged)
 
 
-def test_what_one_of_two_replicas_acknowledged_is_there_once(
+def test_attempts_acknowledged_by_one_of_two_replicas_are_recorded_once(
     postgresql_url: str, tmp_path: Path, killable: Any
 ) -> None:
     killed_at_random(postgresql_url, tmp_path, killable, 2, 1, 0.2)
@@ -182,7 +182,7 @@ def test_what_one_of_two_replicas_acknowledged_is_there_once(
 @pytest.mark.parametrize(
     ("kind", "replicas"), [("sqlite", 1), ("sqlite", 2), ("postgresql", 1), ("postgresql", 2)]
 )
-def test_every_one_of_many_runs(
+def test_acknowledged_attempts_survive_kills_at_random_moments(
     request: pytest.FixtureRequest,
     tmp_path: Path,
     killable: Any,

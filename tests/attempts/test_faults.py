@@ -1,4 +1,4 @@
-"""The store in trouble: locked, full or gone, it says so in time and works again afterwards."""
+"""A locked, full or missing database is reported in time and works again afterwards."""
 
 import asyncio
 import shutil
@@ -23,7 +23,7 @@ def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
     return asyncio.run(record_once(store, new, outcome)) is not None
 
 
-def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
+def test_a_locked_file_is_reported_after_a_wait_and_works_once_unlocked(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.attempts.storage.database._LOCK_WAIT", 0.5)
@@ -43,7 +43,7 @@ def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
 
 
 @pytest.mark.parametrize("replaced", [False, True])
-def test_a_file_that_is_gone_takes_nothing(
+def test_a_deleted_or_replaced_file_takes_no_attempts(
     sqlite_url: str, catalogue: Mapping[str, Exercise], replaced: bool
 ) -> None:
     store = AttemptStore.open(sqlite_url)
@@ -65,7 +65,7 @@ def test_a_file_that_is_gone_takes_nothing(
     store.close()
 
 
-def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
+def test_a_full_disk_is_reported_and_loses_no_recorded_attempt(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     scara = catalogue["scara"]

@@ -1,4 +1,4 @@
-"""Migrations that are killed, meet each other, or meet another version of the program."""
+"""Migrations that are killed, run concurrently, or run beside another version of the program."""
 
 import multiprocessing
 import os
@@ -28,7 +28,7 @@ from tests.attempts.test_upgrade import FIXED, INSERT, REPORT, ROWS, make_old
 from tests.guards import ANSWER
 
 REVISIONS = ("0001", "0002", "0003")
-# The statements before which a migration from the oldest revision is killed; it has over 25.
+# The statements before which a migration from the oldest revision is killed, of more than 25.
 SOME = (2, 15, 25)
 EVERY = range(1, 40)
 _number = count()
@@ -38,7 +38,7 @@ OldDatabase = Callable[[str], str]
 
 @pytest.fixture(params=KINDS)
 def old(request: pytest.FixtureRequest, tmp_path: Path) -> OldDatabase:
-    """Makes databases of a revision, with two attempts."""
+    """A function that creates a database of a revision, with two attempts."""
     if request.param == "sqlite":
 
         @cache
@@ -60,7 +60,7 @@ def old(request: pytest.FixtureRequest, tmp_path: Path) -> OldDatabase:
 
 
 def _open(url: str, killed_at: int, barrier: Any = None) -> None:
-    """Open the database, and so migrate it; die before a statement or the commit."""
+    """Migrate the database; kill this process before statement or commit no. ``killed_at``."""
     steps = count(1)
 
     def step(*_: object) -> None:
@@ -75,7 +75,7 @@ def _open(url: str, killed_at: int, barrier: Any = None) -> None:
 
 
 def check_whole(url: str) -> None:
-    """Open the database; it has all tables as they are today, and the attempts as they were."""
+    """Open the database; assert that it has today's tables and the old attempts."""
     engine = open_database(url)
     with engine.connect() as connection:
         found = inspect(connection)
@@ -95,7 +95,7 @@ def check_whole(url: str) -> None:
 
 
 def kill_before(url: str, statement: int, killable: Any) -> bool:
-    """Have a process migrate that dies before a statement; False where it has none so late."""
+    """Migrate in a process that dies before a statement; return False if there are fewer."""
     process = killable(target=_open, args=(url, statement))
     process.start()
     process.join(ANSWER)
@@ -114,7 +114,7 @@ def test_a_killed_migration_is_finished_by_the_next_start(old: OldDatabase, kill
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("revision", REVISIONS)
-def test_a_migration_that_is_killed_before_any_statement(
+def test_a_migration_killed_before_any_statement_is_finished_later(
     old: OldDatabase, killable: Any, revision: str
 ) -> None:
     for statement in EVERY:
@@ -127,7 +127,7 @@ def test_a_migration_that_is_killed_before_any_statement(
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("revision", REVISIONS)
-def test_a_migration_that_is_killed_at_any_moment(
+def test_a_migration_killed_at_any_moment_is_finished_later(
     old: OldDatabase, killable: Any, revision: str
 ) -> None:
     dice = random.Random(revision)
@@ -156,14 +156,14 @@ def test_several_processes_migrate_at_once(old: OldDatabase, killable: Any) -> N
     check_whole(url)
 
 
-def test_an_older_program_records_on_while_a_newer_one_migrates(
+def test_an_older_program_goes_on_recording_while_a_newer_one_migrates(
     old: OldDatabase, catalogue: Mapping[str, Exercise]
 ) -> None:
     url = old("0001")
     told: list[str] = []
     failures: list[Exception] = []
     over = threading.Event()
-    # An engine that knows nothing of newer tables: its statement is that of the first version.
+    # This engine does not migrate; its INSERT is that of the first version.
     engine = _bare(url)
     insert = INSERT.format(zone="" if engine.dialect.name == "sqlite" else "+00")
 
@@ -175,11 +175,11 @@ def test_an_older_program_records_on_while_a_newer_one_migrates(
                     connection = connection.execution_options(writes=True)
                     with connection.begin():
                         connection.execute(text(insert), row)
-            except Exception as error:  # noqa: BLE001 - whatever stops it, the test says so
+            except Exception as error:  # noqa: BLE001 - the test reports any error
                 failures.append(error)
                 return
             told.append(row["id"])
-            # A file is locked by one at a time, and not in turn.
+            # SQLite's lock is not fair: leave some time for the other process.
             if over.wait(0.01):
                 return
 

@@ -26,7 +26,7 @@ def test_the_last_attempt_is_taken_and_no_further_one() -> None:
     assert refusal(rules, 3, NOON) == "no-attempts-left"
 
 
-def test_opening_and_due_are_themselves_in_time() -> None:
+def test_attempts_exactly_at_opening_and_due_are_in_time() -> None:
     rules = AttemptsSpec(opens=NOON, due=NOON + HOUR)
     assert refusal(rules, 0, NOON - timedelta(microseconds=1)) == "not-open"
     assert ruling(rules, 0, NOON).worth == 1
@@ -48,7 +48,7 @@ def test_moments_of_other_zones_are_compared_as_moments() -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"opens": datetime(2026, 11, 22, 12)},  # noqa: DTZ001 - the fault is that it has no zone
+        {"opens": datetime(2026, 11, 22, 12)},  # noqa: DTZ001 - the missing zone is the fault
         {"closes": NOON},
         {"due": NOON, "closes": NOON - HOUR},
         {"limit": 0},

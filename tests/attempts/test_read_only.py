@@ -30,7 +30,7 @@ STRANGER = 65534
 def store_and_switch(
     request: pytest.FixtureRequest,
 ) -> Iterator[tuple[AttemptStore, Callable[[str], None]]]:
-    """A store, and what makes its database read-only (``on``) or not (``off``)."""
+    """A store, and a function that makes its database read-only ("on") or writable ("off")."""
     url = request.getfixturevalue(f"{request.param}_url")
     store = AttemptStore.open(url)
     store.start()
@@ -54,14 +54,14 @@ def store_and_switch(
                 ALTER DATABASE {name} SET default_transaction_read_only = {to};
                 SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = '{name}';
             """)
-            # As after the server's own restart: the next one finds its connection closed.
+            # Drop the connections that the server has closed.
             store.engine.dispose()
 
     yield store, switch
     store.close()
 
 
-def test_grading_and_reading_go_on_and_recording_says_what_is_wrong(
+def test_a_read_only_database_stops_only_recording(
     store_and_switch: tuple[AttemptStore, Callable[[str], None]],
     catalogue: Mapping[str, Exercise],
     caplog: pytest.LogCaptureFixture,
@@ -102,7 +102,7 @@ def _read_only(store: AttemptStore) -> str:
 
 @contextmanager
 def without_permission(path: Path) -> Iterator[None]:
-    """Nobody may write there, not even this process, which may be root's."""
+    """Remove write permission from the path, and root's rights from this process."""
     path.chmod(0o555)
     is_root = os.geteuid() == 0
     if is_root:
@@ -117,8 +117,8 @@ def without_permission(path: Path) -> Iterator[None]:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such permissions")
 @pytest.mark.parametrize("whole_folder", [True, False])
-def test_a_file_without_write_permission_is_told_at_the_start(whole_folder: bool) -> None:
-    # Any user may look into it, unlike the folders of pytest.
+def test_a_file_without_write_permission_is_reported_at_startup(whole_folder: bool) -> None:
+    # Other users can read this folder, unlike the folders of pytest.
     folder = Path(tempfile.mkdtemp(dir="/tmp"))
     try:
         file = folder / "attempts.db"

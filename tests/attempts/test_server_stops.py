@@ -1,4 +1,4 @@
-"""PostgreSQL goes away in the midst of recording: nothing is lost, and the answers say so."""
+"""PostgreSQL stops during recording: no attempt is lost, and clients get a clear answer."""
 
 import asyncio
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ ATTEMPTS = "/v1/exercises/scara/attempts"
 
 
 class Course:
-    """Learners who send attempts, each again under its key until it is recorded."""
+    """Learners who repeat each attempt under its key until it is recorded."""
 
     def __init__(self, client: httpx.AsyncClient) -> None:
         self._client = client
@@ -50,13 +50,13 @@ class Course:
         assert told == (503, "5", "urn:dh-grader:problem:store-down")
 
     async def more(self) -> None:
-        """Return as soon as each of them has got on."""
+        """Wait until some more attempts are recorded."""
         known = len(self.ids)
         while len(self.ids) < known + 2 * CLIENTS:
             await asyncio.sleep(0.01)
 
     async def survive(self, server: Any, how: str) -> None:
-        """Have the server stop and start again while the learners go on."""
+        """Stop and start the server while learners send attempts."""
         await self.more()
         await asyncio.to_thread(stop, server, how)
         known = self.refused
@@ -70,13 +70,13 @@ class Course:
         assert (await self._client.get("/readyz")).status_code == 200
 
 
-def test_every_acknowledged_attempt_is_there_once_however_the_server_stops(
+def test_every_acknowledged_attempt_is_recorded_once_however_the_server_stops(
     postgresql: Any,
     postgresql_url: str,
     catalogue: Mapping[str, Exercise],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("service.attempts.storage.writer._PATIENCE", 0.5)
+    monkeypatch.setattr("service.attempts.storage.writer._TIMEOUT", 0.5)
     store = AttemptStore.open(postgresql_url)
     store.start()
 
@@ -109,7 +109,7 @@ def test_a_service_ends_in_time_although_its_database_does_not_react(
         assert httpx.post(address + ATTEMPTS, json=body, timeout=ANSWER).status_code == 201
         stop(postgresql, "pause")
         try:
-            # Its check of the database is what the service then waits for.
+            # From here on the service waits for its check of the database.
             ready = httpx.get(f"{address}/readyz", timeout=ANSWER)
             assert (ready.status_code, "does not react within" in running.log) == (503, True)
             assert running.end() == 0

@@ -58,7 +58,7 @@ def test_an_attempt_is_found_again_as_it_was_written(store: AttemptStore) -> Non
     assert written.submission == NEW.submission
 
 
-def test_an_ordinal_and_a_key_are_taken_once(store: AttemptStore) -> None:
+def test_each_ordinal_and_each_key_is_used_once(store: AttemptStore) -> None:
     assert record(store, replace(NEW, idempotency_key="k"))
     assert record(store, NEW) is None
     assert record(store, replace(NEW, ordinal=2, idempotency_key="k")) is None
@@ -66,13 +66,13 @@ def test_an_ordinal_and_a_key_are_taken_once(store: AttemptStore) -> None:
     assert record(store, replace(NEW, learner="grace"))
 
 
-def test_what_does_not_count_takes_no_ordinal(store: AttemptStore) -> None:
+def test_uncounted_attempts_use_no_ordinal(store: AttemptStore) -> None:
     for _ in range(3):
         assert record(store, replace(NEW, ordinal=None))
     assert asyncio.run(store.standing("scara", "ada", "", None)).counted == 0
 
 
-def test_of_many_at_once_one_gets_the_ordinal(database_url: str) -> None:
+def test_only_one_of_many_concurrent_attempts_gets_the_ordinal(database_url: str) -> None:
     stores = [AttemptStore.open(database_url) for _ in range(2)]
     for store in stores:
         store.start()
@@ -83,7 +83,7 @@ def test_of_many_at_once_one_gets_the_ordinal(database_url: str) -> None:
     assert sum(each is not None for each in written) == 1
 
 
-def test_many_at_once_get_the_ordinals_one_after_another(database_url: str) -> None:
+def test_concurrent_attempts_get_consecutive_ordinals(database_url: str) -> None:
     stores = [AttemptStore.open(database_url) for _ in range(2)]
 
     def after(standing: Standing) -> tuple[NewAttempt, Outcome] | None:
@@ -104,7 +104,7 @@ def test_many_at_once_get_the_ordinals_one_after_another(database_url: str) -> N
     assert [each for each in results if isinstance(each, Standing)] == [Standing(20, None)] * 4
 
 
-def test_a_job_that_cannot_be_written_costs_no_other(store: AttemptStore) -> None:
+def test_a_failing_job_does_not_affect_others(store: AttemptStore) -> None:
     broken = replace(NEW, learner="x" * 10, exercise=None)  # type: ignore[arg-type]
 
     async def together() -> list[object]:
@@ -119,7 +119,7 @@ def test_a_job_that_cannot_be_written_costs_no_other(store: AttemptStore) -> Non
     assert sum(isinstance(each, RecordedAttempt) for each in results) == 7
 
 
-def test_a_write_that_fails_is_told_and_the_next_one_works(store: AttemptStore) -> None:
+def test_a_failed_write_is_reported_and_the_next_one_works(store: AttemptStore) -> None:
     with store.engine.begin() as connection:
         connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))
     with pytest.raises(StoreDownError):

@@ -43,7 +43,7 @@ def test_points_of_a_tutor_count_and_can_be_withdrawn(
     ]
 
 
-def test_points_that_cannot_be_given_are_refused(
+def test_points_out_of_range_are_refused(
     store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
     attempt = recorded(store, catalogue["scara"], "ada", NO_TWIST)
@@ -78,7 +78,7 @@ def test_nothing_of_a_forgotten_learner_is_left(
                 assert rows == (1 if table.name == "earlier_reports" else 0)
 
 
-def test_a_learner_is_forgotten_beside_a_regrade_that_begins(
+def test_a_learner_can_be_forgotten_while_a_regrade_begins(
     postgresql_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     store = AttemptStore.open(postgresql_url)
@@ -97,7 +97,7 @@ def test_a_learner_is_forgotten_beside_a_regrade_that_begins(
             end = time.monotonic() + ANSWER
             with store.engine.connect() as watching:
                 while not watching.scalar(waiting) and time.monotonic() < end:
-                    # A transaction sees the same all the time.
+                    # Within one transaction the view would not change.
                     watching.rollback()
                     time.sleep(0.01)
         assert deleted.result(ANSWER) == LearnerData(1, 0, 0)

@@ -1,4 +1,4 @@
-"""A database as the first version of the program left it, opened by today's."""
+"""Today's program opens a database of the program's first version."""
 
 import asyncio
 import csv
@@ -29,7 +29,7 @@ from tests.attempts.recorded import RIGHT
 
 OLDEST = "0001"
 MIGRATIONS = Path(database.__file__).parent / "migrations"
-# Of another exercise version, under which the right table earned nothing.
+# A report of an older exercise version, in which the right table earned nothing.
 REPORT = json.dumps(
     {
         "exercise": "scara",
@@ -44,7 +44,7 @@ ROWS: tuple[dict[str, Any], ...] = (
     {"id": "a" * 32, "learner": "ada", "ordinal": 1, "is_late": True, "worth": 0.5, "key": "k"},
     {"id": "b" * 32, "learner": "bob", "ordinal": None, "is_late": False, "worth": 1, "key": None},
 )
-# How the first version records an attempt.
+# The statement with which the first version records an attempt.
 INSERT = (
     "INSERT INTO attempts (id, exercise, learner, ordinal, at, is_late, worth, submission, "
     "answers_digest, report, version, grader, points, max_points, outcome, owner, idempotency_key, "
@@ -55,7 +55,7 @@ FIXED = {"submission": json.dumps({"answers": {"table": RIGHT}}), "report": REPO
 
 
 def make_old(url: str, revision: str) -> None:
-    """Make the tables of a revision in an empty database, and two attempts of the first."""
+    """Create the tables of a revision in an empty database, and insert two old attempts."""
     parsed = make_url(url if "://" in url else f"sqlite:///{url}")
     zone = ""
     if parsed.get_backend_name() == "postgresql":
@@ -89,14 +89,14 @@ def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
 
 @pytest.fixture
 def store(oldest: str) -> Iterator[AttemptStore]:
-    """The same, opened by today's program."""
+    """A database with the first tables, opened by today's program."""
     store = AttemptStore.open(oldest)
     store.start()
     yield store
     store.close()
 
 
-def test_keys_without_a_known_secret_take_that_of_the_next_one(store: AttemptStore) -> None:
+def test_keys_without_a_recorded_secret_get_that_of_the_next_key(store: AttemptStore) -> None:
     right, other, now = Secret("right" * 8), Secret("other" * 8), datetime.now(UTC)
     with store.engine.begin() as connection:
         key = add_key(connection, "a", "d", (), None, now, now + timedelta(days=1))
@@ -118,7 +118,7 @@ def exported(store: AttemptStore) -> list[dict[str, str]]:
     return list(csv.DictReader(lines))
 
 
-def test_what_the_first_version_recorded_is_read_regraded_and_exported(
+def test_attempts_of_the_first_version_are_read_regraded_and_exported(
     store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
     scara = catalogue["scara"]
@@ -133,7 +133,7 @@ def test_what_the_first_version_recorded_is_read_regraded_and_exported(
     assert {each.at.isoformat() for each in found} == {"2026-09-01T12:00:00+00:00"}
     assert untouched is not None
     assert (untouched.report, untouched.earlier) == (REPORT, [])
-    # A request that was sent then is known by its key today.
+    # An old request is recognized by its idempotency key.
     earlier = asyncio.run(store.standing("scara", "ada", "course", "k")).earlier
     assert earlier is not None
     assert earlier.id == ROWS[0]["id"]

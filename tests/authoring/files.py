@@ -1,4 +1,4 @@
-"""Exercise files, and what is said of them."""
+"""Exercise files for tests, and the remarks on them."""
 
 from collections.abc import Callable
 
@@ -31,7 +31,7 @@ points = 4
 """
 
 
-def told(make: Make, text: str, *changes: tuple[str, str]) -> list[Remark]:
+def remarks_on(make: Make, text: str, *changes: tuple[str, str]) -> list[Remark]:
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new, 1)

@@ -1,4 +1,4 @@
-"""Each thing that an author is told, and nothing of a file that is in order."""
+"""Each remark on a faulty file, and no remarks on a correct one."""
 
 from collections.abc import Mapping
 
@@ -6,7 +6,7 @@ import pytest
 
 from service.authoring import Level, examine
 from service.catalogue import Exercise, shipped_folder
-from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, robot, told
+from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 from tests.grading.support.bare_numbers import BARE, BareExercise
 from tests.samples import one_in
 from tests.together import together
@@ -36,24 +36,24 @@ expect.pose = {{ points = 0, verdict = "unreadable" }}
 GOOD = HEAD + ROBOT + POSE + CHECKS
 
 
-def test_of_a_file_in_order_nothing_is_said(make_exercise: Make) -> None:
-    assert told(make_exercise, GOOD) == []
+def test_a_correct_file_gets_no_remarks(make_exercise: Make) -> None:
+    assert remarks_on(make_exercise, GOOD) == []
 
 
 @pytest.mark.parametrize(
     "exercise_id", one_in(4, sorted(file.stem for file in shipped_folder().glob("*.toml")))
 )
-def test_the_shipped_exercises_are_in_order(
+def test_the_shipped_exercises_have_no_failures(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     remarks = examine(catalogue[exercise_id])
     assert [each for each in remarks if each.level is Level.FAILED] == []
-    # The letter l has stood in this exercise, and in its students' notes, from the beginning.
+    # The symbol l stays in this exercise, because it is in the course's notes.
     known = {("dh-conditions", "symbols.l")}
     assert {(exercise_id, remark.field) for remark in remarks} <= known
 
 
-# What is changed, the check that fails, and what is said of it.
+# A replacement, the number of the check that fails, and words of the remark.
 FAILURES: dict[str, tuple[tuple[str, str], int, str]] = {
     "a right answer that is wrong": ((RIGHT_ROWS, WRONG_ROWS), 0, "should get full marks; it got"),
     "an equivalent answer that is wrong": (('"q2 s1"', '"-q2 s1"'), 1, "should get full marks"),
@@ -64,7 +64,11 @@ FAILURES: dict[str, tuple[tuple[str, str], int, str]] = {
         "should get 3 points; it got partial, 3.33",
     ),
     "another verdict": (('"partial"', '"incorrect"'), 2, "should be incorrect; it got partial"),
-    "another code": (('["sign"]', '["sign", "half_turn"]'), 2, "told half_turn, but was told"),
+    "another code": (
+        ('["sign"]', '["sign", "half_turn"]'),
+        2,
+        "told half_turn, but was told",
+    ),
     "a code where none is": (
         ('points = 0, verdict = "unreadable"', 'codes = ["twist"]'),
         3,
@@ -84,24 +88,24 @@ FAILURES: dict[str, tuple[tuple[str, str], int, str]] = {
 
 
 @pytest.mark.parametrize("name", FAILURES)
-def test_a_check_that_fails(name: str, make_exercise: Make) -> None:
+def test_a_failed_check_is_reported(name: str, make_exercise: Make) -> None:
     change, place, text = FAILURES[name]
     if name == "degrees":
         change = ('"s1", "q2 s1"]', '"sin(theta1 + 2 pi - 360)", "q2 s1"]')
-        assert told(make_exercise, GOOD, change)
+        assert remarks_on(make_exercise, GOOD, change)
         degrees = ('title = "With q2"', 'title = "With q2"\nangle_unit = "degrees"')
-        assert told(make_exercise, GOOD, change, degrees) == []
+        assert remarks_on(make_exercise, GOOD, change, degrees) == []
         return
-    remarks = told(make_exercise, GOOD, change)
+    remarks = remarks_on(make_exercise, GOOD, change)
     failures = [each for each in remarks if each.level is Level.FAILED]
     assert {each.field for each in failures} == {f"checks[{place}]"}
     assert any(text in each.text for each in failures), failures
 
 
-def test_a_model_answer_that_cannot_be_handed_in(make_exercise: Make) -> None:
-    """The pose of ten joints on ten skew axes is longer than what is read."""
+def test_a_model_answer_that_is_too_long_is_reported(make_exercise: Make) -> None:
+    """The pose of a robot with ten skew axes is longer than the limit of an entry."""
     rows = ", ".join(f'["a1", "90deg", "a1", "q{i}"]' for i in range(1, 11))
-    remarks = told(make_exercise, HEAD + robot("R" * 10, f"[{rows}]") + POSE)
+    remarks = remarks_on(make_exercise, HEAD + robot("R" * 10, f"[{rows}]") + POSE)
     [remark] = [each for each in remarks if each.level is Level.FAILED]
     assert remark.field == "parts[0]"
     assert "the right answer to pose has an entry of more than the 8000 characters" in remark.text
@@ -116,17 +120,17 @@ def test_a_model_answer_that_cannot_be_handed_in(make_exercise: Make) -> None:
         ([3], "1 right, 1 equivalent, 1 wrong"),
     ],
 )
-def test_too_few_checks(dropped: list[int], said: str, make_exercise: Make) -> None:
+def test_too_few_checks_are_reported(dropped: list[int], said: str, make_exercise: Make) -> None:
     checks = CHECKS.split("[[checks]]")[1:]
     kept = ["[[checks]]" + each for i, each in enumerate(checks) if i not in dropped]
-    remarks = told(make_exercise, HEAD + ROBOT + POSE + "".join(kept))
+    remarks = remarks_on(make_exercise, HEAD + ROBOT + POSE + "".join(kept))
     remark = only(remarks, Level.WARNING)
     assert remark.field == "checks"
     assert remark.text.startswith(said)
 
 
 def named(name: str) -> tuple[tuple[str, str], ...]:
-    """The symbol a1 by another name, in a table and a pose without shorthand."""
+    """The replacements that give the symbol a1 another name."""
     return (
         ('"a1", "theta1"', f'"{name}", "theta1"'),
         ("a1 = {", f"{name} = {{"),
@@ -148,23 +152,23 @@ def named(name: str) -> tuple[tuple[str, str], ...]:
         ("D2", "looks like d2"),
     ],
 )
-def test_a_name_that_is_taken_for_something_else(name: str, said: str, make_exercise: Make) -> None:
-    remarks = told(make_exercise, HEAD + ROBOT + POSE, *named(name))
+def test_an_ambiguous_name_gets_a_warning(name: str, said: str, make_exercise: Make) -> None:
+    remarks = remarks_on(make_exercise, HEAD + ROBOT + POSE, *named(name))
     found = [each for each in remarks if each.field.startswith("symbols")]
     assert any(said in only([each], Level.WARNING).text for each in found), remarks
 
 
 @pytest.mark.parametrize("name", ["c3", "theta2", "d1", "L", "width", "s"])
-def test_a_name_that_is_not(name: str, make_exercise: Make) -> None:
-    """No shorthand without a joint 3; θ2 where joint 2 slides, and d1 where joint 1 turns."""
-    remarks = told(make_exercise, HEAD + ROBOT + POSE, *named(name))
+def test_an_unambiguous_name_gets_no_warning(name: str, make_exercise: Make) -> None:
+    """These names have no other meaning: there is no joint 3, joint 2 slides, and joint 1 turns."""
+    remarks = remarks_on(make_exercise, HEAD + ROBOT + POSE, *named(name))
     expected = {"symbols.s"} if name == "s" else set()
     assert {each.field for each in remarks if each.field.startswith("symbols")} == expected
 
 
-def test_a_symbol_that_is_never_used(make_exercise: Make) -> None:
+def test_an_unused_symbol_gets_a_warning(make_exercise: Make) -> None:
     unused = ("[symbols]", '[symbols]\nk = { kind = "number", description = "a number" }')
-    remark = only(told(make_exercise, GOOD, unused), Level.WARNING)
+    remark = only(remarks_on(make_exercise, GOOD, unused), Level.WARNING)
     assert remark.field == "symbols.k"
     assert "is in no formula" in remark.text
 
@@ -179,13 +183,13 @@ def test_a_symbol_that_is_never_used(make_exercise: Make) -> None:
         ("[300, 2000]", "reaches 0.8 where a1 reaches 2000"),
     ],
 )
-def test_a_range_that_hides_mistakes(limits: str, said: str, make_exercise: Make) -> None:
-    remark = only(told(make_exercise, GOOD, ("[0.3, 0.9]", limits)), Level.WARNING)
+def test_a_bad_range_gets_a_warning(limits: str, said: str, make_exercise: Make) -> None:
+    remark = only(remarks_on(make_exercise, GOOD, ("[0.3, 0.9]", limits)), Level.WARNING)
     assert said in remark.text
 
 
-def test_a_sliding_joint_may_pass_zero(make_exercise: Make) -> None:
-    assert told(make_exercise, GOOD, ("[0.2, 0.8]", "[-0.4, 0.4]")) == []
+def test_the_range_of_a_prismatic_joint_may_contain_zero(make_exercise: Make) -> None:
+    assert remarks_on(make_exercise, GOOD, ("[0.2, 0.8]", "[-0.4, 0.4]")) == []
 
 
 EXPECTED = 'expected = ["d2*sin(theta1)", "-d2*cos(theta1)", "a1"]'
@@ -196,35 +200,35 @@ def position(part_id: str, more: str = "") -> str:
 
 
 @pytest.mark.parametrize("more", ["", EXPECTED, 'from = 0\nto = "tool"'])
-def test_two_parts_with_one_answer(more: str, make_exercise: Make) -> None:
+def test_two_parts_with_the_same_answer_get_a_warning(more: str, make_exercise: Make) -> None:
     text = HEAD + ROBOT + POSE + position("tip") + position("again", more) + CHECKS
-    remark = only(told(make_exercise, text), Level.WARNING)
+    remark = only(remarks_on(make_exercise, text), Level.WARNING)
     assert remark.field == "parts[2]"
     assert "again has the same answer as tip" in remark.text
 
 
-def test_four_parts_with_one_answer_are_told_once(make_exercise: Make) -> None:
+def test_four_parts_with_the_same_answer_get_one_warning(make_exercise: Make) -> None:
     parts = "".join(position(name) for name in ("tip", "again", "third", "fourth"))
-    remark = only(told(make_exercise, HEAD + ROBOT + POSE + parts + CHECKS), Level.WARNING)
+    remark = only(remarks_on(make_exercise, HEAD + ROBOT + POSE + parts + CHECKS), Level.WARNING)
     assert "again, third, fourth have the same answer as tip" in remark.text
 
 
 @pytest.mark.parametrize(
     "more", ["to = 1", "home = true", 'coordinates = "xy"', 'from = "tool"\nto = "base"']
 )
-def test_two_parts_with_two_answers(more: str, make_exercise: Make) -> None:
+def test_parts_with_different_answers_get_no_warning(more: str, make_exercise: Make) -> None:
     text = HEAD + ROBOT + POSE + position("tip") + position("other", more) + CHECKS
-    assert told(make_exercise, text) == []
+    assert remarks_on(make_exercise, text) == []
 
 
-def test_transforms_without_a_row_are_two_tasks(make_exercise: Make) -> None:
+def test_two_transforms_without_a_row_are_different_tasks(make_exercise: Make) -> None:
     row = '\n[[parts]]\nid = "{}"\nkind = "dh_row"\ntitle = "Row"\ntransform = [{}, [0, 0, 0, 1]]\n'
     one = '[0, 0, 1, "a1"], [0, 1, 0, 0], [-1, 0, 0, 0]'
     other = '[1, 0, 0, 0], [0, 0, -1, "a1"], [0, 1, 0, 0]'
     both = HEAD + ROBOT + POSE + row.format("one", one) + row.format("two", other) + CHECKS
-    assert told(make_exercise, both) == []
+    assert remarks_on(make_exercise, both) == []
     twice = HEAD + ROBOT + POSE + row.format("one", one) + row.format("two", one) + CHECKS
-    assert only(told(make_exercise, twice), Level.WARNING).field == "parts[2]"
+    assert only(remarks_on(make_exercise, twice), Level.WARNING).field == "parts[2]"
 
 
 LOST: dict[str, tuple[str, str, str]] = {
@@ -239,14 +243,18 @@ LOST: dict[str, tuple[str, str, str]] = {
 
 
 @pytest.mark.parametrize("name", LOST)
-def test_a_reference_that_has_lost_a_freedom(name: str, make_exercise: Make) -> None:
+def test_a_reference_that_lost_a_degree_of_freedom_gets_a_warning(
+    name: str, make_exercise: Make
+) -> None:
     structure, table, said = LOST[name]
-    remarks = told(make_exercise, HEAD + robot(structure, table) + POSE)
+    remarks = remarks_on(make_exercise, HEAD + robot(structure, table) + POSE)
     [remark] = [each for each in remarks if each.field == "robot"]
     assert said in only([remark], Level.WARNING).text
 
 
-def test_seven_joints_may_well_move_in_six_ways(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_redundant_arm_with_six_degrees_of_freedom_gets_no_warning(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     assert not [each for each in examine(catalogue["baxter-left-arm"]) if each.field == "robot"]
 
 
@@ -260,23 +268,23 @@ convention = "standard"
 """
 
 
-def test_a_table_with_free_frames_asks_for_something_else(make_exercise: Make) -> None:
-    """What is right where the frames are given is one of many answers where they are free."""
+def test_tables_with_given_and_free_frames_are_different_tasks(make_exercise: Make) -> None:
+    """With free frames, the answer for given frames is only one of many."""
     drawn, free = TABLE.format("drawn", ""), TABLE.format("free", 'frames = "free"')
-    assert told(make_exercise, HEAD + ROBOT + POSE + drawn + free + CHECKS) == []
+    assert remarks_on(make_exercise, HEAD + ROBOT + POSE + drawn + free + CHECKS) == []
     again = HEAD + ROBOT + POSE + drawn + TABLE.format("again", "") + CHECKS
-    assert only(told(make_exercise, again), Level.WARNING).field == "parts[2]"
+    assert only(remarks_on(make_exercise, again), Level.WARNING).field == "parts[2]"
 
 
 def test_an_angle_without_a_unit_is_radians_in_the_model_answer_too(make_exercise: Make) -> None:
-    """Handed in by those who work in degrees it would be another angle."""
+    """In a submission with degrees, the number would be a different angle."""
     text = HEAD + robot("R", '[["a1", 0.7, "0", "q1 + 0.4"]]') + TABLE.format("table", "") + POSE
-    assert [each for each in told(make_exercise, text) if each.level is Level.FAILED] == []
+    assert [each for each in remarks_on(make_exercise, text) if each.level is Level.FAILED] == []
 
 
 @together("bare", BARE)
-def test_an_exercise_of_numbers_alone_fails_nothing(
+def test_an_exercise_without_symbols_has_no_failures(
     bare: BareExercise, make_exercise: Make
 ) -> None:
-    remarks = told(make_exercise, bare.text)
+    remarks = remarks_on(make_exercise, bare.text)
     assert [each.field for each in remarks if each.level is Level.FAILED] == []

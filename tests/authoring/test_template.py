@@ -6,7 +6,7 @@ from service.authoring import UnusableIdError, examine, template
 from service.catalogue import load_exercise
 
 
-def test_a_new_file_is_in_order_as_it_is(tmp_path: Path) -> None:
+def test_a_new_file_gets_no_remarks(tmp_path: Path) -> None:
     file = tmp_path / "elbow-arm.toml"
     file.write_text(template("elbow-arm"), encoding="utf-8")
     exercise = load_exercise(file)
@@ -14,7 +14,7 @@ def test_a_new_file_is_in_order_as_it_is(tmp_path: Path) -> None:
     assert examine(exercise) == []
 
 
-def test_it_explains_itself() -> None:
+def test_the_template_has_comments() -> None:
     lines = template("arm").splitlines()
     assert sum(line.startswith("#") for line in lines) >= 20
     assert max(map(len, lines)) <= 110
@@ -24,6 +24,6 @@ def test_it_explains_itself() -> None:
     "exercise_id",
     ["", "Arm", "2arm", "my arm", "../arm", "a/b", "arm.toml", "arm-", "é", "a" * 61, "arm\n"],
 )
-def test_what_cannot_be_an_id(exercise_id: str) -> None:
+def test_an_invalid_id_is_refused(exercise_id: str) -> None:
     with pytest.raises(UnusableIdError, match="small letters"):
         template(exercise_id)

@@ -1,9 +1,9 @@
-"""Numbers of degrees that an author wrote without their unit."""
+"""Warnings for degrees without a unit in exercise files."""
 
 import pytest
 
 from service.authoring import Level, Remark
-from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, robot, told
+from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 
 
 def table_with(alpha: str, theta: str) -> str:
@@ -14,7 +14,7 @@ def of_units(remarks: list[Remark]) -> list[Remark]:
     return [each for each in remarks if "has no unit" in each.text]
 
 
-# The twist and the angle of a row; the cell that is warned of, and what it is asked for.
+# The twist and the angle of a row, the cell with the warning, and its text.
 BARE: list[tuple[str, str, str, str]] = [
     ("90", '"q1"', "alpha", "90 has no unit and is read in radians; did you mean 90deg?"),
     ('"-90"', '"q1"', "alpha", "90 has no unit and is read in radians; did you mean 90deg?"),
@@ -25,10 +25,10 @@ BARE: list[tuple[str, str, str, str]] = [
 
 
 @pytest.mark.parametrize(("alpha", "theta", "column", "text"), BARE)
-def test_degrees_without_a_unit(
+def test_degrees_without_a_unit_get_a_warning(
     alpha: str, theta: str, column: str, text: str, make_exercise: Make
 ) -> None:
-    remark = only(of_units(told(make_exercise, table_with(alpha, theta))), Level.WARNING)
+    remark = only(of_units(remarks_on(make_exercise, table_with(alpha, theta))), Level.WARNING)
     assert remark.field == f"robot.table[0].{column}"
     assert all(piece in remark.text for piece in text.split(" *"))
 
@@ -42,8 +42,10 @@ def test_degrees_without_a_unit(
         ('"2*atan2(30, 40)"', '"q1 + 6.28"'),
     ],
 )
-def test_radians_and_degrees_with_a_unit(alpha: str, theta: str, make_exercise: Make) -> None:
-    assert of_units(told(make_exercise, table_with(alpha, theta))) == []
+def test_radians_and_degrees_with_a_unit_get_no_warning(
+    alpha: str, theta: str, make_exercise: Make
+) -> None:
+    assert of_units(remarks_on(make_exercise, table_with(alpha, theta))) == []
 
 
 def vector(quantity: str, expected: str) -> str:
@@ -68,16 +70,16 @@ components = [{{ name = "u", quantity = "length", expected = "a1" }}, {component
         ("number", "sin(10*theta1)", False),
     ],
 )
-def test_degrees_without_a_unit_in_a_part(
+def test_degrees_without_a_unit_in_a_part_get_a_warning(
     quantity: str, expected: str, bare: bool, make_exercise: Make
 ) -> None:
     text = HEAD + ROBOT + POSE + vector(quantity, expected)
-    fields = [remark.field for remark in of_units(told(make_exercise, text))]
+    fields = [remark.field for remark in of_units(remarks_on(make_exercise, text))]
     assert fields == ["parts[1].components[1].expected"] * bare
 
 
 BELOW = "[0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]"
-# Parts whose formulas hold an angle, and where.
+# Parts whose formulas have an angle, and its place.
 PLACES: dict[str, tuple[str, str]] = {
     "steps": ('kind = "rotation"\nsteps = [{ axis = "x", angle = "90" }]', "steps[0].angle"),
     "Euler": (
@@ -101,13 +103,15 @@ PLACES: dict[str, tuple[str, str]] = {
 
 
 @pytest.mark.parametrize("name", PLACES)
-def test_the_place_of_an_angle_without_a_unit(name: str, make_exercise: Make) -> None:
+def test_the_warning_names_the_place_of_the_angle(name: str, make_exercise: Make) -> None:
     fields, place = PLACES[name]
     text = f'{HEAD}{ROBOT}{POSE}\n[[parts]]\nid = "other"\ntitle = "Other"\n{fields}\n'
-    assert [each.field for each in of_units(told(make_exercise, text))] == [f"parts[1].{place}"]
+    assert [each.field for each in of_units(remarks_on(make_exercise, text))] == [
+        f"parts[1].{place}"
+    ]
 
 
-def test_an_angle_without_a_unit_in_a_screw(make_exercise: Make) -> None:
+def test_degrees_without_a_unit_in_a_screw_robot_get_a_warning(make_exercise: Make) -> None:
     screws = """
 [robot]
 structure = "R"
@@ -117,5 +121,5 @@ screws = [[0, 0, 1, 0, "-a1*cos(60)", 0]]
 [symbols]
 a1 = { kind = "length", range = [0.3, 0.9], description = "a length" }
 """
-    remarks = of_units(told(make_exercise, HEAD + screws + POSE))
+    remarks = of_units(remarks_on(make_exercise, HEAD + screws + POSE))
     assert [each.field for each in remarks] == ["robot.home[0][3]", "robot.screws[0][4]"]

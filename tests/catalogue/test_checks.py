@@ -1,4 +1,4 @@
-"""Faults of the checks in a file, and what a fault says: line, known keys, what to write."""
+"""Faults of the checks in a file, and their messages: line, known keys, advice."""
 
 import re
 from pathlib import Path
@@ -16,14 +16,14 @@ answers.pose = "x"
 expect.pose = { points = 0 }
 """
 
-# What is changed in the check, the field that is named, and what the reason must say.
+# A replacement in the check, the expected field, and words of the expected reason.
 FAULTS = {
     "unknown key": ("answers.pose", "answer.pose", "checks[0].answer", "did you mean 'answers'"),
     "no title": ('title = "Wrong"', "", "checks[0].title", "write title = …"),
     "no kind": ('kind = "wrong"', "", "checks[0].kind", "write kind = …"),
     "another kind": ('"wrong"', '"bad"', "checks[0].kind", "'right', 'equivalent' or 'wrong'"),
     "no answers": ('answers.pose = "x"', "answers = {}", "checks[0].answers", "at least 1"),
-    "an answer that JSON has not": ('"x"', "1979-05-27", "checks[0].answers.pose", "JSON"),
+    "an answer that is not JSON": ('"x"', "1979-05-27", "checks[0].answers.pose", "JSON"),
     "another part": (
         "answers.pose",
         "answers.tool",
@@ -32,7 +32,7 @@ FAULTS = {
     ),
     "another part expected": ("expect.pose", "expect.tip", "checks[0].expect.tip", "no such part"),
     "no expectation": ("expect.pose = { points = 0 }", "", "checks[0]", "needs an expectation"),
-    "an empty one": ("points = 0 }", "}", "checks[0].expect.pose", "write points, verdict"),
+    "an empty expectation": ("points = 0 }", "}", "checks[0].expect.pose", "write points, verdict"),
     "unknown expectation": (
         "points =",
         "marks =",
@@ -75,7 +75,7 @@ def faults(folder: Path, text: str) -> list[Fault]:
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_fault_is_refused_where_it_is(name: str, tmp_path: Path) -> None:
+def test_a_fault_is_reported_with_its_field(name: str, tmp_path: Path) -> None:
     old, new, field, reason = FAULTS[name]
     assert old in CHECK
     found = faults(tmp_path, VALID + CHECK.replace(old, new, 1))
@@ -94,8 +94,8 @@ def test_checks_do_not_change_the_version(tmp_path: Path) -> None:
 
 
 KEYS = "title, source, statement, robot, symbols, feedback, attempts, view, parts, checks"
-# What is changed, and the whole of what is said after the file's name; * stands for anything.
-SAID: dict[tuple[str, str], list[str]] = {
+# A replacement, and the expected messages without the file's name; * matches anything.
+MESSAGES: dict[tuple[str, str], list[str]] = {
     ("source =", "sauce ="): [
         "source: Field required: write source = …",
         f"sauce (line 2): there is no key 'sauce' here; did you mean 'source'? The keys are {KEYS}",
@@ -116,11 +116,11 @@ SAID: dict[tuple[str, str], list[str]] = {
 }
 
 
-@pytest.mark.parametrize("change", SAID, ids=lambda change: str(change[1]))
+@pytest.mark.parametrize("change", MESSAGES, ids=lambda change: str(change[1]))
 def test_a_fault_says_what_to_write(change: tuple[str, str], tmp_path: Path) -> None:
     found = faults(tmp_path, changed(change))
     file = tmp_path / "arm.toml"
     said = [str(fault).removeprefix(f"{file}: ") for fault in found]
-    for expected in SAID[change]:
+    for expected in MESSAGES[change]:
         pattern = ".*".join(map(re.escape, expected.split("*")))
         assert [each for each in said if re.fullmatch(pattern, each)], said

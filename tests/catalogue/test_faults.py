@@ -67,7 +67,7 @@ def changed(*changes: tuple[str, str]) -> str:
     return text
 
 
-# What is changed, the field that is named, and what the reason must say.
+# A replacement, the expected field, and a pattern of the expected reason.
 FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
     "not TOML": (('structure = "RP"', 'structure = "RP'), "", r"TOML.*line 6"),
     "a key twice": (('title = "An arm"', 'title = "An arm"\ntitle = "B"'), "", r"TOML.*line 2"),
@@ -105,17 +105,17 @@ FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
         "parts[1].follows_from",
         "without quotation marks",
     ),
-    "a truth as text": (
+    "a boolean as text": (
         ("points = 4", 'home = "true"'),
         "parts[1].home",
         "without quotation marks",
     ),
-    "a truth as a number": (("points = 4", "home = 1"), "parts[1].home", "write true or false"),
+    "a boolean as a number": (("points = 4", "home = 1"), "parts[1].home", "write true or false"),
     "points of nothing": (("points = 4", "points = 0"), "parts[1].points", "greater than 0"),
     "points below nothing": (("points = 4", "points = -1"), "parts[1].points", "greater than 0"),
     "points beyond bounds": (("points = 4", "points = 1e9"), "parts[1].points", "1000"),
     "points that are no number": (("points = 4", "points = nan"), "parts[1].points", "."),
-    "points as a truth": (("points = 4", "points = true"), "parts[1].points", "number"),
+    "points as a boolean": (("points = 4", "points = true"), "parts[1].points", "number"),
     "part id twice": (('id = "pose"', 'id = "table"'), "", "'table'"),
     "part id that is no name": (('id = "pose"', 'id = "The Pose"'), "parts[1].id", "pattern"),
     "unknown kind": (('kind = "transform"', 'kind = "quaternion"'), "parts[1]", "transform"),
@@ -136,7 +136,7 @@ FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
     "too few rows": (('    ["0", "0", "d2 + a1", "0"],\n', ""), "robot", r"1 rows.*write 2"),
     "a row of three": (('["0", "0", "d2 + a1", "0"]', '["0", "0", "d2"]'), "robot.table[1]", "."),
     "a cell of another type": (('["0", "0"', '["0", ["0"]'), "robot.table[1][1]", "."),
-    "a cell as a truth": (('["0", "0"', '["0", true'), "robot.table[1][1]", "."),
+    "a cell as a boolean": (('["0", "0"', '["0", true'), "robot.table[1][1]", "."),
     "a cell as a date": (('["0", "0"', '["0", 2024-01-01'), "robot.table[1][1]", "."),
     "unreadable formula": (('["a1"', '["a1 +"'), "robot.table[0].a", "did you mean 'a1'"),
     "unknown symbol": (('["a1"', '["a7"'), "robot.table[0].a", "a7"),
@@ -196,7 +196,7 @@ FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
 
 
 @together("name", FAULTS)
-def test_a_fault_is_refused_where_it_is(name: str, tmp_path: Path) -> None:
+def test_a_fault_is_reported_with_its_field(name: str, tmp_path: Path) -> None:
     change, field, reason = FAULTS[name]
     file = write(tmp_path, changed(change))
     with pytest.raises(CatalogueError) as caught:
@@ -220,7 +220,7 @@ MODELS = [*SPECS.values(), ExerciseSpec, RobotSpec, ScrewRobotSpec, SymbolSpec, 
 
 
 @pytest.mark.parametrize("model", [*MODELS, ExpectSpec], ids=lambda model: model.__name__)
-def test_no_value_is_taken_for_one_of_another_type(model: type[BaseModel]) -> None:
+def test_no_value_is_converted_to_another_type(model: type[BaseModel]) -> None:
     for name, field in model.model_fields.items():
         adapter = TypeAdapter[Any](field.rebuild_annotation())
         for value in ("1", "0.5", "true", "yes", 0, 1, 0.5, True, False):
@@ -243,17 +243,17 @@ def test_the_file_without_faults_loads(tmp_path: Path) -> None:
     ]
 
 
-def test_how_many_faults_are_tried() -> None:
+def test_at_least_fifteen_faults_are_tested() -> None:
     assert len(FAULTS) >= 15
 
 
-def test_an_empty_folder(tmp_path: Path) -> None:
+def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(CatalogueError, match=r"no exercise file") as caught:
         load_catalogue(tmp_path)
     assert [fault.file for fault in caught.value.faults] == [tmp_path]
 
 
-def test_a_folder_that_is_missing_or_none(tmp_path: Path) -> None:
+def test_a_missing_folder_and_a_file_are_refused(tmp_path: Path) -> None:
     with pytest.raises(CatalogueError, match=r"nowhere: there is no such folder$"):
         load_catalogue(tmp_path / "nowhere")
     (tmp_path / "arm.toml").write_text(VALID, encoding="utf-8")
@@ -263,7 +263,7 @@ def test_a_folder_that_is_missing_or_none(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such files on this system")
 @pytest.mark.timeout(ANSWER)
-def test_pipes_and_devices_are_refused_and_not_waited_for(tmp_path: Path) -> None:
+def test_pipes_and_devices_are_refused_without_waiting(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "endless.toml").symlink_to("/dev/zero")
     (tmp_path / "terminal.toml").symlink_to("/dev/null")
@@ -276,32 +276,32 @@ def test_pipes_and_devices_are_refused_and_not_waited_for(tmp_path: Path) -> Non
     }
 
 
-def test_a_file_that_is_far_too_large(tmp_path: Path) -> None:
+def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:
     with (tmp_path / "large.toml").open("wb") as file:
         file.truncate(10**10)
     with pytest.raises(CatalogueError, match=r"larger than 1024 KiB"):
         load_catalogue(tmp_path)
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(CatalogueError, match=r"nothing\.toml: cannot be read: No such file"):
         load_exercise(tmp_path / "nothing.toml")
 
 
-def test_a_folder_in_place_of_a_file(tmp_path: Path) -> None:
+def test_a_folder_instead_of_a_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     with pytest.raises(CatalogueError, match=r"folder\.toml: cannot be read"):
         load_exercise(tmp_path / "folder.toml")
 
 
-def test_a_file_that_is_not_utf_8(tmp_path: Path) -> None:
+def test_a_file_that_is_not_utf_8_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "latin.toml"
     file.write_bytes(VALID.replace("An arm", "Ein Gerät").encode("latin-1"))
     with pytest.raises(CatalogueError, match=r"latin\.toml: is not UTF-8"):
         load_exercise(file)
 
 
-def test_all_faults_of_all_files_are_told_at_once(tmp_path: Path) -> None:
+def test_all_faults_of_all_files_are_reported_together(tmp_path: Path) -> None:
     write(tmp_path, VALID, "good.toml")
     write(tmp_path, changed(("[0.3, 0.9]", "[0.9, 0.3]")), "reversed.toml")
     write(tmp_path, changed(('"An arm"', "5"), ("points = 4", "points = 0")), "two.toml")
@@ -375,7 +375,7 @@ def test_ranges_may_be_formulas_of_constants(tmp_path: Path) -> None:
 
 
 def test_every_row_of_a_robot_can_be_handed_in(tmp_path: Path) -> None:
-    """No table of a robot that loads may be longer than the twelve rows that are read."""
+    """A robot that loads has no table longer than the twelve rows that an answer may have."""
     names = [f"q{i}" for i in range(1, 12)]
     joints = [f'["k", "60deg", "0", "{name}"]' for name in names]
     table = ", ".join([*joints, '["k", "0", "k", "0"]'])

@@ -1,4 +1,4 @@
-"""A catalogue that is told to follows its files."""
+"""A catalogue with ``reload`` reads changed files again."""
 
 import logging
 import os
@@ -18,7 +18,7 @@ from tests.catalogue.test_faults import VALID
 
 
 class Clock:
-    """Time that passes when the test says so."""
+    """A clock that the test sets."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -44,7 +44,7 @@ def _logged(caplog: pytest.LogCaptureFixture) -> Iterator[None]:
         yield
 
 
-# Each write gets a time of its own, however coarse the disk's clock is.
+# Each write gets its own time, even if the disk's clock is coarse.
 _times = iter(range(1_700_000_000, 1_800_000_000))
 
 
@@ -59,7 +59,7 @@ def titled(title: str) -> str:
     return VALID.replace("An arm", title)
 
 
-def test_a_change_counts_after_a_second(folder: Path, clock: Clock) -> None:
+def test_a_change_takes_effect_after_a_second(folder: Path, clock: Clock) -> None:
     catalogue = LiveCatalogue([folder], clock)
     version = catalogue["arm"].version
     write(folder, "arm", titled("A new arm"))
@@ -70,7 +70,7 @@ def test_a_change_counts_after_a_second(folder: Path, clock: Clock) -> None:
     assert catalogue["arm"].version != version
 
 
-def test_what_has_not_changed_is_not_read_again(folder: Path, clock: Clock) -> None:
+def test_unchanged_files_are_not_read_again(folder: Path, clock: Clock) -> None:
     write(folder, "other", VALID)
     catalogue = LiveCatalogue([folder], clock)
     before = catalogue["other"]
@@ -80,7 +80,7 @@ def test_what_has_not_changed_is_not_read_again(folder: Path, clock: Clock) -> N
     assert catalogue["other"] is before
 
 
-def test_files_come_and_go(folder: Path, clock: Clock) -> None:
+def test_files_may_be_added_and_removed(folder: Path, clock: Clock) -> None:
     catalogue = LiveCatalogue([folder], clock)
     write(folder, "boom", VALID)
     clock.now = 2
@@ -103,9 +103,9 @@ def test_a_broken_file_keeps_its_last_good_version(
         assert catalogue["arm"] is good
     assert caplog.text.count("its last good version stays") == 1
     assert "parts[1].points (line 28): is 0; write a number greater than 0" in caplog.text
-    write(folder, "arm", titled("Mended"))
+    write(folder, "arm", titled("Fixed"))
     clock.now = 8
-    assert catalogue["arm"].title == "Mended"
+    assert catalogue["arm"].title == "Fixed"
 
 
 def test_a_new_file_that_is_broken_is_left_out(
@@ -119,14 +119,16 @@ def test_a_new_file_that_is_broken_is_left_out(
 
 
 @pytest.mark.parametrize("text", ["x = " + "[" * 5000, "x = " + "1" * 5000, "\x00", "[" * 100])
-def test_whatever_is_in_a_file(text: str, folder: Path, clock: Clock) -> None:
+def test_any_broken_content_keeps_the_last_good_version(
+    text: str, folder: Path, clock: Clock
+) -> None:
     catalogue = LiveCatalogue([folder], clock)
     write(folder, "arm", text)
     clock.now = 2
     assert catalogue["arm"].title == "An arm"
 
 
-def test_a_folder_that_is_gone_changes_nothing(
+def test_a_missing_folder_keeps_the_exercises(
     folder: Path, clock: Clock, caplog: pytest.LogCaptureFixture
 ) -> None:
     catalogue = LiveCatalogue([folder], clock)
@@ -141,7 +143,9 @@ def test_a_folder_that_is_gone_changes_nothing(
     assert catalogue["arm"].title == "Back"
 
 
-def test_two_folders(folder: Path, tmp_path_factory: pytest.TempPathFactory, clock: Clock) -> None:
+def test_the_first_of_two_folders_takes_precedence(
+    folder: Path, tmp_path_factory: pytest.TempPathFactory, clock: Clock
+) -> None:
     other = tmp_path_factory.mktemp("other")
     write(other, "boom", VALID)
     assert list(load_catalogue(other, folder)) == ["boom", "arm"]
@@ -154,19 +158,19 @@ def test_two_folders(folder: Path, tmp_path_factory: pytest.TempPathFactory, clo
     assert list(load_catalogue(folder, folder)) == ["arm"]
 
 
-def test_a_broken_file_refuses_the_start(folder: Path) -> None:
+def test_a_broken_file_prevents_the_start(folder: Path) -> None:
     write(folder, "arm", "title = ")
     for reload in (True, False):
         with pytest.raises(CatalogueError, match=r"arm\.toml: is not TOML"):
             open_catalogue([folder], reload=reload)
 
 
-def test_only_who_asks_for_it_gets_it(folder: Path) -> None:
+def test_only_reload_returns_a_live_catalogue(folder: Path) -> None:
     assert isinstance(open_catalogue([folder], reload=True), LiveCatalogue)
     assert isinstance(open_catalogue([folder], reload=False), dict)
 
 
-def test_the_disk_is_looked_at_once_a_second(
+def test_the_files_are_checked_once_a_second(
     folder: Path, clock: Clock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     catalogue = LiveCatalogue([folder], clock)

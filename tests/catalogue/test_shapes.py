@@ -50,7 +50,9 @@ def answers(exercise: Exercise) -> list[str]:
 
 
 @pytest.mark.parametrize("exercise_id", EXPECTED)
-def test_what_each_answer_looks_like(exercise_id: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_the_shape_of_each_answer_in_words(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
     assert answers(catalogue[exercise_id]) == EXPECTED[exercise_id]
 
 

@@ -1,4 +1,4 @@
-"""The exercises that come with the program."""
+"""The shipped exercises."""
 
 import tomllib
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from tests.together import together
 
 Numbers = NDArray[np.float64]
 FILES = sorted(shipped_folder().glob("*.toml"))
-# Exercises on rotations have no robot, others give it by its screw axes.
+# Some exercises have no robot, others one given by screw axes.
 WITH_TABLE = [
     file.stem
     for file in FILES
@@ -82,7 +82,7 @@ def test_both_conventions_of_a_robot_reach_the_same_pose(
 def elementary(
     convention: Convention, a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers
 ) -> Numbers:
-    """The link as Z·X or X·Z, each factor written out."""
+    """The link transform as Z·X or X·Z, with each factor written out."""
     z = np.tile(np.eye(4), (len(a), 1, 1))
     z[:, 0, 0] = z[:, 1, 1] = np.cos(theta)
     z[:, 1, 0] = np.sin(theta)
@@ -97,7 +97,7 @@ def elementary(
 
 
 def test_rrrp_in_the_proximal_convention(catalogue: Mapping[str, Exercise]) -> None:
-    """The in-class practice of Robotic Fundamentals: (a, α, d, θ) with α = 180° in row 3."""
+    """The in-class practice of Robotic Fundamentals has (a, α, d, θ) with α = 180° in row 3."""
     reference = catalogue["rrrp"].robot.tables[Convention.MODIFIED]
     assert reference.labels == ("1", "2", "3", "4")
     texts = [tuple(cell.text() for cell in row) for row in reference.rows]
@@ -125,7 +125,7 @@ def test_planar_rrr_in_the_distal_convention(catalogue: Mapping[str, Exercise]) 
 def test_a_table_of_one_number_never_passes(
     exercise_id: str, number: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The full marks above are not given for anything."""
+    """The tests above for full marks can fail."""
     exercise = catalogue[exercise_id]
     [spec] = [spec for spec in exercise.parts if isinstance(spec, DhTableSpec)]
     rows = exercise.robot.tables[exercise.robot.convention].rows

@@ -10,6 +10,6 @@ Run = Callable[..., Result]
 
 @pytest.fixture
 def run() -> Run:
-    """Runs the command line in this process; output is what a pipe would get."""
+    """A function that runs the command line in this process, with output as for a pipe."""
     runner = CliRunner()
     return lambda *arguments: runner.invoke(program, [str(argument) for argument in arguments])

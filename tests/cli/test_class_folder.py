@@ -1,4 +1,4 @@
-"""A folder of a class, graded in several processes: what is broken harms nobody else."""
+"""Grading a class folder in several processes: broken files do not affect other submissions."""
 
 import json
 import os
@@ -27,7 +27,7 @@ PROGRAM = (sys.executable, "-m", "service", "grade", "--exercise", EXERCISE)
 
 @pytest.fixture(scope="module")
 def folder() -> Iterator[Path]:
-    # Not below pytest's own folders, which nobody else may enter.
+    # Not below pytest's own folders, which other users cannot enter.
     with tempfile.TemporaryDirectory() as temporary:
         Path(temporary).chmod(0o755)
         write_class(Path(temporary) / "class", COUNT)
@@ -46,29 +46,29 @@ def entries(run: subprocess.CompletedProcess[bytes]) -> list[dict[str, Any]]:
     return found
 
 
-def test_all_are_graded_but_those_that_cannot_be(entries: list[dict[str, Any]]) -> None:
+def test_all_usable_submissions_are_graded(entries: list[dict[str, Any]]) -> None:
     assert len(entries) == COUNT + len(BROKEN)
     broken = {Path(entry["file"]).name: entry["error"] for entry in entries if "error" in entry}
     assert broken.keys() == BROKEN.keys()
     assert all(BROKEN[name] in reason for name, reason in broken.items())
 
 
-def test_the_order_is_that_of_the_names(entries: list[dict[str, Any]], folder: Path) -> None:
+def test_submissions_are_sorted_by_name(entries: list[dict[str, Any]], folder: Path) -> None:
     names = [Path(entry["submission"]).relative_to(folder).parts[0] for entry in entries]
     assert names == sorted(names)
 
 
-def test_what_is_broken_is_told_without_a_traceback(
+def test_broken_files_are_reported_without_a_traceback(
     run: subprocess.CompletedProcess[bytes],
 ) -> None:
     assert run.returncode == 2
     lines = run.stderr.decode().splitlines()
     assert len(lines) == len(BROKEN)
-    # No bar stands in a log.
+    # A log has no progress bar.
     assert b"Grading" not in run.stderr
 
 
-def test_one_process_grades_alike(
+def test_one_process_gives_the_same_result(
     run: subprocess.CompletedProcess[bytes], folder: Path, tmp_path: Path
 ) -> None:
     output = tmp_path / "out.json"
@@ -78,7 +78,7 @@ def test_one_process_grades_alike(
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="needs another user")
-def test_a_file_without_permission_is_told(folder: Path) -> None:
+def test_a_file_without_permission_is_reported(folder: Path) -> None:
     closed = folder.parent / "closed.json"
     closed.write_text("{}", encoding="utf-8")
     closed.chmod(0)
@@ -91,7 +91,7 @@ def test_a_file_without_permission_is_told(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupt_ends_it_at_once_and_leaves_nothing(
+def test_an_interrupt_ends_the_run_and_leaves_no_files_or_processes(
     folder: Path, tmp_path: Path, number: signal.Signals
 ) -> None:
     output = tmp_path / "out.csv"
@@ -112,7 +112,7 @@ def test_an_interrupt_ends_it_at_once_and_leaves_nothing(
         # The run does not end by itself before the signal comes.
         for worker in workers(process.pid):
             os.kill(worker, signal.SIGSTOP)
-        # As a terminal does, which sends it to all processes of the group.
+        # Like a terminal, send the signal to all processes of the group.
         os.killpg(process.pid, number)
         _, stderr = process.communicate(timeout=ANSWER)
     finally:
@@ -133,7 +133,7 @@ def wait_for(condition: Any) -> None:
 
 
 def processes() -> Iterator[tuple[int, int, int]]:
-    """Each process that runs, with its parent and its group."""
+    """Yield the id, parent and group of each running process."""
     for entry in Path("/proc").glob("[0-9]*/stat"):
         try:
             state, parent, group_id = entry.read_text().rpartition(")")[2].split()[:3]
@@ -148,7 +148,7 @@ def children(pid: int) -> list[int]:
 
 
 def workers(pid: int) -> list[int]:
-    """The children that grade; another one keeps track of them."""
+    """The worker processes, without Python's resource tracker."""
     return [each for each in children(pid) if b"spawn_main" in command_of(each)]
 
 
@@ -160,7 +160,7 @@ def group(pid: int) -> list[int]:
     return [each for each, _, group_id in processes() if group_id == pid]
 
 
-def test_a_process_that_is_killed_is_told() -> None:
+def test_a_killed_worker_raises_an_error() -> None:
     with (
         mapped(os._exit, [1] * 20, jobs=2) as results,
         pytest.raises(WorkerLostError),

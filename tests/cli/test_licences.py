@@ -29,7 +29,7 @@ def test_every_locked_package_that_is_installed_is_listed_with_its_licence() -> 
         assert has_file or name not in unclear
 
 
-def test_the_texts_of_licences_are_there() -> None:
+def test_the_list_includes_the_texts_of_licences() -> None:
     text = "\n".join(licences())
     assert "Permission is hereby granted, free of charge" in text
     assert "Redistributions of source code must retain" in text

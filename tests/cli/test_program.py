@@ -1,4 +1,4 @@
-"""The program as a process: its name, its weight, its streams."""
+"""The program as a process: its version, help, imported modules and streams."""
 
 import importlib.metadata
 import json
@@ -51,7 +51,7 @@ def test_help_names_every_command_and_the_program() -> None:
 
 
 def loaded(*arguments: object) -> tuple[set[str], bytes]:
-    """The modules that a command has loaded at its end, and its output."""
+    """Run a command; return the modules that it has imported, and its output."""
     probe = (
         "import sys; from service.cli import main\n"
         "try: main()\n"
@@ -61,7 +61,7 @@ def loaded(*arguments: object) -> tuple[set[str], bytes]:
     return set(result.stderr.decode().split()), result.stdout
 
 
-def test_help_and_version_load_nothing_of_the_grader() -> None:
+def test_help_and_version_do_not_import_the_grader() -> None:
     for option in ("--help", "--version"):
         modules, _ = loaded(option)
         assert {name for name in modules if name.startswith("service.")} <= {
@@ -70,19 +70,19 @@ def test_help_and_version_load_nothing_of_the_grader() -> None:
         assert not {"numpy", "pydantic", "fastapi", "sympy", "httpx", *DATABASES} & modules
 
 
-def test_grading_loads_what_it_needs_and_no_more(answer: Path) -> None:
+def test_grading_imports_no_unneeded_packages(answer: Path) -> None:
     modules, output = loaded("grade", answer, "--exercise", "planar-rrr", "--format", "json")
     assert json.loads(output)[0]["exercise"] == "planar-rrr"
     assert {"numpy", "pydantic", "service.grading.kinds.dh_table"} <= modules
     heavy = {"fastapi", "httptools", "httpx", "starlette", "sympy", "mpmath", "uvicorn", "uvloop"}
     heavy |= DATABASES
-    # http.client would be loaded with all of the mail package, for nothing.
+    # http.client would import the whole email package.
     slow = {"http.client", "rich.markdown", "rich.table", "scipy", "unittest"}
     unused = {"service.api", "service.authoring", "service.server", "service.solutions"}
     assert modules & (heavy | slow | unused) == set()
 
 
-def test_the_help_says_of_each_command_what_the_command_says_itself() -> None:
+def test_the_program_help_repeats_the_help_of_each_command() -> None:
     assert len(COMMANDS) >= 3
     for name, line in COMMANDS.items():
         command = typer.main.get_command(import_module(f"service.cli.commands.{name}").commands)
@@ -90,7 +90,7 @@ def test_the_help_says_of_each_command_what_the_command_says_itself() -> None:
         assert "completion" not in command.get_help(typer.Context(command))
 
 
-def test_the_service_loads_nothing_that_it_is_not_asked_for() -> None:
+def test_the_service_does_not_import_optional_packages() -> None:
     unwanted = {"sympy", "scipy", "prometheus_client", *DATABASES}
     probe = f"import sys, service.app; print(sorted({unwanted} & set(sys.modules)))"
     assert process(python=("-c", probe)).stdout.decode().strip() == "[]"
@@ -105,7 +105,7 @@ def test_a_pipe_gets_text_without_colour_in_80_columns(answer: Path) -> None:
     assert max(map(len, text.splitlines())) <= 80
 
 
-def test_an_old_terminal_gets_the_whole_report_in_its_own_letters(answer: Path) -> None:
+def test_an_ascii_terminal_gets_the_whole_report(answer: Path) -> None:
     greek = answer.rename(answer.with_name("θ.json"))
     arguments = ("grade", greek, greek, "--exercise", "planar-rrr")
     result = process(*arguments, PYTHONIOENCODING="ascii")
@@ -117,7 +117,7 @@ def test_an_old_terminal_gets_the_whole_report_in_its_own_letters(answer: Path) 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 @pytest.mark.parametrize("arguments", [("exercises", "list"), ("--help",)])
-def test_an_output_that_is_full_is_told_in_one_line(arguments: tuple[str, ...]) -> None:
+def test_a_full_disk_is_reported_in_one_line(arguments: tuple[str, ...]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(
             [sys.executable, "-m", "service", *arguments],
@@ -133,7 +133,7 @@ def test_an_output_that_is_full_is_told_in_one_line(arguments: tuple[str, ...]) 
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
-def test_closed_streams_cost_no_report(answer: Path, tmp_path: Path) -> None:
+def test_closed_streams_do_not_prevent_the_output_file(answer: Path, tmp_path: Path) -> None:
     output = tmp_path / "points.csv"
     command = f'"$@" --exercise planar-rrr --format csv --output {output} >&- 2>&-'
     grade = (sys.executable, "-m", "service", "grade", str(answer))
@@ -144,12 +144,12 @@ def test_closed_streams_cost_no_report(answer: Path, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX pipe")
 @pytest.mark.parametrize("arguments", [("exercises", "list"), ("grade", "--exercise", "rrrp")])
-def test_a_reader_that_goes_ends_it_quietly(arguments: tuple[str, ...], answer: Path) -> None:
+def test_a_closed_pipe_ends_the_program_quietly(arguments: tuple[str, ...], answer: Path) -> None:
     reader, writer = os.pipe()
     os.close(reader)
     files = (str(answer),) * (arguments[0] == "grade")
     with open(writer, "wb") as gone:  # noqa: PTH123 - it has no path
         command = [sys.executable, "-m", "service", *arguments, *files]
         done = subprocess.run(command, cwd=ROOT, stdout=gone, stderr=subprocess.PIPE, check=False)
-    # As a shell says it of a program that the signal has ended.
+    # The exit code of a shell for a program that SIGPIPE has ended.
     assert (done.returncode, done.stderr) == (141, b"")

@@ -6,9 +6,9 @@ import pytest
 
 from service.client import AsyncGraderClient, GraderClient, Retries
 
-# What a test does with a client of either sort: it calls one method.
+# A call of a method on a sync or async client.
 Use = Callable[[Any], Any]
-# Does that with a client for an address, which has further options.
+# Makes a client for an address with further options, and applies a Use to it.
 Using = Callable[..., Any]
 
 QUICK = Retries(number=2, first_wait=0.001, longest_wait=5.0)
@@ -33,6 +33,6 @@ def asynchronous(address: str, use: Use, **options: Any) -> Any:
 
 @pytest.fixture(params=[synchronous, asynchronous], ids=["sync", "async"])
 def using(request: pytest.FixtureRequest) -> Using:
-    """Calls a method of a client, of both sorts: ``using(address, lambda client: …)``."""
+    """A function that uses a client, sync and async: ``using(address, lambda client: …)``."""
     use: Using = request.param
     return use

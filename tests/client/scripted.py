@@ -1,4 +1,4 @@
-"""A server that answers as it is told, byte by byte, and keeps the requests that came."""
+"""A server with scripted answers that records the requests."""
 
 import socket
 import threading
@@ -11,7 +11,7 @@ from tests.guards import ANSWER
 
 @dataclass(frozen=True)
 class Received:
-    """A request as it came over the wire."""
+    """A received request."""
 
     line: str
     headers: Mapping[str, str]
@@ -19,7 +19,7 @@ class Received:
 
 
 def http(status: int, body: str | bytes = "", **headers: str) -> bytes:
-    """An answer on the wire; ``retry_after`` is the header ``retry-after``."""
+    """The bytes of an HTTP answer; ``retry_after=…`` is the header ``retry-after``."""
     content = body.encode() if isinstance(body, str) else body
     named = {name.replace("_", "-"): value for name, value in headers.items()}
     lines = [f"{name}: {value}" for name, value in named.items()]
@@ -29,7 +29,7 @@ def http(status: int, body: str | bytes = "", **headers: str) -> bytes:
 
 @dataclass
 class Scripted:
-    """The server: one answer for each request, in pieces where it is no single one."""
+    """A server with one answer for each request, as bytes or in pieces."""
 
     answers: list[bytes | Iterable[bytes]]
     listener: socket.socket = field(default_factory=lambda: socket.create_server(("127.0.0.1", 0)))
@@ -39,11 +39,11 @@ class Scripted:
         self.address = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
 
     def serve(self) -> None:
-        """Answer until there is no answer left, then hear nobody."""
+        """Answer requests until no answer is left."""
         for answer in self.answers:
             try:
                 connection, _ = self.listener.accept()
-            except OSError:  # closed by the test, which sent less than was expected
+            except OSError:  # closed by the test, which sent fewer requests than expected
                 return
             with connection:
                 connection.settimeout(ANSWER)
@@ -51,20 +51,20 @@ class Scripted:
                 try:
                     for piece in [answer] if isinstance(answer, bytes) else answer:
                         connection.sendall(piece)
-                except OSError:  # the client has heard enough
+                except OSError:  # the client has closed the connection
                     continue
 
 
 @contextmanager
 def scripted(*answers: bytes | Iterable[bytes]) -> Iterator[Scripted]:
-    """A server with these answers; an empty one ends the connection without any."""
+    """Run a server with these answers; an empty answer closes the connection."""
     server = Scripted(list(answers))
     thread = threading.Thread(target=server.serve)
     thread.start()
     try:
         yield server
     finally:
-        # What waits for a connection is woken by its end, not by that of the file.
+        # Only a shutdown wakes the thread that waits for a connection; close does not.
         server.listener.shutdown(socket.SHUT_RDWR)
         server.listener.close()
         thread.join(ANSWER)

@@ -12,7 +12,7 @@ from service.client.address import checked_server, client_options
         ("http://[::1]:8000", "http://[::1]:8000"),
     ],
 )
-def test_an_address_of_a_server(server: str, called: str) -> None:
+def test_an_address_is_normalized(server: str, called: str) -> None:
     assert checked_server(server) == called
 
 
@@ -23,7 +23,7 @@ def test_an_address_of_a_server(server: str, called: str) -> None:
         "http://a b", "https://example.edu?a=b", "https://example.edu#a", "file:///etc",
     ],
 )  # fmt: skip
-def test_what_is_no_address_of_a_server(server: str) -> None:
+def test_an_invalid_address_is_refused(server: str) -> None:
     with pytest.raises(ValueError, match="address of a server"):
         checked_server(server)
 
@@ -35,13 +35,13 @@ def test_a_password_in_an_address_is_refused_and_not_shown() -> None:
 
 
 @pytest.mark.parametrize("key", ["", " ", "dhg 1", "dhg\r\nX-Admin: 1", "schlüssel", "dhg_\n"])
-def test_a_key_that_no_header_can_hold_is_refused_and_not_shown(key: str) -> None:
+def test_a_key_with_invalid_characters_is_refused_and_not_shown(key: str) -> None:
     with pytest.raises(ValueError, match="The key is empty or") as caught:
         client_options("http://x", key, 1.0)
     assert not key.strip() or key.strip() not in str(caught.value)
 
 
-def test_a_key_is_in_the_header_and_nowhere_else() -> None:
+def test_a_key_is_sent_in_the_authorization_header() -> None:
     options = client_options("http://x", "dhg_1", 1.0)
     assert options["headers"]["Authorization"] == "Bearer dhg_1"
     assert "Authorization" not in client_options("http://x", None, 1.0)["headers"]

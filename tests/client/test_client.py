@@ -1,4 +1,4 @@
-"""Both clients on a real server process, and on servers that fail in every way."""
+"""Both clients with a real server process, and with servers that fail in various ways."""
 
 import json
 import socket
@@ -35,7 +35,7 @@ BUSY = {"type": "about:blank", "title": "Busy", "status": 503, "detail": "Wait."
 
 
 def in_a_file(value: object) -> Any:
-    """The value as it is read from a file of JSON."""
+    """The value after writing it to JSON and reading it back."""
     return read_json(json.dumps(value).encode())
 
 
@@ -43,7 +43,7 @@ def posts(server: Served) -> int:
     return server.log.read_text(encoding="utf-8").count('"POST /v1/')
 
 
-def test_the_exercises_are_those_of_the_catalogue(
+def test_the_client_lists_the_exercises_of_the_catalogue(
     server: Served, using: Using, catalogue: Mapping[str, Exercise]
 ) -> None:
     listed = using(server.address, lambda client: client.exercises())
@@ -52,7 +52,7 @@ def test_the_exercises_are_those_of_the_catalogue(
     ]
 
 
-def test_an_exercise_is_told_with_the_shapes_of_its_answers(server: Served, using: Using) -> None:
+def test_an_exercise_has_the_shapes_of_its_answers(server: Served, using: Using) -> None:
     exercise = using(server.address, lambda client: client.exercise("stanford-arm"))
     assert exercise.feedback is FeedbackLevel.HINTS
     assert [(part.id, part.shape.form) for part in exercise.parts] == [
@@ -61,13 +61,13 @@ def test_an_exercise_is_told_with_the_shapes_of_its_answers(server: Served, usin
 
 
 @pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.campaign)])
-def test_a_report_over_http_is_the_one_that_is_made_here(
+def test_a_report_over_http_equals_a_local_report(
     server: Served, catalogue: Mapping[str, Exercise], every: int
 ) -> None:
     random = Random(13)
     exercises = [*catalogue.values()][::every]
     right = [(exercise, model_of(exercise).answers) for exercise in exercises]
-    # As a file holds them: JSON has no infinity and no half of a pair of surrogates.
+    # JSON has no infinity and no lone surrogates.
     wrong = [(exercise, in_a_file(spoiled(answers, random, 0.2))) for exercise, answers in right]
     with GraderClient(server.address) as client:
         for exercise, answers in right + wrong:
@@ -76,7 +76,7 @@ def test_a_report_over_http_is_the_one_that_is_made_here(
             assert (here.score == 1) is ((exercise, answers) in right)
 
 
-def test_the_options_of_a_grading_are_heeded(server: Served, using: Using) -> None:
+def test_the_options_of_a_grading_are_used(server: Served, using: Using) -> None:
     rows = [{"a": "0", "alpha": "0", "d": "0", "theta": "q1 + 90"}]
     report = using(
         server.address,
@@ -94,7 +94,9 @@ def test_the_options_of_a_grading_are_heeded(server: Served, using: Using) -> No
     assert theta.read.text == "theta1 + 90deg"
 
 
-def test_many_are_graded_in_order_and_in_few_requests(server: Served, using: Using) -> None:
+def test_many_submissions_are_graded_in_order_and_in_few_requests(
+    server: Served, using: Using
+) -> None:
     ids = ["planar-rr", "no-such-exercise", *["planar-rr"] * (MAX_SUBMISSIONS + 6)]
     submissions = [ExerciseSubmission(exercise=each, answers={}) for each in ids]
     before = posts(server)
@@ -105,7 +107,7 @@ def test_many_are_graded_in_order_and_in_few_requests(server: Served, using: Usi
     assert {part.verdict for part in results[0].report.parts} == {Verdict.MISSING}
 
 
-def test_a_text_is_read(server: Served, using: Using) -> None:
+def test_preview_returns_the_reading_of_a_text(server: Served, using: Using) -> None:
     read = using(
         server.address,
         lambda client: client.preview("l1 c1 +", exercise="planar-rrr", quantity="length"),
@@ -115,7 +117,7 @@ def test_a_text_is_read(server: Served, using: Using) -> None:
     )  # fmt: skip
 
 
-def test_a_refusal_says_what_was_wrong_and_is_not_tried_again(server: Served, using: Using) -> None:
+def test_a_refusal_names_its_reason_and_is_not_retried(server: Served, using: Using) -> None:
     before = posts(server)
     with pytest.raises(RequestRefusedError, match="Did you mean 'planar-rr'") as caught:
         using(server.address, lambda client: client.grade("planar-r", {}))
@@ -129,8 +131,8 @@ def test_a_refusal_says_what_was_wrong_and_is_not_tried_again(server: Served, us
     assert posts(server) == before + 2
 
 
-def test_what_was_not_answered_is_sent_again_as_the_same_submission(using: Using) -> None:
-    report = b""  # the connection ends without a word
+def test_retries_have_the_same_idempotency_key(using: Using) -> None:
+    report = b""  # the connection closes without an answer
     busy = http(503, json.dumps(BUSY), retry_after="0")
     done = http(200, json.dumps({"ok": True}))
     with scripted(report, busy, done) as server:
@@ -143,14 +145,14 @@ def test_what_was_not_answered_is_sent_again_as_the_same_submission(using: Using
     assert {each.body for each in server.requests} == {b'{"text":"c1"}'}
 
 
-def test_a_key_of_the_callers_own_is_sent(using: Using) -> None:
+def test_the_idempotency_key_of_the_caller_is_sent(using: Using) -> None:
     with scripted(http(404)) as server, pytest.raises(RequestRefusedError):
         using(server.address, lambda client: client.grade("x", {}, idempotency_key="mine"))
     assert server.requests[0].headers["idempotency-key"] == "mine"
 
 
 @pytest.mark.parametrize("status", [400, 401, 403, 404, 408, 409, 413, 422, 500])
-def test_these_are_not_tried_again(using: Using, status: int) -> None:
+def test_other_statuses_are_not_retried(using: Using, status: int) -> None:
     with scripted(http(status, "<h1>no</h1>"), READY) as server:
         with pytest.raises(RequestRefusedError, match=f"the status {status}") as caught:
             using(server.address, lambda client: client.exercises())
@@ -159,7 +161,7 @@ def test_these_are_not_tried_again(using: Using, status: int) -> None:
 
 
 @pytest.mark.parametrize("status", [429, 502, 503, 504])
-def test_these_are_tried_again_until_the_retries_are_spent(using: Using, status: int) -> None:
+def test_temporary_statuses_are_retried_until_the_limit(using: Using, status: int) -> None:
     with scripted(*[http(status, "<h1>no</h1>")] * 3, READY) as server:
         with pytest.raises(RequestRefusedError) as caught:
             using(server.address, lambda client: client.exercises())
@@ -168,7 +170,7 @@ def test_these_are_tried_again_until_the_retries_are_spent(using: Using, status:
 
 
 @pytest.mark.parametrize("date", ["6", format_datetime(datetime(2200, 1, 1, tzinfo=UTC))])
-def test_a_service_that_asks_for_a_long_wait_is_left_alone(using: Using, date: str) -> None:
+def test_a_call_is_not_retried_after_a_request_for_a_long_wait(using: Using, date: str) -> None:
     with scripted(http(503, json.dumps(BUSY), retry_after=date), READY) as server:
         with pytest.raises(RequestRefusedError, match=r"Wait\."):
             using(server.address, lambda client: client.exercises())
@@ -176,12 +178,12 @@ def test_a_service_that_asks_for_a_long_wait_is_left_alone(using: Using, date: s
 
 
 @pytest.mark.parametrize("date", ["0", "Sun, 06 Nov 1994 08:49:37 GMT", "soon", "-1", "²"])
-def test_a_wait_that_is_over_or_says_nothing_is_none(using: Using, date: str) -> None:
+def test_a_past_or_invalid_retry_after_means_no_wait(using: Using, date: str) -> None:
     with scripted(http(429, retry_after=date), READY) as server:
         assert using(server.address, lambda client: client.exercises()) == []
 
 
-def test_the_key_follows_no_redirection(using: Using) -> None:
+def test_the_client_does_not_follow_redirections(using: Using) -> None:
     with scripted(READY) as other, scripted(http(307, location=f"{other.address}/v1")) as server:
         with pytest.raises(UnexpectedAnswerError, match=f"redirects to {other.address}/v1"):
             using(server.address, lambda client: client.exercises(), key="secret")
@@ -189,7 +191,7 @@ def test_the_key_follows_no_redirection(using: Using) -> None:
 
 
 @pytest.mark.parametrize("prefix", ["/grader", "/a/b/"])
-def test_a_service_below_a_path_is_called_there(using: Using, prefix: str) -> None:
+def test_a_service_may_be_below_a_path(using: Using, prefix: str) -> None:
     with scripted(READY, http(404)) as server:
         using(server.address + prefix, lambda client: client.exercises())
         with pytest.raises(RequestRefusedError):
@@ -204,13 +206,13 @@ def test_a_service_below_a_path_is_called_there(using: Using, prefix: str) -> No
 @pytest.mark.parametrize(
     "body", ["", "<h1>Welcome</h1>", "[]", '{"exercises": [{"id": 1}]}', b"\xff", "[" * 100_000]
 )
-def test_what_is_no_answer_of_a_grader_is_told_so(using: Using, body: str | bytes) -> None:
-    expected = pytest.raises(UnexpectedAnswerError, match="answers as no DH Grader")
+def test_an_unexpected_answer_is_reported(using: Using, body: str | bytes) -> None:
+    expected = pytest.raises(UnexpectedAnswerError, match="is not that of a DH Grader")
     with scripted(http(200, body)) as server, expected:
         using(server.address, lambda client: client.exercises())
 
 
-def test_an_endless_answer_is_ended(using: Using, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_endless_answer_is_cut_off(using: Using, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(received, "MAX_ANSWER", 1024 * 1024)
     sent: list[int] = []
 
@@ -225,7 +227,7 @@ def test_an_endless_answer_is_ended(using: Using, monkeypatch: pytest.MonkeyPatc
     assert len(sent) < 1000
 
 
-def test_an_answer_that_comes_too_slowly_is_ended(using: Using) -> None:
+def test_a_slow_answer_times_out(using: Using) -> None:
     released = socket.socketpair()
 
     def slow() -> Iterator[bytes]:
@@ -239,14 +241,14 @@ def test_an_answer_that_comes_too_slowly_is_ended(using: Using) -> None:
                 yield b" "
 
     with scripted(slow(), slow(), slow()) as server:
-        with pytest.raises(ServerUnreachableError, match=r"no whole answer within 0\.2 seconds"):
+        with pytest.raises(ServerUnreachableError, match=r"no complete answer within 0\.2 seconds"):
             using(server.address, lambda client: client.exercises(), timeout=0.2)
         assert len(server.requests) == 3
     for each in released:
         each.close()
 
 
-def test_nobody_listens(using: Using) -> None:
+def test_an_unreachable_server_is_a_temporary_error(using: Using) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
     with pytest.raises(ServerUnreachableError, match=f"127.0.0.1:{port} cannot be reached") as it:

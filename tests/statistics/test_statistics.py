@@ -1,4 +1,4 @@
-"""The counts of a class, against those made by hand."""
+"""The statistics of a class, compared with counts made by hand."""
 
 import tracemalloc
 from dataclasses import replace
@@ -23,7 +23,7 @@ def counted() -> ClassStatistics:
     return statistics
 
 
-def test_the_distribution_of_scores() -> None:
+def test_scores_are_counted_in_ten_bins() -> None:
     scores = ScoreDistribution()
     for score in (0.0, 0.1, 0.3, 0.35, 0.8, 1.0):
         scores.add(score, passed=score >= 0.8)
@@ -42,7 +42,7 @@ def test_a_score_at_an_edge_is_in_the_upper_bin() -> None:
         assert scores.bins[tenths].count == 1
 
 
-def test_parts_of_those_who_answered(counted: ClassStatistics) -> None:
+def test_missing_parts_do_not_count_as_answers(counted: ClassStatistics) -> None:
     table, pose = counted.parts[TABLE], counted.parts[POSE]
     # Fritz handed in nothing; only Anna's table is all right.
     assert (table.seen, table.share) == (6, Share(correct=1, answered=5))
@@ -65,7 +65,7 @@ def test_parts_of_those_who_answered(counted: ClassStatistics) -> None:
         ("e", None, 4, 4),
     ],
 )
-def test_rows_and_cells_of_those_who_answered(
+def test_missing_rows_and_cells_do_not_count_as_answers(
     counted: ClassStatistics, row: str, cell: str | None, correct: int, answered: int
 ) -> None:
     found = counted.parts[TABLE].rows[row]
@@ -73,22 +73,22 @@ def test_rows_and_cells_of_those_who_answered(
     assert share == Share(correct, answered)
 
 
-def test_nobody_answered_is_no_share() -> None:
+def test_without_answers_there_is_no_share() -> None:
     share = Share()
     share.add(Verdict.MISSING)
     assert share.value is None
 
 
-def test_a_row_too_many_is_no_row_of_the_answer(counted: ClassStatistics) -> None:
+def test_rows_added_by_few_students_are_left_out(counted: ClassStatistics) -> None:
     assert list(counted.parts[TABLE].rows) == ["1", "2", "3", "e"]
 
 
-def test_the_commonest_wrong_entries(counted: ClassStatistics) -> None:
+def test_the_most_common_wrong_entries_are_listed(counted: ClassStatistics) -> None:
     assert counted.parts[TABLE].commonest_wrong(5) == [("2", "alpha", "pi/2", 2)]
     assert counted.parts[POSE].commonest_wrong(5, at_least=1) == []
 
 
-def test_slips_and_those_who_have_them(counted: ClassStatistics) -> None:
+def test_slips_are_listed_with_their_submissions(counted: ClassStatistics) -> None:
     found = {slip.slip_code: list(slip.submissions) for slip in counted.slips.counted()}
     assert found == {
         "quarter_turn": [BEN, CLEO],
@@ -101,12 +101,12 @@ def test_slips_and_those_who_have_them(counted: ClassStatistics) -> None:
     assert quarter.sentence == "α is not right: compare z1 and z2."
 
 
-def test_what_could_not_be_read_is_no_slip(counted: ClassStatistics) -> None:
+def test_unreadable_entries_are_listed_separately(counted: ClassStatistics) -> None:
     [slip] = counted.slips.counted(unreadable=True)
     assert (slip.slip_code, list(slip.submissions)) == ("trailing_operator", [EMRE])
 
 
-def test_groups_of_identical_mistakes(counted: ClassStatistics) -> None:
+def test_submissions_with_identical_mistakes_are_grouped(counted: ClassStatistics) -> None:
     [group] = counted.identical.groups
     assert (group.exercise, group.part) == TABLE
     assert list(group.mistakes) == [("2", "alpha", "pi/2")]
@@ -115,7 +115,7 @@ def test_groups_of_identical_mistakes(counted: ClassStatistics) -> None:
 
 
 def with_entries(report: Report, text: str) -> Report:
-    """The report with a table in which each entry is this, and wrong."""
+    """The report with a table in which each entry is this text, and wrong."""
     table = report.parts[0]
     cells = tuple(
         CellReport(name, Verdict.INCORRECT, read=ReadEntry(text, text)) for name in "abcd"
@@ -147,5 +147,5 @@ def test_thousands_of_submissions_take_little_memory() -> None:
         taken, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    # Of each submission 16 wrong entries, of 2,000 characters: 32 MB in all.
+    # Each submission has 16 wrong entries of 2,000 characters: 32 MB in all.
     assert taken < 3_000_000

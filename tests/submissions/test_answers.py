@@ -1,4 +1,4 @@
-"""Which file answers what: by its name, by what it says, or because nothing else can."""
+"""The files that answer an exercise, found by name, by content, or because there is only one."""
 
 import json
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ CSV = "a, alpha, d, theta\n0, 0, 0, q1\n"
 
 
 def handed(folder: Path, files: Mapping[str, Any], what: Assignment) -> list[ExerciseAnswers]:
-    """The answers of one student, whose folder has these files."""
+    """Write these files into the folder of a student; return the answers found."""
     for name, content in files.items():
         file = folder / "anna" / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -59,7 +59,9 @@ def answers_of(found: ExerciseAnswers) -> dict[str, Any]:
         ({"table.csv": "\ufeffα".encode()}, {"table": "α"}),
     ],
 )
-def test_the_file_is_found(tmp_path: Path, files: dict[str, Any], answers: dict[str, Any]) -> None:
+def test_answers_are_found_by_file_name_and_content(
+    tmp_path: Path, files: dict[str, Any], answers: dict[str, Any]
+) -> None:
     [found] = handed(tmp_path, files, RRR)
     assert found.problem == ""
     assert answers_of(found) == answers
@@ -102,20 +104,22 @@ def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_cannot_be_told_says_why(tmp_path: Path, files: dict[str, Any], reason: str) -> None:
+def test_files_that_cannot_be_assigned_are_explained(
+    tmp_path: Path, files: dict[str, Any], reason: str
+) -> None:
     [found] = handed(tmp_path, files, RRR)
     assert found.body is None
     assert reason in found.problem
 
 
-def test_a_file_that_is_broken_costs_only_itself(tmp_path: Path) -> None:
+def test_a_broken_file_affects_only_itself(tmp_path: Path) -> None:
     [found] = handed(tmp_path, {"table.csv": CSV, "pose.csv": b"\xff"}, RRR)
     assert answers_of(found) == {"table": CSV}
     assert found.problem.startswith("pose.csv is not UTF-8")
     assert found.file == str(tmp_path / "anna")
 
 
-def test_each_exercise_gets_its_file(tmp_path: Path) -> None:
+def test_files_are_assigned_to_their_exercises(tmp_path: Path) -> None:
     files = {
         "scara/table.csv": CSV,
         "scara/README.md": "# Hi",
@@ -126,7 +130,7 @@ def test_each_exercise_gets_its_file(tmp_path: Path) -> None:
     assert first.file == str(tmp_path / "anna/first.json")
 
 
-def test_an_exercise_without_a_file_is_missing_and_no_problem(tmp_path: Path) -> None:
+def test_an_exercise_without_a_file_is_not_a_problem(tmp_path: Path) -> None:
     first, second = handed(tmp_path, {"scara.json": {"answers": {"table": 1}}}, TWO)
     assert (first.file, first.problem, answers_of(first)) == ("", "", {})
     assert answers_of(second) == {"table": 1}
@@ -141,7 +145,7 @@ def test_an_exercise_without_a_file_is_missing_and_no_problem(tmp_path: Path) ->
         ({"x.json": "{"}, "line 1, column 2"),
     ],
 )
-def test_of_several_exercises_one_must_be_named(
+def test_a_file_must_name_one_of_several_exercises(
     tmp_path: Path, files: dict[str, Any], reason: str
 ) -> None:
     found = handed(tmp_path, files, TWO)
@@ -149,7 +153,7 @@ def test_of_several_exercises_one_must_be_named(
     assert all(reason in each.problem for each in found)
 
 
-def test_an_empty_folder_says_so(tmp_path: Path) -> None:
+def test_an_empty_folder_is_a_problem(tmp_path: Path) -> None:
     (tmp_path / "anna").mkdir()
     [found] = handed(tmp_path, {}, RRR)
     assert (found.body, found.problem) == (None, "holds no file")

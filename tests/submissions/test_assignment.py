@@ -48,7 +48,9 @@ def load(tmp_path: Path) -> Callable[[str], Assignment]:
     return load
 
 
-def test_all_that_it_says_holds(load: Callable[[str], Assignment], tmp_path: Path) -> None:
+def test_all_fields_of_an_assignment_are_used(
+    load: Callable[[str], Assignment], tmp_path: Path
+) -> None:
     assignment = load(HOMEWORK)
     first, second = assignment.exercises
     assert (assignment.title, assignment.pass_mark) == ("Homework 3", 0.6)
@@ -57,11 +59,13 @@ def test_all_that_it_says_holds(load: Callable[[str], Assignment], tmp_path: Pat
     assert (first.worth, first.left_out) == (10, frozenset({"pose"}))
     assert second.exercise.id == "crane"
     assert second.path == tmp_path / "own/crane.toml"
-    # The exercise's own points.
+    # Without ``points``, those of the parts.
     assert second.worth == sum(part.points for part in CATALOGUE["scara"].parts)
 
 
-def test_its_names_of_files_count(load: Callable[[str], Assignment], tmp_path: Path) -> None:
+def test_the_file_names_of_an_assignment_are_used(
+    load: Callable[[str], Assignment], tmp_path: Path
+) -> None:
     assignment = load(HOMEWORK)
     for name in ("anna/DH.csv", "anna/T04.tex", "anna/planar-rrr.csv"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -101,7 +105,7 @@ def test_its_names_of_files_count(load: Callable[[str], Assignment], tmp_path: P
         ("[[exercises]]", "[[exercise]", "is not TOML"),
     ],
 )
-def test_a_fault_says_where_and_what_to_write(
+def test_a_fault_names_its_place_and_a_repair(
     load: Callable[[str], Assignment], before: str, after: str, reason: str
 ) -> None:
     with pytest.raises(CatalogueError) as caught:
@@ -109,7 +113,7 @@ def test_a_fault_says_where_and_what_to_write(
     assert reason in str(caught.value)
 
 
-def test_all_exercises_that_cannot_be_set_are_told_at_once(
+def test_all_faulty_exercises_are_reported_together(
     load: Callable[[str], Assignment],
 ) -> None:
     text = HOMEWORK.replace('"planar-rrr"', '"planar-rrx"').replace("pose =", "pos =")
@@ -120,12 +124,12 @@ def test_all_exercises_that_cannot_be_set_are_told_at_once(
     ]  # fmt: skip
 
 
-def test_no_assignment_is_endless(load: Callable[[str], Assignment]) -> None:
+def test_an_assignment_has_at_most_100_exercises(load: Callable[[str], Assignment]) -> None:
     with pytest.raises(CatalogueError, match="at most 100"):
         load('title = "x"\n' + '[[exercises]]\nid = "scara"\n' * 101)
 
 
-def test_a_part_follows_what_is_set() -> None:
+def test_a_part_follows_the_predecessor_of_a_dropped_part() -> None:
     exercise = find("planar-rr")
     follows = {part.id: part.follows for part in exercise.parts}
     assert follows == {

@@ -19,14 +19,14 @@ MATRIX = "DH = [a1 0 0 q1;\n      a2 0 0 q2]"
             "T = eye(4);\nfor i = 1:2\n  T = T * A(DH(i, :));\nend\ndisp(T)"),
             ".m", MATRIX,
         ),
-        # Which values its letters have is for the reader of the matrix to say.
+        # The values of its variables precede the matrix.
         (
             f"b = 2; a1 = 0.4; % m\nq1 = pi/2\n{MATRIX};\ndisp(DH)",
             ".m", f"a1 = 0.4\nq1 = pi/2\n{MATRIX}",
         ),
     ],
 )  # fmt: skip
-def test_the_words_around_a_table_are_left_out(text: str, suffix: str, pasted: str) -> None:
+def test_text_around_a_table_is_removed(text: str, suffix: str, pasted: str) -> None:
     assert pasted_from(text, suffix) == pasted
 
 
@@ -39,7 +39,7 @@ def test_the_words_around_a_table_are_left_out(text: str, suffix: str, pasted: s
         ("a, d\n0, 1", ".md"),
         (f"x\n{BARS}\n\ny", ".csv"),
         (f"{MATRIX};\nB = [1 2; 3 4];", ".m"),
-        # The matrix that was written out is not the answer, or its letters are not the student's.
+        # The matrix is changed later, or its variables have other values.
         (f"{MATRIX};\nDH(1, 3) = d1;", ".m"),
         (f"{MATRIX};\nDH = DH * 2;", ".m"),
         (f"q1 = [0 1];\n{MATRIX};", ".m"),
@@ -48,5 +48,5 @@ def test_the_words_around_a_table_are_left_out(text: str, suffix: str, pasted: s
         ("A = [0]\n" * 10_000, ".m"),
     ],
 )
-def test_without_just_one_the_text_stays(text: str, suffix: str) -> None:
+def test_a_text_without_exactly_one_table_is_unchanged(text: str, suffix: str) -> None:
     assert pasted_from(text, suffix) == text

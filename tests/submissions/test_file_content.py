@@ -1,4 +1,4 @@
-"""Files that would take long to read are refused before they are."""
+"""Files that would take long to parse are refused."""
 
 import pytest
 
@@ -19,7 +19,7 @@ from service.submissions.file_content import (
     ],
     ids=["dots", "keys"],
 )
-def test_toml_that_takes_long_is_refused(content: str) -> None:
+def test_toml_over_a_limit_is_refused(content: str) -> None:
     with pytest.raises(UnusableFileError, match="is more TOML than 64 KiB or 2,000 dots"):
         read_content(content.encode(), "answers.toml")
 

@@ -1,4 +1,4 @@
-"""Students, and the files of each, in folders as they come from a course."""
+"""The students and their files in folders of a course."""
 
 import io
 import os
@@ -28,7 +28,7 @@ def students(folder: Path) -> list[tuple[str, list[str]]]:
     return [told(each) for each in all_handed_in([folder])]
 
 
-def test_a_file_is_a_student_and_so_is_a_folder(tmp_path: Path) -> None:
+def test_each_file_and_each_folder_is_one_student(tmp_path: Path) -> None:
     save(tmp_path, "carl.b/scara/table.csv", "carl.b/answer.json", "bert.json", "anna.json")
     assert students(tmp_path) == [
         ("anna", ["anna.json"]),
@@ -52,7 +52,7 @@ def test_files_named_after_a_student_and_a_part_belong_together(tmp_path: Path) 
     assert alone.learner == "ben"
 
 
-def test_what_nobody_handed_in_is_skipped(tmp_path: Path) -> None:
+def test_hidden_and_system_files_and_the_output_are_skipped(tmp_path: Path) -> None:
     save(
         tmp_path, "anna.json", ".DS_Store", "._anna.json", "__MACOSX/anna.json", "Thumbs.db",
         "~$anna.json", "anna.json~", "bert/.git/config", "bert/answer.json", "grades.csv",
@@ -61,7 +61,7 @@ def test_what_nobody_handed_in_is_skipped(tmp_path: Path) -> None:
     assert [told(each) for each in found] == [("anna", ["anna.json"]), ("bert", ["answer.json"])]
 
 
-def test_one_student_of_a_platform_has_all_files_of_that_name(tmp_path: Path) -> None:
+def test_files_named_by_a_platform_are_grouped_by_student(tmp_path: Path) -> None:
     save(
         tmp_path,
         "Ada Lovelace_12_assignsubmission_file_/answer.json",
@@ -80,7 +80,7 @@ def test_one_student_of_a_platform_has_all_files_of_that_name(tmp_path: Path) ->
     assert names == ["Ada Lovelace_12", "Ada Lovelace_13", "boolegeorge_100"]
 
 
-def test_a_folder_may_be_one_student_s(tmp_path: Path) -> None:
+def test_a_folder_may_belong_to_one_student(tmp_path: Path) -> None:
     save(tmp_path, "table.csv", "more/pose.tex")
     [found] = all_handed_in([tmp_path], folder_is_one=True)
     assert told(found) == (tmp_path.name, ["more/pose.tex", "table.csv"])
@@ -99,7 +99,7 @@ def test_standard_input_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @needs_links
-def test_links_are_followed_within_what_belongs_together_only(tmp_path: Path) -> None:
+def test_links_are_followed_only_within_their_folder(tmp_path: Path) -> None:
     folder = tmp_path / "class"
     save(tmp_path, "secret.json", "shared/x.json")
     save(folder, "anna/answer.json", "bert/mine.json", "carl.json")
@@ -131,7 +131,7 @@ def test_links_are_followed_within_what_belongs_together_only(tmp_path: Path) ->
 
 
 @needs_links
-def test_a_link_that_the_caller_names_is_followed(tmp_path: Path) -> None:
+def test_a_link_named_by_the_caller_is_followed(tmp_path: Path) -> None:
     save(tmp_path, "real/anna.json")
     (tmp_path / "file.json").symlink_to("real/anna.json")
     (tmp_path / "folder").symlink_to("real")
@@ -140,12 +140,14 @@ def test_a_link_that_the_caller_names_is_followed(tmp_path: Path) -> None:
     assert [file.read() for file in files] == [b"{}", b"{}"]
 
 
-def test_a_folder_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_over_the_limits_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(handed_in, "MAX_FILES", 3)
     save(tmp_path, *(f"many/{i}/x.json" for i in range(3)), "many/4.json")
     save(tmp_path, "deep/1/2/3/4/5/6/7/8/9/x.json", "fine/x.json")
     found = {each.learner: each for each in all_handed_in([tmp_path])}
-    with pytest.raises(UnusableFileError, match="deep in each other"):
+    with pytest.raises(UnusableFileError, match="nested more than 8 deep"):
         found["deep"].files()
     with pytest.raises(UnusableFileError, match="more than 3 files"):
         found["many"].files()
@@ -153,7 +155,7 @@ def test_a_folder_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.skipif(os.name == "nt", reason="has no named pipes")
-def test_a_pipe_does_not_wait_for_a_writer(tmp_path: Path) -> None:
+def test_a_pipe_is_refused_without_waiting(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "anna.json")
     [found] = all_handed_in([tmp_path])
     [file] = found.files()

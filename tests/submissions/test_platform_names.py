@@ -18,7 +18,7 @@ from service.submissions.platform_names import PlatformName, platform_name
             "Ada Lovelace_1234_assignsubmission_onlinetext_onlinetext.html",
             "Ada Lovelace_1234", "Participant 1234", "onlinetext.html",
         ),
-        # The forms of newer versions of Moodle: no _ at the end of a folder's name.
+        # Newer versions of Moodle have no _ at the end of a folder's name.
         (
             "Ada Lovelace_1234_assignsubmission_file",
             "Ada Lovelace_1234", "Participant 1234", "",
@@ -30,7 +30,7 @@ from service.submissions.platform_names import PlatformName, platform_name
         ("Group 3_77_assignsubmission_file", "Group 3_77", "Participant 77", ""),
         ("lovelaceada_12345_678_answer.json", "lovelaceada_12345", "12345", "answer.json"),
         ("lovelaceada_LATE_12345_678_a_b.csv", "lovelaceada_12345", "12345", "a_b.csv"),
-        # Canvas keeps an underscore of a name, and every script's letters.
+        # Canvas keeps underscores and the letters of all scripts.
         ("de_souzaana_12345_678_x.csv", "de_souzaana_12345", "12345", "x.csv"),
         ("शर्माकविता_LATE_12345_678_x.csv", "शर्माकविता_12345", "12345", "x.csv"),
         ("lovelaceada_12345_678_table-1.csv", "lovelaceada_12345", "12345", "table-1.csv"),
@@ -40,7 +40,9 @@ from service.submissions.platform_names import PlatformName, platform_name
         ("LATE_anon_x7Gh2_678_table.csv", "anon_x7Gh2", "anon_x7Gh2", "table.csv"),
     ],
 )  # fmt: skip
-def test_the_student_is_found(name: str, student: str, learner: str, file: str) -> None:
+def test_the_student_in_a_platform_name_is_found(
+    name: str, student: str, learner: str, file: str
+) -> None:
     assert platform_name(name) == PlatformName(student, learner, file)
 
 
@@ -59,5 +61,5 @@ def test_the_student_is_found(name: str, student: str, learner: str, file: str) 
         "",
     ],
 )
-def test_a_name_that_somebody_chose_is_no_platform_s(name: str) -> None:
+def test_other_names_are_not_platform_names(name: str) -> None:
     assert platform_name(name) is None

@@ -81,7 +81,7 @@ def test_an_archive_in_the_folder_of_a_class_is_told_and_costs_no_other(tmp_path
         problem = found[name]["error"]
         assert any(
             reason in problem
-            for reason in ("is a file of a kind that is not read", "is no text", "is not UTF-8",
+            for reason in ("is a file of a kind that is not read", "is not text", "is not UTF-8",
                            "is larger than 256 KiB", "is not usable")
         ), problem  # fmt: skip
         assert len(problem) < 400

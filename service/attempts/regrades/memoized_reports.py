@@ -1,4 +1,4 @@
-"""Reports that are kept in memory, as many of the newest as fit into some megabytes."""
+"""A memory cache of reports with a limit in bytes; the least recently used ones are dropped."""
 
 import sys
 from collections import OrderedDict
@@ -9,8 +9,8 @@ from typing import Final, TypeAlias
 from service.attempts.outcome import Outcome
 from service.catalogue import FeedbackLevel
 
-# A report on a table takes 6 kB, its answers included, and the long ones of an attacker a hundred
-# times as much. So 10,000 different tables are kept in half the memory that the program takes.
+# A report on a table takes 6 kB with its answers; an attacker's may take a hundred times as much.
+# 64 MB hold 10,000 different tables and are half the memory of the program.
 MOST_BYTES: Final = 64 * 2**20
 
 # The verdict and the points of each part.
@@ -19,7 +19,7 @@ PartResults: TypeAlias = Mapping[str, tuple[str, float]]
 
 @dataclass(frozen=True, slots=True)
 class WrittenReport:
-    """A report as it is written, and what is asked of it without reading it."""
+    """The JSON text of a report, and the values that are needed without parsing it."""
 
     text: str
     points: float
@@ -29,30 +29,30 @@ class WrittenReport:
 
     @property
     def size(self) -> int:
-        """About how many bytes it takes."""
+        """The approximate size in bytes."""
         return sys.getsizeof(self.text) + sys.getsizeof(self.outcome.content) + 1000
 
 
-class KeptReports:
-    """The newest reports by the submission and the level that they are on."""
+class MemoizedReports:
+    """The most recently used reports by submission and feedback level."""
 
     def __init__(self, most_bytes: int = MOST_BYTES) -> None:
         self._most_bytes = most_bytes
         self._bytes = 0
-        self._kept: OrderedDict[tuple[str, FeedbackLevel], WrittenReport] = OrderedDict()
+        self._reports: OrderedDict[tuple[str, FeedbackLevel], WrittenReport] = OrderedDict()
 
-    def of(
+    def get(
         self, submission: str, level: FeedbackLevel, grade: Callable[[], WrittenReport]
     ) -> WrittenReport:
-        """The report on a submission at a level; ``grade`` gives it where it is not kept."""
+        """Return the report on a submission at a level; call ``grade`` if it is not memoized."""
         key = submission, level
-        if (found := self._kept.get(key)) is not None:
-            self._kept.move_to_end(key)
+        if (found := self._reports.get(key)) is not None:
+            self._reports.move_to_end(key)
             return found
-        self._kept[key] = report = grade()
+        self._reports[key] = report = grade()
         self._bytes += _size(submission, report)
         while self._bytes > self._most_bytes:
-            (oldest, _), dropped = self._kept.popitem(last=False)
+            (oldest, _), dropped = self._reports.popitem(last=False)
             self._bytes -= _size(oldest, dropped)
         return report
 

@@ -1,9 +1,10 @@
-"""Attempts graded anew by any number of processes, which share the work through the database.
+"""Regrade outdated attempts. Several processes may share the work through the database.
 
-A worker locks what it takes, and what it has regraded leaves the queue in the same commit. Where it
-dies, the database gives up its locks, and another takes its attempts. In PostgreSQL workers skip
-what others have locked (SKIP LOCKED). In SQLite one writes at a time, and the others wait, those
-too that record attempts: there a worker grades first, and locks the file while it writes.
+A worker locks the attempts that it takes, and removes them from the queue in the same commit. If
+the worker dies, the database releases its locks, and another worker takes its attempts. In
+PostgreSQL, workers skip locked rows (SKIP LOCKED). In SQLite, only one process can write at a time,
+and even the recording of attempts waits for it: a worker therefore grades first, and locks the file
+only while it writes.
 """
 
 import json
@@ -32,7 +33,7 @@ from sqlalchemy import (
 
 from service.attempts.graded import AttemptGrading
 from service.attempts.recording import insert_or_ignore, outcome_ids
-from service.attempts.regrades.memoized_reports import KeptReports, PartResults, WrittenReport
+from service.attempts.regrades.memoized_reports import MemoizedReports, PartResults, WrittenReport
 from service.attempts.results.listing import BY_TIME, TimePlace, later_than
 from service.attempts.storage.database import in_transaction, without_time_limit
 from service.attempts.storage.tables import attempts, earlier_reports, regrade_queue
@@ -40,16 +41,17 @@ from service.catalogue import Exercise, FeedbackLevel, least
 from service.submissions.body import GradeRequest
 from service.version import VERSION
 
-# So many are regraded in one commit, or as many as are graded in about this time (seconds).
+# The most attempts in one commit, and the time after which a batch ends (seconds).
 BATCH: Final = 50
-_LONGEST: Final = 0.5
+_BATCH_SECONDS: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class RegradedAttempt:
-    """An attempt before and after; ``reasons`` names the parts that are judged otherwise.
+    """The points of an attempt before and after a regrade.
 
-    Where a tutor has ``awarded`` points, these stay and count.
+    ``reasons`` names the parts whose result has changed. Points that a tutor has ``awarded`` stay
+    and count.
     """
 
     id: str
@@ -63,32 +65,32 @@ class RegradedAttempt:
 
     @property
     def is_changed(self) -> bool:
-        """Whether the learner gets another report, or other points by it."""
+        """True if the points or the result of a part have changed."""
         return self.before != self.after or bool(self.reasons)
 
 
 class Regrading:
-    """The regrading of an exercise's attempts by its present version and the present program."""
+    """Regrades the attempts at an exercise with its current version and the current program."""
 
     def __init__(self, exercise: Exercise, ceiling: FeedbackLevel) -> None:
         self._exercise = exercise
         self._ceiling = ceiling
-        # The same answers get the same report.
-        self._kept = KeptReports()
+        # Equal answers get equal reports.
+        self._memoized = MemoizedReports()
 
     def outdated(self, connection: Connection) -> list[int]:
-        """The numbers of the attempts that another version has graded."""
+        """Return the numbers of the attempts that another version has graded."""
         numbers = select(attempts.c.number).where(self._is_outdated()).order_by(attempts.c.number)
         return list(connection.scalars(numbers))
 
     def outdated_count(self, connection: Connection) -> int:
-        """How many attempts another version has graded."""
+        """Count the attempts that another version has graded."""
         return connection.scalar(select(func.count()).where(self._is_outdated())) or 0
 
     def outdated_after(
         self, connection: Connection, place: TimePlace | None, most: int
     ) -> list[TimePlace]:
-        """The next of these in the order of time, at most so many."""
+        """Return at most ``most`` outdated attempts that follow ``place`` in time."""
         following = select(*BY_TIME).where(self._is_outdated())
         if place is not None:
             following = following.where(later_than(place))
@@ -96,11 +98,11 @@ class Regrading:
         return [(at, number) for at, number in found]
 
     def preview(self, connection: Connection, numbers: Sequence[int]) -> list[RegradedAttempt]:
-        """What regrading these attempts would change; nothing is written."""
+        """Return what regrading these attempts would change; write nothing."""
         return [self._regraded(row)[0] for row in self._rows(connection, numbers)]
 
     def enqueue(self, connection: Connection) -> None:
-        """Have all outdated attempts wait for workers; those that wait already wait once."""
+        """Put all outdated attempts into the queue, each at most once."""
         without_time_limit(connection)
         waiting = select(attempts.c.number, literal(self._exercise.id)).where(self._is_outdated())
         connection.execute(
@@ -110,14 +112,14 @@ class Regrading:
         )
 
     def waiting(self, connection: Connection) -> int:
-        """How many wait, those included that a worker is at."""
+        """Count the attempts in the queue, including those that a worker has taken."""
         mine = regrade_queue.c.exercise == self._exercise.id
         return connection.scalar(select(func.count()).select_from(regrade_queue).where(mine)) or 0
 
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
-        """Regrade some that wait and that nobody else is at, in a transaction.
+        """Regrade some attempts of the queue that no other worker has taken, in a transaction.
 
-        None where there is none, or in SQLite where another worker was faster.
+        The result is empty if there are none, or, in SQLite, if another worker was faster.
         """
         prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
         return in_transaction(engine, partial(self.work, among=prepared))
@@ -125,9 +127,9 @@ class Regrading:
     def work(
         self, connection: Connection, among: Sequence[int] | None = None
     ) -> list[RegradedAttempt]:
-        """The same in the caller's transaction: what was taken leaves the queue with its commit.
+        """Regrade a batch of the queue and remove it, in the caller's transaction.
 
-        ``among`` are the only ones that are taken, where some are named.
+        If ``among`` is given, take only these attempts.
         """
         waiting = self._waiting()
         if among is not None:
@@ -142,14 +144,14 @@ class Regrading:
         return [change for _, change, _ in done]
 
     def _waiting(self) -> Select[int]:
-        """The first that wait, as many as a batch."""
+        """The query for the first batch of the queue."""
         waiting = select(regrade_queue.c.attempt).where(
             regrade_queue.c.exercise == self._exercise.id
         )
         return waiting.order_by(regrade_queue.c.attempt).limit(BATCH)
 
     def _prepared(self, engine: Engine) -> list[int]:
-        """The first that wait; what they need is graded, and its reports are kept."""
+        """Grade the first batch of the queue, so that its reports are memoized; return it."""
         with engine.connect() as connection:
             rows = self._rows(connection, connection.scalars(self._waiting()).all())
         return [row.number for row, _ in self._graded_in_time(rows)]
@@ -157,12 +159,12 @@ class Regrading:
     def _graded_in_time(
         self, rows: Sequence[Row[Any]]
     ) -> list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]]:
-        """As many as are graded before the time is over, one at the least.
+        """Regrade rows until the time of a batch is over, but at least one.
 
-        None beside one that came into the queue again while another worker was at it: it is done.
+        The result beside a row is None if another worker has regraded it in the meantime.
         """
         graded: list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]] = []
-        end = time.monotonic() + _LONGEST
+        end = time.monotonic() + _BATCH_SECONDS
         for row in rows:
             graded.append((row, self._regraded(row) if self._needs(row) else None))
             if time.monotonic() >= end:
@@ -182,14 +184,16 @@ class Regrading:
 
     def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, WrittenReport]:
         before = json.loads(row.report)
-        # What a learner was not told once is not told later: the service may have had a ceiling
-        # that nobody has named to this process.
+        # Never above the level of the old report: the service may have had a lower ceiling than
+        # this process.
         level = least(
             self._exercise.feedback_at(row.ordinal or 1),
             self._ceiling,
             FeedbackLevel(before["feedback"]),
         )
-        report = self._kept.of(row.submission, level, lambda: self._report(row.submission, level))
+        report = self._memoized.get(
+            row.submission, level, lambda: self._report(row.submission, level)
+        )
         after = round(report.points * row.worth, 6)
         reasons = tuple(_reasons(_results(before), report.parts))
         change = RegradedAttempt(
@@ -206,7 +210,7 @@ class Regrading:
 
     def _report(self, submission: str, level: FeedbackLevel) -> WrittenReport:
         body = GradeRequest.model_validate_json(submission)
-        # A correction may have taken a part away, or given it another id.
+        # A corrected exercise may have lost a part, or renamed it.
         answers = {part: it for part, it in body.answers.items() if self._exercise.part(part)}
         body = body.model_copy(update={"answers": answers})
         graded = AttemptGrading(self._exercise, body).at(level)
@@ -248,21 +252,21 @@ class Regrading:
 
 
 def _results(report: Mapping[str, Any]) -> PartResults:
-    """The results of the parts of a report as it was written."""
+    """The results of the parts of a recorded report."""
     return {part["part"]: (part["verdict"], part["points"]) for part in report["parts"]}
 
 
 def _reasons(old: PartResults, new: PartResults) -> list[str]:
-    """The parts that are judged otherwise, each in a few words."""
-    told = []
+    """The parts whose results differ, each described in a few words."""
+    reasons = []
     for name in dict.fromkeys((*old, *new)):
         if name not in new:
-            told.append(f"{name} is no part any more")
+            reasons.append(f"{name} is no part any more")
         elif name not in old:
-            told.append(f"{name} is new, {new[name][0]}")
+            reasons.append(f"{name} is new, {new[name][0]}")
         elif old[name] != new[name]:
-            told.append(f"{name} {_change(old[name][0], new[name][0])}")
-    return told
+            reasons.append(f"{name} {_change(old[name][0], new[name][0])}")
+    return reasons
 
 
 def _change(before: str, after: str) -> str:

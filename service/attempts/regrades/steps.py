@@ -1,4 +1,4 @@
-"""A regrade step by step, each so short that it fits into one request."""
+"""Regrading in steps, each short enough for one request."""
 
 import re
 import time
@@ -14,18 +14,18 @@ from service.attempts.regrades.outdated import BATCH, RegradedAttempt, Regrading
 from service.attempts.results.listing import TimePlace, cursor_of, place_of
 from service.attempts.storage.database import in_transaction, reason
 
-# A step ends with the batch in which it has lasted so long, or has so many attempts.
+# A step ends after the batch with which it reaches this time or this number of attempts.
 _SECONDS: Final = 1.0
 _MOST: Final = 20 * BATCH
-# A preview looks at the time after so many: fifty costly answers take seconds.
-_FEW: Final = 10
-# Where a step ended, and how many attempts are left after it.
+# The batch size of a preview: fifty costly answers would take seconds.
+_PREVIEW_BATCH: Final = 10
+# The place where a step ended, and the number of attempts that are left after it.
 _CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<left>[0-9a-f]{1,15})")
 
 
 @dataclass(frozen=True, slots=True)
 class RegradeStep:
-    """What one step has graded anew, how much is left, and the cursor of the next step if any."""
+    """The attempts that one step has regraded, the number left, and the cursor of the next step."""
 
     regraded: Sequence[RegradedAttempt]
     left: int
@@ -33,7 +33,7 @@ class RegradeStep:
 
 
 def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
-    """Grade some outdated attempts; nothing is written. Raises BadCursorError, StoreDownError."""
+    """Grade some outdated attempts; write nothing. Raises BadCursorError, StoreDownError."""
     place, left = (None, 0) if cursor is None else _read(cursor)
     done: list[RegradedAttempt] = []
     end = time.monotonic() + _SECONDS
@@ -41,25 +41,26 @@ def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> Re
         with engine.connect() as connection:
             if cursor is None:
                 left = regrading.outdated_count(connection)
-            found = regrading.outdated_after(connection, place, _FEW)
+            found = regrading.outdated_after(connection, place, _PREVIEW_BATCH)
             while found:
                 done += regrading.preview(connection, [number for _, number in found])
                 place = found[-1]
                 if time.monotonic() >= end or len(done) >= _MOST:
                     break
-                found = regrading.outdated_after(connection, place, _FEW)
+                found = regrading.outdated_after(connection, place, _PREVIEW_BATCH)
     except SQLAlchemyError as error:
         raise StoreDownError(reason(error)) from error
-    # Others may be recorded, or regraded, in the meantime.
+    # In the meantime, attempts may have been recorded or regraded.
     left = max(left - len(done), 0)
     following = f"{cursor_of(place)}:{left:x}" if found and place is not None else None
     return RegradeStep(done, left, following)
 
 
 def apply_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
-    """Regrade some outdated attempts, beside any other process that does so.
+    """Regrade some outdated attempts. Several processes may do so at once.
 
-    The first step, without a cursor, has all of them wait. Raises BadCursorError, StoreDownError.
+    The first step, without a cursor, puts all outdated attempts into the queue. Raises
+    BadCursorError, StoreDownError.
     """
     if cursor is not None:
         _read(cursor)

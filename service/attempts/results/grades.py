@@ -1,4 +1,4 @@
-"""Which attempt counts, and the attempts of a course as tables for other programs."""
+"""The choice of the attempt that counts, and exports of attempts for other programs."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -19,7 +19,7 @@ Counting = Literal["best", "last"]
 
 
 def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Counting]:
-    """The rule of each exercise by its id; one that is gone has that of a new one."""
+    """Return a function from an exercise's id to its counting rule; unknown ids get the default."""
 
     def rule(exercise_id: str) -> Counting:
         exercise = exercises.get(exercise_id)
@@ -30,7 +30,7 @@ def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Countin
 
 @dataclass(frozen=True, slots=True)
 class GradedAttempt:
-    """An attempt, and whether it is the one of its learner that counts at the exercise."""
+    """An attempt; ``counts`` is True if it is the one that counts for its learner."""
 
     attempt: ListedAttempt
     counts: bool
@@ -39,9 +39,10 @@ class GradedAttempt:
 def graded_attempts(
     connection: Connection, wanted: AttemptFilter, counting: Callable[[str], Counting]
 ) -> Iterator[GradedAttempt]:
-    """The attempts by exercise, learner and moment; ``counting`` is the rule of an exercise.
+    """Yield the wanted attempts, sorted by exercise, learner and time.
 
-    Which one counts is decided among those that are wanted.
+    ``counting`` returns the rule of an exercise. The attempt that counts is chosen among the wanted
+    ones.
     """
     ordered = (
         select(*LISTED)
@@ -52,12 +53,12 @@ def graded_attempts(
     found = (ListedAttempt(**row._mapping) for row in connection.execute(ordered))
     for (exercise, _), group in groupby(found, lambda each: (each.exercise, each.learner)):
         of_learner = list(group)
-        chosen = _that_counts(of_learner, counting(exercise))
+        chosen = _counting_attempt(of_learner, counting(exercise))
         yield from (GradedAttempt(each, each is chosen) for each in of_learner)
 
 
-def _that_counts(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
-    """The last attempt, or that with the most points, of several the first."""
+def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
+    """The last attempt, or the first one with the most points; None if no attempt counts."""
     counted = [each for each in of_learner if each.ordinal is not None]
     if not counted:
         return None
@@ -67,10 +68,10 @@ def _that_counts(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedA
 
 
 def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> Iterator[bytes]:
-    """The attempts in a format, line by line.
+    """Yield the attempts in a format, line by line.
 
-    ``csv`` and ``jsonl`` have every attempt, ``canvas`` and ``moodle`` the one of each learner that
-    counts, as a gradebook of that platform imports it; there ``title`` names the assignment.
+    ``csv`` and ``jsonl`` have every attempt. ``canvas`` and ``moodle`` are gradebooks for these
+    platforms, with the attempt of each learner that counts; ``title`` names the assignment there.
     """
     match form:
         case GradesFormat.CSV:
@@ -80,8 +81,8 @@ def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> 
         case GradesFormat.JSONL:
             for each in graded:
                 named = dict(zip(_FIELDS, _values(each), strict=True))
-                told = {name: value for name, value in named.items() if value is not None}
-                yield json.dumps(told, ensure_ascii=False).encode("utf-8", "replace") + b"\n"
+                known = {name: value for name, value in named.items() if value is not None}
+                yield json.dumps(known, ensure_ascii=False).encode("utf-8", "replace") + b"\n"
         case GradesFormat.CANVAS:
             yield from _canvas((each.attempt for each in graded if each.counts), title)
         case GradesFormat.MOODLE:
@@ -96,7 +97,7 @@ _Value = str | float | bool | None
 
 
 def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
-    """The values of ``_FIELDS``; ``points`` are those of a tutor where one has given some."""
+    """The values of ``_FIELDS``; ``points`` are those of a tutor if one has given some."""
     each = graded.attempt
     return (
         each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,
@@ -109,9 +110,9 @@ def _as_cell(value: _Value) -> str | float | None:
 
 
 def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
-    """A gradebook of Canvas: learners by their login, the second line with the points possible.
+    """Yield a gradebook for Canvas, with learners by login and a line of points possible.
 
-    Canvas, "How do I import grades in the Gradebook?".
+    Source: Canvas, "How do I import grades in the Gradebook?".
     """
     kept = list(counted)
     possible = max((each.max_points for each in kept), default=0.0)
@@ -122,7 +123,7 @@ def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
 
 
 def _moodle(counted: Iterable[ListedAttempt]) -> Iterator[bytes]:
-    """A list of grades for Moodle, with the headings of the format ``gradebook``."""
+    """Yield a list of grades for Moodle, with the headings of the format ``gradebook``."""
     yield spreadsheet.line(spreadsheet.GRADEBOOK_HEAD)
     for each in counted:
         late = "late" if each.is_late else ""

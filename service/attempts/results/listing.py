@@ -1,4 +1,4 @@
-"""Recorded attempts as tutors read them: page by page, or one with all that is known of it."""
+"""Read recorded attempts: lists page by page, or one attempt with its history."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -14,13 +14,13 @@ from service.attempts.storage.tables import UtcTime, attempts, earlier_reports, 
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _TICK: Final = timedelta(microseconds=1)
-# Larger numbers are none that a database holds.
+# No number in a database is larger.
 _LARGEST: Final = 2**62
 _CURSOR: Final = re.compile(r"[0-9a-f]+\.[0-9a-f]+")
 
 
 def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
-    """A filter in the database's words."""
+    """Return the SQL condition of a filter."""
     return and_(True, *_conditions(wanted))
 
 
@@ -40,7 +40,7 @@ def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
 
 @dataclass(frozen=True, slots=True)
 class AttemptHistory:
-    """All that is known of an attempt; ``submission`` and ``report`` are JSON."""
+    """All records of an attempt; ``submission`` and ``report`` are JSON."""
 
     attempt: ListedAttempt
     submission: str
@@ -55,7 +55,7 @@ LISTED: Final = [attempts.c[name] for name in ListedAttempt.__dataclass_fields__
 def page(
     connection: Connection, wanted: AttemptFilter, cursor: str | None, most: int
 ) -> tuple[list[ListedAttempt], str | None]:
-    """At most ``most`` attempts, the newest first, and the cursor of the next page if there is one.
+    """Return at most ``most`` attempts, the newest first, and the cursor of the next page, if any.
 
     Raises BadCursorError.
     """
@@ -71,8 +71,8 @@ def page(
 
 
 def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
-    """An attempt with its answers, reports and overrides; None where there is none."""
-    # PostgreSQL refuses some characters before it looks.
+    """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
+    # PostgreSQL raises an error for some characters.
     if not attempt_id.isalnum():
         return None
     found = connection.execute(
@@ -91,18 +91,18 @@ def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
     return AttemptHistory(attempt, submission, report, changed, replaced)
 
 
-# The place of an attempt in the order of time: its moment and its number.
+# The place of an attempt in time: its moment, and its number among attempts of the same moment.
 TimePlace = tuple[datetime, int]
 BY_TIME: Final = (attempts.c.at, attempts.c.number)
 
 
 def earlier_than(place: TimePlace) -> ColumnElement[bool]:
-    """That an attempt comes before a place in the order of time."""
+    """The SQL condition that an attempt comes before a place in time."""
     return tuple_(*BY_TIME) < _literal(place)
 
 
 def later_than(place: TimePlace) -> ColumnElement[bool]:
-    """That an attempt comes after a place in the order of time."""
+    """The SQL condition that an attempt comes after a place in time."""
     return tuple_(*BY_TIME) > _literal(place)
 
 
@@ -118,7 +118,7 @@ def cursor_of(place: TimePlace) -> str:
 
 
 def place_of(cursor: str) -> TimePlace:
-    """The place that a cursor names. Raises BadCursorError."""
+    """The place of a cursor. Raises BadCursorError."""
     if not _CURSOR.fullmatch(cursor):
         raise BadCursorError(cursor)
     try:

@@ -1,4 +1,4 @@
-"""The statistics of an exercise, counted from outcomes: a few thousand stand for all attempts."""
+"""The statistics of an exercise, counted from its outcomes, which are far fewer than attempts."""
 
 import json
 from collections import Counter, defaultdict
@@ -24,7 +24,7 @@ from service.grading import Verdict
 from service.grading.report import combined
 from service.statistics import Share
 
-# So many misconceptions and groups are told, the commonest first, and so many learners of a group.
+# The most misconceptions and groups in the statistics, and the most learners of a group.
 MOST_MISCONCEPTIONS: Final = 100
 MOST_GROUPS: Final = 50
 MOST_LEARNERS: Final = 50
@@ -35,7 +35,7 @@ _Slip: TypeAlias = tuple[str, str]
 
 
 def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> ExerciseStatistics:
-    """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
+    """Return the statistics of the wanted attempts at ``wanted.exercise``."""
     assert wanted.exercise is not None
     chosen = condition(wanted)
     counts = _counts(connection, chosen)
@@ -62,9 +62,9 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
 
 
 def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Counter[str]]:
-    """How many attempts have each outcome on each day (in UTC)."""
+    """The number of attempts by outcome and day (in UTC)."""
     is_postgresql = connection.dialect.name == "postgresql"
-    # SQLite has moments as texts that begin with the day; to read them as dates takes far longer.
+    # SQLite stores times as text that begins with the date; parsing it would take far longer.
     day: ColumnElement[str] = (
         cast(func.date(func.timezone("UTC", attempts.c.at)), String)
         if is_postgresql
@@ -94,7 +94,7 @@ def _contents(
 
 @dataclass(slots=True)
 class _RowCount:
-    """A row in all outcomes that have it."""
+    """The counts of a row: the attempts with this row, and the verdicts of its cells."""
 
     seen: int = 0
     share: Share = field(default_factory=Share)
@@ -109,7 +109,7 @@ class _RowCount:
 
 @dataclass(slots=True)
 class _PartCount:
-    """A part in all outcomes."""
+    """The counts of a part; ``detailed`` is the number of attempts whose report has rows."""
 
     share: Share = field(default_factory=Share)
     detailed: int = 0
@@ -126,7 +126,10 @@ class _PartCount:
             self.rows[row].add(cells, times)
 
     def figures(self, name: str) -> PartFigures:
-        """The figures, without rows that few have: a row too many is no row of the answer."""
+        """Return the figures; leave out rows that fewer than half of the attempts have.
+
+        Such a row is one that a few students added to the table.
+        """
         rows = [
             RowFigures(
                 label=label,
@@ -168,7 +171,7 @@ def _commonest(
 def _newest_reports(
     connection: Connection, chosen: ColumnElement[bool], among: Set[int]
 ) -> dict[int, Any]:
-    """One report of each outcome: of its newest attempt, since later ones are told more."""
+    """The report of the newest attempt with each outcome: later attempts get more feedback."""
     newest = (
         select(func.max(attempts.c.number))
         .where(chosen, attempts.c.outcome.in_(among))
@@ -179,13 +182,13 @@ def _newest_reports(
 
 
 def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
-    """The first message of a code in a part; None where the report was to tell no more."""
+    """The first message with a code in a part; None if the report is too terse to have it."""
     told = (each for each in report["parts"] if each["part"] == part)
     return next((each["message"] for each in _messages(told) if each["code"] == code), None)
 
 
 def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
-    """The messages of parts, rows or cells, and of all that is in them."""
+    """Yield the messages of parts, rows or cells, including nested rows and cells."""
     for place in places:
         yield from place["feedback"]
         yield from _messages([*place.get("rows", ()), *place.get("cells", ())])
@@ -194,7 +197,7 @@ def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]
 def _identical(
     connection: Connection, chosen: ColumnElement[bool], contents: Mapping[int, Mapping[str, Any]]
 ) -> Iterator[IdenticalAnswers]:
-    """The wrong answers that several learners sent letter by letter."""
+    """Yield the wrong answers that several learners sent in exactly the same words."""
     learners = func.count(attempts.c.learner.distinct())
     same = (
         select(attempts.c.outcome, attempts.c.answers_digest, learners, func.count())

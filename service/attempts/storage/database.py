@@ -1,4 +1,4 @@
-"""The database of the attempts: opened by its URL, brought to the newest tables, kept durable."""
+"""Open the database of attempts by its URL, and migrate its tables."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,15 +16,15 @@ from service.attempts.storage.database_file import DatabaseFile, make_private
 R = TypeVar("R")
 
 _MIGRATIONS: Final = Path(__file__).parent / "migrations"
-# So long a statement waits for another process that is writing (seconds).
+# How long a statement waits for another process that is writing (seconds).
 _LOCK_WAIT: Final = 5.0
-# Only one of several processes that start together changes the tables of a PostgreSQL database.
+# The PostgreSQL advisory lock that lets only one of several starting processes migrate.
 _MIGRATION_LOCK: Final = 0x6468_6772
-# PostgreSQL, appendix A, "deadlock_detected"; so often a transaction is tried then.
+# The most tries of a transaction after deadlocks (PostgreSQL, appendix A, "deadlock_detected").
 _TRIES: Final = 5
 _DEADLOCK: Final = "40P01"
-# A server whose machine is gone is given up after half a minute (libpq, "keepalives_idle" and
-# following); without this, TCP goes on for a quarter of an hour.
+# Give up a server whose machine is gone after half a minute (libpq, "keepalives_idle" and
+# following). By default TCP would wait a quarter of an hour.
 _WHEN_SILENT: Final = {
     "keepalives_idle": 10,
     "keepalives_interval": 5,
@@ -34,15 +34,15 @@ _WHEN_SILENT: Final = {
 
 
 def open_database(url: str, *, create: bool = True) -> Engine:
-    """The database at the URL, with the newest tables.
+    """Open the database at the URL and migrate it to the newest tables.
 
-    ``url`` is that of SQLAlchemy (postgresql://…, sqlite:///…) or the path of an SQLite file, which
-    is made where there is none, if ``create``. Raises UnusableDatabaseError.
+    ``url`` is an SQLAlchemy URL (postgresql://…, sqlite:///…) or the path of an SQLite file. With
+    ``create``, a missing file is created. Raises UnusableDatabaseError.
     """
     try:
         engine = _engine(url)
     except (ArgumentError, ValueError) as error:
-        # The URL may hold a password: it is not repeated.
+        # Do not repeat the URL: it may contain a password.
         raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
     is_sqlite = engine.dialect.name == "sqlite"
     if is_sqlite and not _is_there(path := engine.url.database or ""):
@@ -69,7 +69,7 @@ def open_database(url: str, *, create: bool = True) -> Engine:
 
 
 def _is_there(path: str) -> bool:
-    # Another spelling is SQLite's own affair: file:attempts.db?mode=ro, :memory:.
+    # Leave other spellings to SQLite: file:attempts.db?mode=ro, :memory:.
     return path.startswith((":", "file:")) or not path or Path(path).exists()
 
 
@@ -84,7 +84,7 @@ def _engine(url: str) -> Engine:
             event.listen(engine, "begin", _begin_sqlite)
             return engine
         case "postgresql":
-            # The server gives up the locks of a client whose machine is gone after a minute.
+            # The server releases the locks of a client whose machine is gone after a minute.
             options = (
                 f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s "
                 "-c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10 -c tcp_keepalives_count=3"
@@ -92,7 +92,7 @@ def _engine(url: str) -> Engine:
             return create_engine(
                 parsed.set(drivername="postgresql+psycopg"),
                 pool_pre_ping=True,
-                # No failure that is logged tells what somebody has answered.
+                # Logged errors must not contain answers of students.
                 hide_parameters=True,
                 connect_args=_WHEN_SILENT | {"connect_timeout": 3, "options": options},
             )
@@ -103,10 +103,10 @@ def _engine(url: str) -> Engine:
 
 
 def _set_up_sqlite(connection: Any, _: object) -> None:
-    # Transactions begin where SQLAlchemy says so (below) and not where Python's driver guesses.
+    # SQLAlchemy begins transactions (below); Python's driver must not do so on its own.
     connection.isolation_level = None
     cursor = connection.cursor()
-    # Deleted and replaced rows are overwritten, so that nothing of a forgotten learner stays.
+    # Overwrite deleted and replaced rows, so that no data of a deleted learner stays in the file.
     for setting in (
         "journal_mode = WAL",
         "synchronous = FULL",
@@ -118,13 +118,13 @@ def _set_up_sqlite(connection: Any, _: object) -> None:
 
 
 def _begin_sqlite(connection: Connection) -> None:
-    # A transaction that reads first and then writes would fail at once beside another writer.
+    # A deferred transaction that reads first would fail at its first write beside another writer.
     writes = connection.get_execution_options().get("writes", False)
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
 
 
 def _migrate(connection: Connection) -> None:
-    """Bring the tables to the newest form; an empty database gets them all."""
+    """Migrate the tables to the newest version, or create them in an empty database."""
     connection = connection.execution_options(writes=True)
     with connection.begin():
         without_time_limit(connection)
@@ -138,14 +138,14 @@ def _migrate(connection: Connection) -> None:
 
 
 def without_time_limit(connection: Connection) -> None:
-    """Let this transaction take as long as it needs: it is at every row of a large table."""
+    """Remove the time limits of this transaction, which changes every row of a large table."""
     if connection.dialect.name == "postgresql":
         for limit in ("lock_timeout", "statement_timeout"):
             connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
 
 
 def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
-    """The result of ``work``, committed; it is done anew where others were in its way."""
+    """Run ``work`` in a transaction and return its result; try again after a deadlock."""
     tries = 0
     while True:
         try:
@@ -160,16 +160,16 @@ def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
 
 
 def is_deadlock(error: Exception) -> bool:
-    """Whether PostgreSQL ended this transaction for another, so that it should be tried again."""
+    """True if PostgreSQL ended this transaction because of a deadlock; it can be tried again."""
     return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
 
 
 def safe_url(engine: Engine) -> str:
-    """The URL without its password."""
+    """The URL of a database without its password."""
     return engine.url.render_as_string(hide_password=True)
 
 
 def reason(error: SQLAlchemyError) -> str:
-    """What the database's driver says, in one line, without the values of a row."""
+    """The message of the database's driver in one line, without values of rows."""
     said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
     return " ".join(said.split())[:300]

@@ -1,4 +1,4 @@
-"""The file of an SQLite database, which must stay in its place while it is open."""
+"""The file of an SQLite database. It must not be moved or replaced while it is open."""
 
 import os
 from contextlib import suppress
@@ -8,30 +8,30 @@ from typing import Any, Final
 from sqlalchemy import Connection, Engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
-# Read and written by its owner alone: it holds what learners have answered.
+# Only the owner may read and write the file: it contains answers of learners.
 _OWN: Final = 0o600
 
 
 class MisplacedFileError(SQLAlchemyError):
-    """The file that is open no longer stands at its path."""
+    """The open file is no longer at its path."""
 
 
 class DatabaseFile:
-    """Watches over the file of an engine's database.
+    """Refuses connections and commits after the file of a database was deleted or replaced.
 
-    SQLite goes on writing to a file that was deleted or replaced, and nobody finds that again.
+    Otherwise SQLite would go on writing to the old file, and these writes would be lost.
     """
 
     def __init__(self, engine: Engine) -> None:
         self._path = Path()
         self._identity: tuple[int, int] | None = None
-        # No connection that is opened later may make a file, and no commit be told of as durable.
+        # A later connection must not create a new file, and no commit to a lost file may succeed.
         event.listen(engine, "do_connect", self._before_connect)
         event.listen(engine, "begin", self._check)
         event.listen(engine, "commit", self._check)
 
     def note(self, connection: Connection) -> str:
-        """Take the file that the connection has open for the right one; its path, if it has any."""
+        """Remember the connection's file as the right one; return its path, "" if in memory."""
         path: str = connection.exec_driver_sql("PRAGMA database_list").one()[2]
         if path:
             self._path = Path(path)
@@ -47,10 +47,10 @@ class DatabaseFile:
 
 
 def make_private(path: str) -> None:
-    """Make an empty file that only its owner reads, where there is none.
+    """Create an empty file that only its owner can read, unless the file exists.
 
-    An empty file is an empty database, and SQLite gives the files beside it the same mode. A file
-    that is there keeps its own; where none can be made, SQLite says why.
+    An empty file is an empty database, and SQLite gives the files beside it the same mode. Errors
+    are ignored: SQLite reports them when it opens the file.
     """
     with suppress(OSError):
         os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, _OWN))

@@ -1,7 +1,7 @@
-"""Overwriting what was deleted, where it is still written: in SQLite's file of late changes.
+"""Erase deleted rows from SQLite's write-ahead log.
 
-SQLite writes changes to a file beside the database, ``-wal``, and later to the database itself.
-What was deleted is in that file until the file is emptied, for which no other connection may read.
+SQLite writes changes to a log beside the database, ``-wal``, and later to the database itself.
+Deleted rows stay in the log until it is truncated, which is possible only while nobody reads.
 """
 
 import time
@@ -12,17 +12,17 @@ from typing import Final
 from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import SQLAlchemyError
 
-# Milliseconds in which nobody else can write, while readers are waited for.
+# How long one try waits for readers and blocks writers (milliseconds).
 _WAIT: Final = 100
-# How often that is tried before the caller is told, and the seconds in between.
+# The number of tries before the caller gets False, and the seconds in between.
 _TRIES: Final = 8
 _PAUSE: Final = 0.2
 
 
 def overwrite_deleted(engine: Engine, tries: int = _TRIES) -> bool | None:
-    """Overwrite what was deleted; return False if a reader still keeps it in the file ``-wal``.
+    """Truncate the log; return False if a reader prevents it.
 
-    PostgreSQL overwrites in its own time: None.
+    Return None for PostgreSQL, which overwrites deleted rows by itself.
     """
     if engine.dialect.name != "sqlite":
         return None
@@ -31,29 +31,27 @@ def overwrite_deleted(engine: Engine, tries: int = _TRIES) -> bool | None:
         connection.exec_driver_sql(f"PRAGMA busy_timeout = {_WAIT}")
         try:
             for _ in range(tries - 1):
-                if _is_emptied(connection):
+                if _truncate(connection):
                     return True
                 time.sleep(_PAUSE)
-            return _is_emptied(connection)
+            return _truncate(connection)
         finally:
             connection.exec_driver_sql(f"PRAGMA busy_timeout = {before}")
 
 
 def finish_overwriting(engine: Engine) -> None:
-    """Empty SQLite's file of late changes where it can be done now, whoever has deleted.
-
-    Where it cannot, the next call may.
-    """
+    """Truncate SQLite's log if that is possible now. Other programs may have deleted rows, too."""
     if engine.dialect.name != "sqlite":
         return
     with suppress(SQLAlchemyError, OSError):
         with engine.connect() as connection:
             path = connection.exec_driver_sql("PRAGMA database_list").one()[2]
-        late_changes = Path(f"{path}-wal")
-        if late_changes.exists() and late_changes.stat().st_size:
+        log = Path(f"{path}-wal")
+        if log.exists() and log.stat().st_size:
             overwrite_deleted(engine, 1)
 
 
-def _is_emptied(connection: Connection) -> bool:
+def _truncate(connection: Connection) -> bool:
+    """Truncate the log; return False if a reader prevents it."""
     busy, _, _ = connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)").one()
     return not busy

@@ -1,4 +1,4 @@
-"""The tables of the database, as the newest migration leaves them."""
+"""The tables of the database after the newest migration."""
 
 from datetime import UTC, datetime
 from typing import Any
@@ -24,13 +24,13 @@ from sqlalchemy.types import TypeDecorator
 
 
 class UtcTime(TypeDecorator[datetime]):
-    """A moment in UTC, also where the database keeps no time zones (SQLite)."""
+    """A column of times in UTC, also in databases without time zones (SQLite)."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, _: Dialect) -> datetime | None:
-        """Turn to UTC; a moment without its zone is refused."""
+        """Convert to UTC. Raises ValueError if the time has no zone."""
         if value is None:
             return None
         if value.tzinfo is None:
@@ -38,11 +38,11 @@ class UtcTime(TypeDecorator[datetime]):
         return value.astimezone(UTC)
 
     def process_result_value(self, value: datetime | None, _: Dialect) -> datetime | None:
-        """Name the zone where the database left it out."""
+        """Add the zone UTC if the database has not stored it."""
         return value.replace(tzinfo=UTC) if value is not None and value.tzinfo is None else value
 
 
-# In SQLite only a plain INTEGER counts on by itself.
+# In SQLite only a plain INTEGER increments automatically.
 RowNumber = BigInteger().with_variant(Integer, "sqlite")
 
 metadata = MetaData(
@@ -54,8 +54,8 @@ metadata = MetaData(
     }
 )
 
-# Verdicts and codes of a report without what is written in it. Many attempts share one, so that
-# the statistics of a class count a few thousand outcomes and not every cell of every attempt.
+# The verdicts and codes of a report. Many attempts share an outcome, so that the statistics of a
+# class count a few thousand outcomes instead of every cell of every attempt.
 outcomes = Table(
     "outcomes",
     metadata,
@@ -66,13 +66,13 @@ outcomes = Table(
     UniqueConstraint("exercise", "digest"),
 )
 
-# Attempts in which nothing could be read: few among many that count.
+# The condition of an index of uncounted attempts, in which nothing could be read. They are few.
 _UNCOUNTED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("ordinal IS NULL"))
 
-# ``number`` is the order of arrival, ``ordinal`` the learner's own count of counted attempts at the
-# exercise: its uniqueness keeps two requests at once from both being the last one allowed.
-# ``awarded`` are the points of a tutor instead of the report's. The indexes hold all that lists are
-# filtered and statistics counted by: the rows themselves, with their reports, are far larger.
+# ``number`` is the order of arrival. ``ordinal`` counts the learner's counted attempts at the
+# exercise; it is unique, so that two requests at once cannot both take the last allowed attempt.
+# ``awarded`` are points of a tutor instead of the report's. The indexes cover all columns by which
+# lists are filtered and statistics counted, because the rows with their reports are far larger.
 attempts = Table(
     "attempts",
     metadata,
@@ -106,7 +106,7 @@ attempts = Table(
     Index("ix_attempts_outcome", "exercise", "outcome", "answers_digest", "learner", "at"),
 )
 
-# Points that a tutor has awarded instead of a report's, or (NULL) withdrawn; the newest counts.
+# Points awarded by a tutor instead of a report's, or NULL to withdraw them; the newest row counts.
 overrides = Table(
     "overrides",
     metadata,
@@ -132,7 +132,7 @@ earlier_reports = Table(
     Column("max_points", Float, nullable=False),
 )
 
-# The attempts that wait to be regraded; a worker holds those locked that it is at.
+# The attempts that wait to be regraded. A worker locks the rows that it takes.
 regrade_queue = Table(
     "regrade_queue",
     metadata,
@@ -141,7 +141,7 @@ regrade_queue = Table(
     Index(None, "exercise", "attempt"),
 )
 
-# ``digest`` is a keyed hash of the key's text; ``scopes`` are words with blanks between them,
+# ``digest`` is a keyed hash of the key's text; ``scopes`` are words separated by spaces,
 # ``exercises`` a JSON list, or NULL for all.
 keys = Table(
     "keys",
@@ -157,8 +157,8 @@ keys = Table(
     Column("last_used_at", UtcTime),
 )
 
-# One row, from the first key on: what a secret makes of a constant. A database of an earlier
-# version has keys and no row until the next key is made.
+# The keyed hash of a constant with the service's secret, in one row, since the first key was added.
+# A database of an earlier version has keys, but no row until the next key is added.
 key_secrets = Table(
     "key_secrets",
     metadata,

@@ -1,4 +1,4 @@
-"""One thread that writes: what waits is written together, so that many share one durable commit."""
+"""The writer thread. It writes waiting attempts together, so that they share one commit."""
 
 import asyncio
 import logging
@@ -23,16 +23,16 @@ _log = logging.getLogger(__name__)
 
 _SILENT: Final = "the database does not react"
 
-# So many share a transaction at the most, and so many wait before others are turned away.
-_TOGETHER: Final = 64
-_WAITING: Final = 4096
-# Seconds between two times at which the thread tidies up; the first is at its start.
-_TIDYING: Final = 60.0
-# How long a job waits for the database in all (seconds). A server that does not react at all (a
-# machine that is paused) raises no error, and a lock is waited for five seconds.
-_PATIENCE: Final = 15.0
-# Where jobs come at once, the first one waits so long for others (seconds): a commit for each costs
-# twice the processor time. A client that sends one attempt after the other never waits.
+# The most jobs in one transaction, and in the queue before further jobs are refused.
+_MAX_TOGETHER: Final = 64
+_MAX_WAITING: Final = 4096
+# The interval between two calls of ``tidy`` (seconds).
+_TIDY_INTERVAL: Final = 60.0
+# How long a job waits for the database in all (seconds). A paused server raises no error, and
+# waiting for a lock takes up to five seconds.
+_TIMEOUT: Final = 15.0
+# How long the first of several concurrent jobs waits for others (seconds): a commit for each would
+# cost twice the processor time. A client that sends one attempt after the other never waits.
 _GATHER: Final = 0.01
 
 
@@ -43,50 +43,50 @@ class _Job:
     done: "asyncio.Future[Any]"
 
 
-# A job and its result, or the failure that it is told of.
-_Settled = tuple[_Job, Any, Exception | None]
+# A job with its result or its exception.
+_Finished = tuple[_Job, Any, Exception | None]
 
 
 class AttemptWriter:
-    """Runs functions on a connection, in the order in which they come; many in one transaction.
+    """Runs jobs on a connection, in the order of their arrival, many in one transaction.
 
-    A result is given only after the commit: what it says is durable. Where the transaction of
-    several fails, each gets one of its own, so that one that cannot be written costs no other.
+    A job gets its result only after the commit, so that it is durable. If a transaction of several
+    jobs fails, each job is run again in its own transaction: a failing job does not affect others.
     """
 
     def __init__(self, engine: Engine, tidy: Callable[[], None] = lambda: None) -> None:
-        """Start the thread; it calls ``tidy`` at its start and then every minute."""
+        """Start the thread, which calls ``tidy`` at once and then every minute."""
         self._engine = engine
         self._tidy = tidy
         self._tidy_at = monotonic()
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
-        # When the thread last began to ask the database, while it waits for the answer.
-        self._asked_at: float | None = None
+        # The start of the current transaction; None while the thread is idle.
+        self._begun_at: float | None = None
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
 
     async def run(self, work: Callable[[Connection], R]) -> R:
-        """The result of ``work``, committed. Raises StoreDownError if the database did not say so.
+        """Return the result of ``work`` after its commit. Raises StoreDownError.
 
-        Usually nothing was written then; but a commit whose answer is lost may have taken effect.
+        After an error usually nothing was written, unless only the answer to the commit was lost.
         """
-        asked_at = self._asked_at
-        if asked_at is not None and monotonic() - asked_at > _PATIENCE:
+        begun_at = self._begun_at
+        if begun_at is not None and monotonic() - begun_at > _TIMEOUT:
             raise StoreDownError(_SILENT)
-        if self._jobs.qsize() >= _WAITING:
+        if self._jobs.qsize() >= _MAX_WAITING:
             raise StoreDownError("too many attempts wait to be written")
         loop = asyncio.get_running_loop()
         job = _Job(work, loop, loop.create_future())
         self._jobs.put(job)
         try:
-            async with asyncio.timeout(_PATIENCE):
+            async with asyncio.timeout(_TIMEOUT):
                 result: R = await job.done
         except TimeoutError as error:
             raise StoreDownError(_SILENT) from error
         return result
 
     def close(self) -> None:
-        """Write what waits, and end."""
+        """Flush pending jobs and stop the writer thread."""
         self._jobs.put(None)
         self._thread.join()
 
@@ -94,23 +94,24 @@ class AttemptWriter:
         ended = is_busy = False
         while not ended:
             jobs, ended = self._waiting(_GATHER if is_busy else 0)
-            # Who has gone away needs no answer, and what nobody waits for is not begun.
+            # Skip jobs whose caller has gone.
             jobs = [job for job in jobs if not job.done.cancelled()]
             if jobs:
-                self._work_off(jobs)
-                self._asked_at = None
+                self._process(jobs)
+                self._begun_at = None
                 is_busy = len(jobs) > 1
             if monotonic() >= self._tidy_at and not ended:
                 try:
                     self._tidy()
-                except Exception:  # noqa: BLE001 - attempts are recorded all the same
+                except Exception:  # noqa: BLE001 - recording must go on
                     _log.exception("The database could not be tidied up")
-                self._tidy_at = monotonic() + _TIDYING
+                self._tidy_at = monotonic() + _TIDY_INTERVAL
 
     def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
-        """The jobs that wait, none if it is time to tidy up, and whether the end has come.
+        """Wait for jobs; return them, and True if the writer was closed.
 
-        After the first job, wait ``gather`` seconds for others.
+        Return no jobs when it is time to tidy up. Wait ``gather`` seconds for others after the
+        first job.
         """
         jobs: list[_Job] = []
         try:
@@ -121,7 +122,7 @@ class AttemptWriter:
             sleep(gather)
         while found is not None:
             jobs.append(found)
-            if len(jobs) == _TOGETHER:
+            if len(jobs) == _MAX_TOGETHER:
                 return jobs, False
             try:
                 found = self._jobs.get_nowait()
@@ -129,40 +130,40 @@ class AttemptWriter:
                 return jobs, False
         return jobs, True
 
-    def _work_off(self, jobs: list[_Job]) -> None:
-        self._asked_at = monotonic()
+    def _process(self, jobs: list[_Job]) -> None:
+        self._begun_at = monotonic()
         try:
-            results = self._together(jobs)
-        except Exception as error:  # noqa: BLE001 - each job is told of its own failure
-            if len(jobs) > 1 and not is_lost(error):
+            results = self._run_together(jobs)
+        except Exception as error:  # noqa: BLE001 - each job gets its own exception
+            if len(jobs) > 1 and not is_database_failure(error):
                 for job in jobs:
-                    self._work_off([job])
+                    self._process([job])
                 return
-            failure = _told(error)
-            _settle([(job, None, failure) for job in jobs])
+            failure = _as_store_error(error)
+            _deliver([(job, None, failure) for job in jobs])
             return
-        _settle([(job, result, None) for job, result in zip(jobs, results, strict=True)])
+        _deliver([(job, result, None) for job, result in zip(jobs, results, strict=True)])
 
-    def _together(self, jobs: list[_Job]) -> list[Any]:
+    def _run_together(self, jobs: list[_Job]) -> list[Any]:
         with self._engine.connect() as connection:
             connection = connection.execution_options(writes=True)
             with connection.begin():
                 return [job.work(connection) for job in jobs]
 
 
-def _settle(settled: list[_Settled]) -> None:
-    """Tell those who wait, all of a loop by waking it once."""
-    by_loop: dict[asyncio.AbstractEventLoop, list[_Settled]] = defaultdict(list)
-    for each in settled:
+def _deliver(finished: list[_Finished]) -> None:
+    """Pass results and exceptions to the callers of the jobs, waking each event loop once."""
+    by_loop: dict[asyncio.AbstractEventLoop, list[_Finished]] = defaultdict(list)
+    for each in finished:
         by_loop[each[0].loop].append(each)
-    for loop, those in by_loop.items():
-        # Nobody waits in a loop that is closed.
+    for loop, jobs in by_loop.items():
+        # A closed loop has no callers.
         with suppress(RuntimeError):
-            loop.call_soon_threadsafe(_tell, those)
+            loop.call_soon_threadsafe(_resolve, jobs)
 
 
-def _tell(settled: list[_Settled]) -> None:
-    for job, result, failure in settled:
+def _resolve(finished: list[_Finished]) -> None:
+    for job, result, failure in finished:
         if job.done.done():
             continue
         if failure is None:
@@ -171,9 +172,9 @@ def _tell(settled: list[_Settled]) -> None:
             job.done.set_exception(failure)
 
 
-def is_lost(error: Exception) -> bool:
-    """Whether the database itself failed, so that another try at once would fail as well."""
-    # Two transactions of several attempts each may wait for one another; those of one each do not.
+def is_database_failure(error: Exception) -> bool:
+    """True if the database itself failed, so that an immediate retry would fail, too."""
+    # Transactions of several attempts may deadlock; run one by one, they do not.
     if is_deadlock(error):
         return False
     return isinstance(error, SQLAlchemyError) and (
@@ -183,5 +184,5 @@ def is_lost(error: Exception) -> bool:
     )
 
 
-def _told(error: Exception) -> Exception:
+def _as_store_error(error: Exception) -> Exception:
     return StoreDownError(reason(error)) if isinstance(error, SQLAlchemyError) else error

@@ -1,1 +1,1 @@
-"""Exercise files: fields, schema, and the place of each fault."""
+"""Exercise files: their fields and schema, and the line of each fault."""

@@ -1,7 +1,7 @@
-"""The values of an exercise file, as pydantic checks them.
+"""The pydantic types of values in an exercise file.
 
-A formula is text in the students' own notation (``"l1 + 0.1"``, ``"-90deg"``); whether it can be
-read is checked in ``compile.py``, where the exercise's symbols are known.
+A formula is text in the students' notation (``"l1 + 0.1"``, ``"-90deg"``). ``compile.py`` reads it,
+because it needs the exercise's symbols.
 """
 
 import re
@@ -19,22 +19,22 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 
-def _no_truth_value(value: object) -> object:
+def _no_boolean(value: object) -> object:
     if isinstance(value, bool):
         raise ValueError(f"is {str(value).lower()}; write a number or a formula")
     return value
 
 
-# Control characters and the two that XML forbids besides (XML 1.0, "Char"), which break a page or a
-# figure; and marks by which a text reads as another one (Unicode, annex 9, "embeddings").
-_UNSHOWN: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
-# The longest statement that comes with the program has 1,500 characters. Formulas take longest to
-# show: a text of this length a quarter of a second, once.
+# Control characters and the two others that XML forbids (XML 1.0, "Char"), which break a page or a
+# figure; and marks that reorder text, so that it looks different (Unicode, annex 9, "embeddings").
+_HIDDEN: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
+# The longest statement of the shipped exercises has 1,500 characters. Rendering the formulas of a
+# text of this length takes a quarter of a second.
 _LONGEST: Final = 20_000
 
 
 def _showable(text: str) -> str:
-    if found := _UNSHOWN.search(text):
+    if found := _HIDDEN.search(text):
         raise ValueError(f"holds U+{ord(found[0]):04X}, which no reader sees; leave it out")
     if len(text) > _LONGEST:
         raise ValueError(f"has {len(text):,} characters; write at most {_LONGEST:,}")
@@ -42,12 +42,12 @@ def _showable(text: str) -> str:
 
 
 def advice(text: str) -> FieldInfo:
-    """What an author should write whose text has another pattern, as metadata of the field."""
+    """Return field metadata with the advice for a text that does not match the pattern."""
     field: FieldInfo = Field(json_schema_extra={"advice": text})
     return field
 
 
-NotBool = BeforeValidator(_no_truth_value)
+NotBool = BeforeValidator(_no_boolean)
 Formula = Annotated[str | float, NotBool]
 LooseText = Annotated[str, AfterValidator(_showable)]
 Text = Annotated[
@@ -70,9 +70,9 @@ Screw = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
 
 
 class StrictModel(BaseModel):
-    """A table of the file; an unknown key is a fault.
+    """A TOML table of the file. Unknown keys are faults.
 
-    The text below a key is its meaning, from which docs/exercise-fields.md is made.
+    docs/exercise-fields.md is generated from the texts below the keys.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -1,7 +1,7 @@
 """The line of each value of a TOML text.
 
-tomllib tells the line of what is no TOML, but not of a value that is none here. The text has been
-read by it before: this only has to follow its values, not to judge them.
+tomllib names the line of a syntax error, but not the line of a value that fails validation. It has
+read the text before, so this module need not check the syntax again.
 """
 
 import re
@@ -19,9 +19,9 @@ _SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
-    """The line of a field such as ``parts[1].points``, or of the nearest field around it, or None.
+    """The line of a field such as ``parts[1].points``, else of the nearest field around it.
 
-    ``lines`` is the result of ``value_lines``.
+    ``lines`` is the result of ``value_lines``. The result is None if no such field has a line.
     """
     while field and field not in lines:
         field = field[: max(field.rfind("."), field.rfind("["), 0)]
@@ -30,18 +30,20 @@ def line_of(field: str, lines: dict[str, int]) -> int | None:
 
 def value_lines(text: str) -> dict[str, int]:
     """The line of each value of a TOML text by its path: ``{"parts[1].points": 31, …}``."""
-    return _Follower(text).followed()
+    return _LineFinder(text).found()
 
 
-class _Follower:
+class _LineFinder:
+    """Scans a valid TOML text and records the line of each value."""
+
     def __init__(self, text: str) -> None:
         self._text = text
         self._at = 0
         self._lines: dict[str, int] = {}
-        # How many tables each array of tables has so far.
+        # The index of the last table in each array of tables.
         self._counts: dict[str, int] = {}
 
-    def followed(self) -> dict[str, int]:
+    def found(self) -> dict[str, int]:
         prefix = ""
         self._skip()
         while self._at < len(self._text):
@@ -77,7 +79,7 @@ class _Follower:
         self._value(path)
 
     def _keys(self, prefix: str, *, tables: bool = False) -> str:
-        """A dotted key; a name of an array of tables means the last table of it so far."""
+        """Read a dotted key; return its path. An array of tables means its last table so far."""
         path = prefix
         while match := _KEY.match(self._text, self._at):
             if tables and path in self._counts:

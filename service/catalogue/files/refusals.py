@@ -1,4 +1,4 @@
-"""Faults of a tutor's file -> the field and the reason with a repair, as authors name them."""
+"""Translate pydantic's findings into fields of the file, and reasons with advice for authors."""
 
 import difflib
 import inspect
@@ -24,7 +24,8 @@ _Detail = Mapping[str, Any]
 _Location = Sequence[int | str]
 TableAt = Callable[[_Location], type[BaseModel]]
 
-# Pydantic puts the form behind a field that may have several, with a finding for each form.
+# For a field of several types, pydantic has a finding for each, with the type at the end of its
+# location.
 _FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
 _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
                    "union_tag_invalid": "expected_tags"}  # fmt: skip
@@ -34,9 +35,9 @@ _QUOTED: Final = re.compile(r"'([^']*)'")
 def refusals(
     error: ValidationError | FieldError | ExceptionGroup[FieldError], table_at: TableAt
 ) -> list[tuple[str, str]]:
-    """The field and the reason of each fault; a value that fits none of several forms is one.
+    """Return the field and the reason of each fault; findings for several types are one fault.
 
-    ``table_at`` is the table of the file that a location of pydantic lies in.
+    ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
     """
     if isinstance(error, ExceptionGroup):
         return [fault for each in error.exceptions for fault in refusals(each, table_at)]
@@ -57,7 +58,7 @@ def refusals(
 
 
 def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
-    """The reason why a value is refused; ``details`` has one finding for each form it may have."""
+    """The reason why a value is refused; ``details`` has a finding for each possible type."""
     known = [
         choice
         for detail in details
@@ -75,7 +76,7 @@ def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
 
 
 def _no_choice(value: object, known: Sequence[str]) -> str:
-    """The reason for a value that is not among the known ones, with the nearest of them."""
+    """The reason for a value that is not among the known ones; it suggests the nearest."""
     lowered = {choice.lower(): choice for choice in known}
     near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
     meant = f"; did you mean {lowered[near[0]]!r}? Write" if near else "; write"
@@ -83,16 +84,16 @@ def _no_choice(value: object, known: Sequence[str]) -> str:
 
 
 def alternatives(names: Iterable[str]) -> str:
-    """The names with commas between them and "or" before the last."""
+    """Join the names with commas, and with "or" before the last."""
     *others, last = names
     return f"{', '.join(others)} or {last}" if others else last
 
 
 def _path(location: _Location) -> str:
-    """A field as an author would name it: ``parts[0].points``.
+    """The path of a field in the file: ``parts[0].points``.
 
-    Behind the number of a part pydantic puts the part's kind, and behind the robot the way that it
-    is given; neither is a field of the file.
+    Pydantic inserts the kind of a part after its number, and the form of the robot after "robot";
+    neither is in the file.
     """
     inserted = {"parts": 2, "robot": 1}.get(str(location[0])) if location else None
     names = {"start": "from"}
@@ -102,7 +103,7 @@ def _path(location: _Location) -> str:
 
 
 def _advised(detail: _Detail, table_at: TableAt) -> str:
-    """One of pydantic's findings, in a sentence with the repair."""
+    """The message of a pydantic finding with advice."""
     reason: str = detail["msg"].removeprefix("Value error, ")
     location: _Location = detail["loc"]
     last = location[-1] if location else ""
@@ -130,7 +131,7 @@ def _advised(detail: _Detail, table_at: TableAt) -> str:
 
 
 def _out_of_range(value: float, reason: str, is_share: bool) -> str:
-    """The reason for a number out of its range; a share may have been written in per cent."""
+    """The reason for a number out of range; for a share, it suggests the value of a percentage."""
     shown = reprlib.repr(value)
     if not is_share:
         return f"is {shown}; {reason.replace('Input should be', 'write a number', 1)}"
@@ -139,7 +140,7 @@ def _out_of_range(value: float, reason: str, is_share: bool) -> str:
 
 
 def _is_share(key: str, model: type[BaseModel]) -> bool:
-    """Whether a field holds a number from 0 to 1."""
+    """True if the field is a number from 0 to 1."""
     field = model.model_fields.get(key)
     limits = field.metadata if field else []
     return any(getattr(each, "ge", None) == 0 for each in limits) and any(
@@ -161,7 +162,7 @@ def _advice(key: str, model: type[BaseModel]) -> str:
 
 
 def exercise_table(location: _Location) -> type[BaseModel]:
-    """The table of an exercise file that a location of pydantic lies in."""
+    """The model of the table of an exercise file that contains a location of pydantic."""
     match list(location):
         case ["robot", tag, *_]:
             return ScrewRobotSpec if tag == "screws" else RobotSpec
@@ -181,7 +182,7 @@ def exercise_table(location: _Location) -> type[BaseModel]:
 
 
 def table_in(annotation: object) -> type[BaseModel] | None:
-    """The table that a list of tables holds, such as ``list[StepSpec] | None``."""
+    """The model in an annotation such as ``list[StepSpec] | None``; None if there is none."""
     if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
         return annotation
     return next(filter(None, map(table_in, get_args(annotation))), None)

@@ -1,4 +1,4 @@
-"""The bytes of a file that somebody names; of a regular one only."""
+"""Read regular files only."""
 
 import errno
 import os
@@ -7,22 +7,22 @@ from pathlib import Path
 
 
 def read_regular(file: Path, most: int) -> bytes:
-    """The bytes of a regular file; of no other, for a pipe or device may never end, or begin.
+    """Return the bytes of a regular file. Pipes and devices are refused: reading could block.
 
-    Raises OSError, with ``EFBIG`` where there are more than ``most`` bytes.
+    Raises OSError, with ``EFBIG`` if the file has more than ``most`` bytes.
     """
-    with open(file, "rb", opener=_unblocked) as opened:
+    with open(file, "rb", opener=_open_nonblocking) as opened:
         status = os.fstat(opened.fileno())
         if stat.S_ISDIR(status.st_mode):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         if not stat.S_ISREG(status.st_mode):
             raise OSError(errno.EINVAL, "it is a pipe or device")
-        # A file may grow while it is read.
+        # The file may grow during the read.
         content = b"" if status.st_size > most else opened.read(most + 1)
         if max(status.st_size, len(content)) > most:
             raise OSError(errno.EFBIG, f"it is larger than {most // 1024} KiB")
         return content
 
 
-def _unblocked(name: str, flags: int) -> int:
+def _open_nonblocking(name: str, flags: int) -> int:
     return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))

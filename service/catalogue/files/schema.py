@@ -1,4 +1,4 @@
-"""The shape of an exercise file, checked by pydantic."""
+"""The pydantic models of an exercise file."""
 
 from typing import Annotated, Literal
 
@@ -37,24 +37,24 @@ Joints = Annotated[list[Text], Field(min_length=1)]
 
 
 class SymbolSpec(StrictModel):
-    """A letter that may stand in an answer, and the range that its values are drawn from.
+    """A symbol that answers may contain, and the range of its test values.
 
-    A joint variable needs no entry, but may have one that says more about it.
+    A joint variable needs no entry, but may have one to set its range and description.
     """
 
     kind: Kind
-    """Whether it is an angle, a length or a plain number."""
+    """The quantity of the symbol: an angle, a length or a plain number."""
     description: Text
-    """Its meaning, as students see it."""
+    """The meaning that students see."""
     unit: LooseText = ""
-    """Its unit, as students see it; without one "rad" for an angle and "m" for a length."""
+    """The unit that students see. Default: "rad" for an angle and "m" for a length."""
     range: tuple[Formula, Formula] | None = None
-    """The least and the greatest test value; without it −π to π for an angle, 0.2 to 1 for a
+    """The least and the greatest test value. Default: −π to π for an angle, 0.2 to 1 for a
     length, 0.5 to 2 for a number."""
 
 
 class RobotSpec(StrictModel):
-    """The reference robot by its Denavit-Hartenberg table."""
+    """The reference robot, given by its Denavit-Hartenberg table."""
 
     structure: Structure
     """One letter for each joint: R turns, P slides; at most 10."""
@@ -63,9 +63,8 @@ class RobotSpec(StrictModel):
     joints: Joints
     """The joint variables in order. A number in the first is the number of the first joint."""
     table: list[Four]
-    """A row [a, alpha, d, theta] for each joint, and one more where a fixed tool row "e" follows.
-    The joint variable stands in theta (R) or d (P), alone or plus a constant; every other cell is
-    constant."""
+    """A row [a, alpha, d, theta] for each joint, and optionally a fixed tool row "e". The joint
+    variable is in theta (R) or d (P), alone or plus a constant; all other cells are constant."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> "RobotSpec":
@@ -84,7 +83,7 @@ class RobotSpec(StrictModel):
 
 
 class ScrewRobotSpec(StrictModel):
-    """The reference robot by its product of exponentials."""
+    """The reference robot, given by its product of exponentials."""
 
     structure: Structure
     """One letter for each joint: R turns, P slides; at most 10."""
@@ -93,8 +92,8 @@ class ScrewRobotSpec(StrictModel):
     home: Homogeneous
     """The pose of the tool in the base frame with all joint variables 0, 4×4, row by row."""
     screws: list[Screw]
-    """The screw axis (ω; v) of each joint with all joint variables 0, seen from the base frame
-    (the space frame)."""
+    """The screw axis (ω; v) of each joint with all joint variables 0, in the base frame (space
+    frame)."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> "ScrewRobotSpec":
@@ -115,7 +114,7 @@ def _form_of(robot: object) -> str:
     return "screws" if by_screws else "table"
 
 
-# The key that is written decides, so that a fault is reported for the intended form only.
+# The keys in the file select the model, so that faults are reported for the intended form only.
 AnyRobotSpec = Annotated[
     Annotated[RobotSpec, Tag("table")] | Annotated[ScrewRobotSpec, Tag("screws")],
     Discriminator(_form_of),
@@ -123,16 +122,17 @@ AnyRobotSpec = Annotated[
 
 
 class ExpectSpec(StrictModel):
-    """The result that one part must get: at least one key; a key left out allows any value."""
+    """The result that one part must get. At least one key is required; others allow any value."""
 
     points: Annotated[float, Field(ge=0, strict=True)] | None = None
-    """The points that it must get."""
+    """The points of the part."""
     verdict: Literal["correct", "partial", "incorrect", "unreadable", "missing"] | None = None
-    """The verdict that it must get."""
+    """The verdict of the part."""
     codes: list[Text] | None = None
-    """The codes that must be among those of the messages."""
+    """Codes that messages of the part must have."""
     follow_through: StrictBool | None = None
-    """Whether it must earn its points as following from the student's own earlier answer."""
+    """True if the part must earn its points because it follows from the student's own earlier
+    answer; false if it must not."""
 
     @model_validator(mode="after")
     def _expects_something(self) -> "ExpectSpec":
@@ -142,20 +142,19 @@ class ExpectSpec(StrictModel):
 
 
 class CheckSpec(StrictModel):
-    """One answer to the exercise, graded whenever the file is checked."""
+    """An answer that is graded whenever the file is checked."""
 
     title: Text
-    """A few words on what is tried."""
+    """A short description of the check."""
     kind: Literal["right", "equivalent", "wrong"]
     """"right" and "equivalent" must get full marks unless ``expect`` says otherwise; "wrong" must
     lose some, as ``expect`` says."""
     answers: Annotated[dict[str, JsonValue], Field(min_length=1)]
-    """An answer for each part answered, by the part's id, as a submission has it; a table or
-    matrix may be pasted text."""
+    """The answers by part id, as in a submission; a table or matrix may be pasted text."""
     angle_unit: Literal["radians", "degrees"] = "radians"
-    """The unit of bare numbers where an angle is asked for."""
+    """The unit of angles without a unit."""
     expect: dict[str, ExpectSpec] = Field({})
-    """The result that a part must get, by the part's id."""
+    """The expected results by part id."""
 
     @model_validator(mode="after")
     def _says_what_is_wrong(self) -> "CheckSpec":
@@ -168,12 +167,12 @@ class CheckSpec(StrictModel):
 
 
 class ViewSpec(StrictModel):
-    """Where the figure is seen from; without it from where the mechanism is plainest."""
+    """The viewpoint of the figure. Default: the direction that shows the mechanism best."""
 
     azimuth: Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)]
-    """Degrees about z0 from x0 to the viewer: -60 has x0 point to the right, 30 has y0."""
+    """Degrees about z0 from x0 to the viewer. With -60, x0 points to the right; with 30, y0."""
     elevation: Annotated[float, Field(ge=-85, le=85, allow_inf_nan=False)]
-    """Degrees by which the viewer is above the plane of x0 and y0."""
+    """The viewer's elevation above the plane of x0 and y0, in degrees."""
 
 
 class ExerciseSpec(StrictModel):
@@ -182,29 +181,28 @@ class ExerciseSpec(StrictModel):
     title: Text
     """The title of the exercise."""
     source: Text
-    """Where the exercise comes from, with a page; students see it."""
+    """The source of the exercise, with a page; students see it."""
     statement: Text
-    """All that a student has to know, without a figure. Markdown; ``$…$`` is LaTeX maths."""
+    """The whole task in words, so that it needs no figure. Markdown; ``$…$`` is LaTeX maths."""
     robot: AnyRobotSpec | None = None
-    """The reference robot; without one every part holds its answer."""
+    """The reference robot. Without one, every part gives its own answer."""
     symbols: dict[Text, SymbolSpec] = Field({})
-    """The letters that may stand in an answer, by their names."""
+    """The symbols that answers may contain, by name."""
     feedback: FeedbackLevel | Annotated[list[FeedbackLevel], Field(min_length=1)] = (
         FeedbackLevel.HINTS
     )
-    """The most that a student is told: "full" (hints and corrections), "hints" (what to look at,
-    never the value), "verdicts" (right and wrong, and what could not be read) or "score" (bare
-    marks, and what could not be read). Where attempts are recorded it may be a list, one level for
-    each attempt, the last one for all later ones; whoever grades without recording gets the
-    first."""
+    """The highest feedback level for students: "full" (hints and corrections), "hints" (hints
+    without values), "verdicts" (right and wrong entries) or "score" (only marks). All levels name
+    unreadable entries. A list has a level for each recorded attempt: the last one is for all later
+    attempts, and the first one also for gradings without recording."""
     attempts: AttemptsSpec = AttemptsSpec()
-    """How often and until when recorded attempts are taken: a table ``[attempts]``."""
+    """The rules for recorded attempts: a table ``[attempts]``."""
     view: ViewSpec | None = None
-    """Where the figure of the robot is seen from."""
+    """The viewpoint of the robot's figure."""
     parts: Annotated[list[AnyPartSpec], Field(min_length=1)]
     """The questions, one ``[[parts]]`` for each."""
     checks: list[CheckSpec] = Field([])
-    """Answers to try whenever the file is checked, one ``[[checks]]`` for each."""
+    """Answers that are graded whenever the file is checked, one ``[[checks]]`` for each."""
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> "ExerciseSpec":

@@ -1,4 +1,4 @@
-"""Reading a TOML file that a tutor wrote, with the field and line of each fault."""
+"""Read a tutor's TOML file and report faults with field and line."""
 
 import tomllib
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from service.catalogue.files.refusals import TableAt, refusals
 from service.catalogue.files.regular_file import read_regular
 from service.catalogue.robots.formulas import FieldError
 
-# The largest exercise that comes with the program has 8 kB.
+# The largest shipped exercise has 8 kB.
 _LARGEST: Final = 1024 * 1024
 
 Built = TypeVar("Built")
@@ -21,7 +21,7 @@ Built = TypeVar("Built")
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One reason why a tutor's file is refused: where in the file, and why."""
+    """A fault in a tutor's file: its place and the reason."""
 
     file: Path
     field: str
@@ -35,7 +35,7 @@ class Fault:
 
 
 class CatalogueError(Exception):
-    """One or more files of a tutor cannot be used; ``faults`` says which and why."""
+    """One or more files of a tutor cannot be used; ``faults`` are the reasons."""
 
     def __init__(self, faults: list[Fault]) -> None:
         super().__init__("\n".join(str(fault) for fault in faults))
@@ -43,10 +43,10 @@ class CatalogueError(Exception):
 
 
 def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
-    """The result of ``build`` on the content of the file. Raises CatalogueError.
+    """Return the result of ``build`` on the content of the file. Raises CatalogueError.
 
     ``build`` may raise a ValidationError of pydantic, or a FieldError or a group of them.
-    ``table_at`` is the table that a location of pydantic lies in.
+    ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
     """
     try:
         text = read_regular(file, _LARGEST).decode()
@@ -58,8 +58,11 @@ def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: Ta
 def read_toml(
     file: Path, text: str, build: Callable[[dict[str, Any]], Built], table_at: TableAt
 ) -> Built:
-    """The same of the text that a file holds, or would hold. Raises CatalogueError."""
-    # As a file opened for text does.
+    """Return the result of ``build`` on a text, as if it were the content of ``file``.
+
+    Raises CatalogueError like ``load_toml``.
+    """
+    # Normalize line ends as in a file that is opened in text mode.
     text = text.replace("\r\n", "\n")
     try:
         return build(tomllib.loads(text))
@@ -73,13 +76,13 @@ def read_toml(
 
 
 def fault_reason(error: Exception) -> str:
-    """The reason why a file could not be read, or is no TOML."""
+    """The reason why a file cannot be read, or is not TOML."""
     match error:
         case OSError():
             return f"cannot be read: {error.strerror}"
         case UnicodeDecodeError():
             return f"is not UTF-8 text: {error.reason}"
         case RecursionError():
-            return "has tables or lists too deep in each other"
+            return "has tables or lists nested too deep"
         case _:  # of TOML itself, or of a number with thousands of digits
             return f"is not TOML: {error}"

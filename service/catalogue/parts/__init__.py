@@ -1,7 +1,7 @@
-"""The answer kinds as a tutor writes them, one module for each.
+"""The answer kinds in exercise files, one module for each.
 
-A module ``<kind>.py`` holds one subclass of ``PartSpec``, whose ``kind`` is the module's name. It
-is found here by that name; nothing else lists the kinds.
+A module ``<kind>.py`` has one subclass of ``PartSpec``, whose ``kind`` is the module's name. This
+package finds all kinds by their modules; nothing else lists them.
 """
 
 import inspect
@@ -20,11 +20,11 @@ from service.catalogue.shapes import AnswerShape
 
 
 class KindError(RuntimeError):
-    """An answer kind of which a file is missing or unusable; the program does not start."""
+    """A file of an answer kind is missing or unusable, so that the program cannot start."""
 
 
 def _spec(module: ModuleType) -> type[PartSpec]:
-    """The one class of parts in a module. Raises KindError."""
+    """Return the only concrete subclass of PartSpec in a module. Raises KindError."""
     kind = module.__name__.rpartition(".")[2]
     found = [
         member
@@ -56,13 +56,13 @@ if TYPE_CHECKING:
     AnyPartSpec = PartSpec
     AnyShape = AnswerShape
 else:
-    # By the names of the kinds, so that a fault is reported for the intended form only.
+    # Discriminated by kind, so that faults are reported for the intended model only.
     AnyPartSpec = Annotated[reduce(or_, SPECS.values()), Field(discriminator="kind")]
     AnyShape = Annotated[reduce(or_, dict.fromkeys(_SHAPES.values())), Field(discriminator="form")]
 
 
 def posted_forms() -> str:
-    """The form in which an answer of each kind is posted: "`transform`: a list of rows, …"."""
+    """The JSON form of an answer of each kind: "`transform`: a list of rows, …"."""
     kinds: dict[str, list[str]] = {}
     for kind, shape in _SHAPES.items():
         kinds.setdefault(shape.posted, []).append(f"`{kind}`")

@@ -1,4 +1,4 @@
-"""Answer kind ``dh_row``: the row of a transform in the DH table, or that it has none."""
+"""Answer kind ``dh_row``: the DH row of a transform, or "none" if it has no row."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -24,7 +24,7 @@ from service.kinematics.transforms import Numbers
 
 
 class DhRowShape(AnswerShape):
-    """The shape of a DH row; `{"none": true}` says that there is none."""
+    """The shape of a DH row; `{"none": true}` means that the transform has no row."""
 
     posted: ClassVar[str] = (
         '`{"a", "alpha", "d", "theta"}`, or `{"none": true}` where the transform has none'
@@ -40,24 +40,24 @@ class DhRowShape(AnswerShape):
 
 
 class DhRowSpec(PartSpec):
-    """The row of a transform in the DH table, or that it has none."""
+    """The DH row of a given transform, or "none" if it has no row."""
 
     answer_fields: ClassVar[tuple[str, ...]] = ("transform",)
-    # Transforms without a row have one answer, and are two tasks all the same.
+    # Two transforms without a row have equal answers, but are different tasks.
     compared_by_formulas: ClassVar[bool] = True
 
     kind: Literal["dh_row"]
     convention: Convention = Convention.STANDARD
     """"standard" (distal) or "modified" (proximal)."""
     transform: Homogeneous
-    """The transform by its entries, row by row."""
+    """The entries of the transform, row by row."""
 
     def formulas(self) -> WrittenFormulas:
         """The entries of the transform."""
         return replace(transform_of("transform", self.transform), check=self._check)
 
     def _check(self, field: str, numbers: Numbers) -> None:
-        """The two DH conditions hold for all values of the symbols or fail for all."""
+        """Raise FieldError unless each DH condition holds for all values of symbols or for none."""
         check_transform(field, numbers)
         transform = np.moveaxis(numbers, -1, 0)
         for condition in (dh1_residual, dh2_residual):
@@ -69,5 +69,5 @@ class DhRowSpec(PartSpec):
                 )
 
     def shape(self, _: Reference | None) -> DhRowShape:
-        """One row, or none."""
+        """The shape of one row, or "none"."""
         return DhRowShape(columns=list(COLUMNS), convention=self.convention)

@@ -13,22 +13,22 @@ from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 
-# Whether an empty cell counts for nothing, or for 0.
+# The meaning of an empty cell: unread, or 0.
 EmptyCells: TypeAlias = Literal["unread", "zero"]
 
 _CHOICES = {"frames", "base", "tool", "directions"}
 
 
 class DhTableShape(AnswerShape):
-    """The shape of a table, and whose choice its frames are."""
+    """The shape of a table, and which of its frames are given or free."""
 
     posted: ClassVar[str] = '`{"rows": [{"a", "alpha", "d", "theta"}, …]}`'
 
     form: Literal["dh_table"] = "dh_table"
     columns: list[str]
     rows: list[str] = Field(
-        description="Row labels in order: joint numbers, `e` for the end effector. Where either "
-        "convention will do, those of the longer table."
+        description="Row labels in order: joint numbers, `e` for the end effector. If either "
+        "convention is accepted, those of the longer table."
     )
     convention: Convention | Literal["either"]
     frames: GivenOrFree
@@ -49,30 +49,29 @@ class DhTableShape(AnswerShape):
 class DhTableSpec(TablePartSpec):
     """The Denavit-Hartenberg table of the robot.
 
-    Where ``frames`` are the student's choice, the base frame, the tool frame and the joints'
-    positive directions may be, too.
+    If ``frames`` are free, the base frame, the tool frame and the positive directions of the joints
+    may be free, too.
     """
 
     pasted_as = "table"
 
     kind: Literal["dh_table"]
     convention: Convention | Literal["either"]
-    """"standard" (distal) or "modified" (proximal); with "either" the answer says which it
-    uses, and one that does not is read in the convention that fits it best."""
+    """"standard" (distal) or "modified" (proximal). With "either", the answer names its
+    convention, or else the one that fits it best is used."""
     frames: GivenOrFree = "given"
-    """Whose choice the frames on the joints are: "given" accepts those of the reference only,
-    "free" every valid choice."""
+    """The link frames: "given" accepts only those of the reference, "free" every valid choice."""
     base: GivenOrFree = "given"
-    """Whose choice the base frame is."""
+    """The base frame: "given" or "free"."""
     tool: GivenOrFree = "given"
-    """Whose choice the tool frame is."""
+    """The tool frame: "given" or "free"."""
     directions: GivenOrFree = "given"
-    """Whose choice the positive direction of each joint is."""
+    """The positive directions of the joints: "given" or "free"."""
     empty_cells: EmptyCells = "unread"
-    """Whether a cell that is empty or holds a dash is "unread" and earns nothing, or "zero"."""
+    """The meaning of an empty cell or a dash: "unread" earns nothing, "zero" means 0."""
 
     def shape(self, reference: Reference | None) -> DhTableShape:
-        """The columns and the row labels of the table."""
+        """The shape of the table in the convention of the part."""
         assert isinstance(reference, Robot)
         if isinstance(self.convention, Convention):
             labels = reference.tables[self.convention].labels

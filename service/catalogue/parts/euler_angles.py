@@ -12,7 +12,7 @@ from service.catalogue.shapes import ListShape, list_shape
 
 
 class EulerAnglesSpec(PosePartSpec):
-    """Three angles that describe a rotation; every triple of the same rotation is right."""
+    """Three angles that describe a rotation; every triple for the same rotation is right."""
 
     pasted_as = "angles"
 
@@ -20,16 +20,16 @@ class EulerAnglesSpec(PosePartSpec):
     sequence: Literal[
         "RPY", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"
     ]
-    """The axes in the order of the turns. "RPY" is Rz(α) Ry(β) Rx(γ), answered as α, β, γ: the
+    """The axes in the order of the rotations. "RPY" is Rz(α) Ry(β) Rx(γ), answered as α, β, γ: the
     same as "ZYX" about moving axes."""
     axes: Literal["moving", "fixed"] = "moving"
-    """Whether the axes are of the moving frame or of the fixed one."""
+    """The frame of the axes: the moving or the fixed one."""
     expected: Triple | None = None
-    """One triple of angles that is right, in place of the robot's orientation."""
+    """One right triple of angles, instead of the robot's orientation."""
 
     @property
     def turns(self) -> str:
-        """The sequence by its three axes."""
+        """The letters of the three axes, such as "ZYX"."""
         return "ZYX" if self.sequence == "RPY" else self.sequence
 
     def formulas(self) -> WrittenFormulas | None:
@@ -39,7 +39,7 @@ class EulerAnglesSpec(PosePartSpec):
         return list_of("expected[{j}]", self.expected, ["angle"] * 3)
 
     def shape(self, _: Reference | None) -> ListShape:
-        """A list of three angles, with the axes."""
+        """The shape of a list of three angles about the axes."""
         listed = list_shape((f"about {axis.lower()}", "angle") for axis in self.turns)
         return listed.model_copy(update={"sequence": self.sequence, "axes": self.axes})
 

@@ -1,4 +1,4 @@
-"""Answer kind ``link_transforms``: the transforms that the rows of a table stand for."""
+"""Answer kind ``link_transforms``: the transform of each row of a table."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -39,11 +39,11 @@ class LinkTransformsSpec(TablePartSpec):
     convention: Convention
     """"standard" (distal) or "modified" (proximal)."""
     frames: GivenOrFree = "given"
-    """Whose choice the frames on the joints are: with "free" the transforms may be those of any
-    valid table, or of the student's own where the part follows one."""
+    """The link frames: "free" accepts the transforms of any valid table, or, if the part follows a
+    table, of the student's own."""
 
     def shape(self, reference: Reference | None) -> LinkTransformsShape:
-        """The names of the matrices and their size."""
+        """The shape: the names of the matrices and their size."""
         assert isinstance(reference, Robot)
         return LinkTransformsShape(
             matrices=[f"A{row}" for row in reference.tables[self.convention].labels],

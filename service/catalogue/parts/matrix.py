@@ -1,4 +1,4 @@
-"""Answer kind ``matrix``: a matrix of any meaning, such as a Jacobian."""
+"""Answer kind ``matrix``: any matrix, such as a Jacobian."""
 
 from typing import Annotated, Literal
 
@@ -13,7 +13,7 @@ from service.expressions import Kind
 
 
 class MatrixSpec(PartSpec):
-    """A matrix of any meaning, up to 6×6."""
+    """Any matrix up to 6×6."""
 
     kind: Literal["matrix"]
     expected: Annotated[
@@ -22,8 +22,8 @@ class MatrixSpec(PartSpec):
     ]
     """The entries, row by row."""
     quantity: Kind | list[Kind] = "number"
-    """Whether the entries are angles, lengths or plain numbers: one word for all, or one for each
-    column."""
+    """The quantity of the entries (angle, length or plain number): one word for all, or one for
+    each column."""
 
     @property
     def quantities(self) -> tuple[tuple[Kind, ...], ...]:
@@ -37,7 +37,7 @@ class MatrixSpec(PartSpec):
         return matrix_of("expected", self.expected, self.quantities)
 
     def shape(self, _: Reference | None) -> MatrixShape:
-        """A matrix of the size of the one that is expected."""
+        """The shape of the expected matrix."""
         return matrix_shape(len(self.expected), len(self.expected[0]))
 
     @model_validator(mode="after")

@@ -12,7 +12,7 @@ from service.catalogue.shapes import ListShape, list_shape
 
 
 class PositionSpec(PosePartSpec):
-    """The coordinates of a point: of a frame's origin, or of a point that the file gives."""
+    """The coordinates of a point: a frame's origin, or a point given in the file."""
 
     kind: Literal["position"]
     coordinates: Annotated[
@@ -20,9 +20,9 @@ class PositionSpec(PosePartSpec):
         StringConstraints(pattern=r"^(x?y?z?)$", min_length=2),
         advice('write the coordinates that are asked for, such as "xy" or "xyz"'),
     ] = "xyz"
-    """The coordinates that are asked for, in this order."""
+    """The required coordinates in order."""
     expected: list[Formula] | None = None
-    """The coordinates themselves, in place of the robot's."""
+    """The right coordinates, instead of those of the robot."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The coordinates, if they are given."""
@@ -31,7 +31,7 @@ class PositionSpec(PosePartSpec):
         return list_of("expected[{j}]", self.expected, ["length"] * len(self.expected))
 
     def shape(self, _: Reference | None) -> ListShape:
-        """A list of lengths."""
+        """The shape of a list of lengths."""
         return list_shape((letter, "length") for letter in self.coordinates)
 
     @model_validator(mode="after")

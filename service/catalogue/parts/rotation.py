@@ -18,30 +18,29 @@ from service.catalogue.shapes import MatrixShape, matrix_shape
 
 
 class StepSpec(StrictModel):
-    """One turn of a composite rotation."""
+    """One step of a composite rotation."""
 
     axis: Literal["x", "y", "z"]
-    """The axis of the turn."""
+    """The axis of the step."""
     angle: Formula
-    """Its angle."""
+    """The angle of the step."""
     about: Literal["fixed", "moving"] = "moving"
-    """Whether the axis is of the fixed frame or of the moving one."""
+    """The frame of the axis: the fixed or the moving one."""
 
 
 class RotationSpec(PosePartSpec):
-    """A rotation matrix, 3×3: of a pose, by its entries, or by the turns that it is made of."""
+    """A rotation matrix, 3×3: of a pose of the robot, or given by its entries or by steps."""
 
     answer_fields: ClassVar[tuple[str, ...]] = ("expected", "steps")
 
     kind: Literal["rotation"]
     expected: tuple[Triple, Triple, Triple] | None = None
-    """The rotation by its entries, row by row, in place of the robot's and of ``steps``."""
+    """The entries of the rotation, row by row, instead of the robot's rotation or ``steps``."""
     steps: Annotated[list[StepSpec], Field(min_length=1, max_length=6)] | None = None
-    """The rotation by its turns, in the order in which they are made, in place of the robot's and
-    of ``expected``."""
+    """The steps of the rotation in order, instead of the robot's rotation or ``expected``."""
 
     def formulas(self) -> WrittenFormulas | None:
-        """The entries or the angles of the turns, if they are given."""
+        """The entries or the angles of the steps, if they are given."""
         if self.expected is not None:
             return matrix_of("expected", self.expected, ROTATION, check_rotation)
         if self.steps is not None:
@@ -50,5 +49,5 @@ class RotationSpec(PosePartSpec):
         return None
 
     def shape(self, _: Reference | None) -> MatrixShape:
-        """A 3×3 matrix."""
+        """The shape of a 3×3 matrix."""
         return matrix_shape(3, 3)

@@ -35,22 +35,22 @@ class ScrewAxesSpec(PartSpec):
 
     kind: Literal["screw_axes"]
     frame: Literal["space", "body"]
-    """Where the axes are seen from: the base frame ("space") or the tool frame ("body")."""
+    """The frame of the axes: the base frame ("space") or the tool frame ("body")."""
     directions: GivenOrFree = "given"
-    """Whose choice the directions are: with "free" an axis may be reversed."""
+    """The directions of the axes: with "free", an axis may be reversed."""
     expected: Annotated[list[Screw], Field(min_length=1, max_length=12)] | None = None
-    """The axes themselves, in place of the robot's."""
+    """The right axes, instead of those of the robot."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The axes, if they are given."""
         return None if self.expected is None else screws_of("expected", self.expected)
 
     def count(self, joints: Sequence[object]) -> int:
-        """The number of axes asked for, on a robot with these joints."""
+        """The number of required axes for a robot with these joints."""
         return len(self.expected or joints)
 
     def shape(self, reference: Reference | None) -> ScrewAxesShape:
-        """A list of six-vectors."""
+        """The shape of a list of six-vectors."""
         if self.expected is not None:
             rows = numbered(len(self.expected))
         else:

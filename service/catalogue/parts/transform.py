@@ -10,18 +10,18 @@ from service.catalogue.shapes import MatrixShape, matrix_shape
 
 
 class TransformSpec(PosePartSpec):
-    """A homogeneous transform, 4×4; without more, the pose of the tool in the base frame."""
+    """A homogeneous transform, 4×4; by default the pose of the tool in the base frame."""
 
     can_be_followed: ClassVar[bool] = True
 
     kind: Literal["transform"]
     expected: Homogeneous | None = None
-    """The transform by its entries, row by row, in place of the robot's pose."""
+    """The entries of the transform, row by row, instead of the robot's pose."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The entries, if they are given."""
         return None if self.expected is None else transform_of("expected", self.expected)
 
     def shape(self, _: Reference | None) -> MatrixShape:
-        """A 4×4 matrix."""
+        """The shape of a 4×4 matrix."""
         return matrix_shape(4, 4)

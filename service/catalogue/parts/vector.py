@@ -16,9 +16,9 @@ class ComponentSpec(StrictModel):
     """One component of a vector."""
 
     name: Text
-    """Its name."""
+    """The name of the component."""
     quantity: Kind
-    """Whether it is an angle, a length or a plain number."""
+    """The quantity: an angle, a length or a plain number."""
     expected: Formula
     """The right value."""
 
@@ -41,5 +41,5 @@ class VectorSpec(PartSpec):
         )
 
     def shape(self, _: Reference | None) -> ListShape:
-        """A list of the components."""
+        """The shape of the list of components."""
         return list_shape((each.name, each.quantity) for each in self.components)

@@ -1,7 +1,7 @@
-"""The formulas of an exercise file: read, and tried at some values of their symbols.
+"""Read the formulas of an exercise file, and evaluate them at trial values of their symbols.
 
-An answer that the file gives is tried before any student is marked against it: a matrix that is no
-rotation is refused here.
+This finds wrong reference answers before any student is graded: for example, a matrix that is not a
+rotation is refused.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -19,19 +19,19 @@ FormulaGrid = tuple[tuple[Expression, ...], ...]
 # The field of a formula, the formula, and its quantity.
 FormulaField = tuple[str, Expression, Kind]
 
-# What rounding may leave of a 0 or 1 in an author's formulas.
+# The largest rounding error of a 0 or 1 in an author's formulas.
 EXACT = 1e-9
 
 _LINE: tuple[Kind, ...] = ("number", "number", "number", "length")
 HOMOGENEOUS: tuple[tuple[Kind, ...], ...] = (_LINE, _LINE, _LINE, ("number",) * 4)
 ROTATION: tuple[tuple[Kind, ...], ...] = (("number",) * 3,) * 3
-# A pitch is a length per radian, and a moment arm a length.
+# The vector v of a screw is a length: a moment arm, or a pitch per radian.
 SCREW: tuple[Kind, ...] = ("number", "number", "number", "length", "length", "length")
 
 
 @dataclass
 class FieldError(Exception):
-    """A value of an exercise file that cannot stand; ``field`` is its path in the file."""
+    """An invalid value of an exercise file; ``field`` is its path in the file."""
 
     field: str
     reason: str
@@ -43,11 +43,11 @@ class FieldError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class WrittenFormulas:
-    """Formulas as the file has them, row by row; ``quantities`` has the quantity of each.
+    """The formulas of an answer in the file, row by row, and the quantity of each.
 
     ``path`` is the field of row i and column j, such as ``expected[{i}][{j}]``. ``check`` takes the
-    field of them all and their numbers ``(rows, columns, TRIALS)``, and raises FieldError where
-    these cannot be right.
+    field of the answer and its numbers ``(rows, columns, TRIALS)``, and raises FieldError if they
+    cannot be right.
     """
 
     path: str
@@ -67,7 +67,7 @@ def matrix_of(
 
 
 def list_of(path: str, formulas: Sequence[Formula], quantities: Sequence[Kind]) -> WrittenFormulas:
-    """The formulas of a list, kept as one row; ``path`` is such as ``steps[{j}].angle``."""
+    """The formulas of a list as a single row; ``path`` is, for example, ``steps[{j}].angle``."""
     return WrittenFormulas(path, (formulas,), (quantities,))
 
 
@@ -84,14 +84,14 @@ def screws_of(field: str, axes: Sequence[Screw]) -> WrittenFormulas:
 def fields_of(
     path: str, grid: FormulaGrid, quantities: Sequence[Sequence[Kind]]
 ) -> Iterator[FormulaField]:
-    """The formulas of a grid with their fields, as ``path`` names them."""
+    """Yield the formulas of a grid with their fields and quantities; ``path`` has {i} and {j}."""
     for i, (row, kinds) in enumerate(zip(grid, quantities, strict=True)):
         for j, (formula, kind) in enumerate(zip(row, kinds, strict=True)):
             yield path.format(i=i, j=j), formula, kind
 
 
 def grid_values(grid: FormulaGrid, values: SymbolValues, samples: int) -> Numbers:
-    """The numbers that formulas give, ``(rows, columns, samples)``."""
+    """Return the numbers of formulas at the values, ``(rows, columns, samples)``."""
     numbers = np.empty((len(grid), len(grid[0]), samples))
     for i, row in enumerate(grid):
         for j, formula in enumerate(row):
@@ -100,14 +100,14 @@ def grid_values(grid: FormulaGrid, values: SymbolValues, samples: int) -> Number
 
 
 class FormulaReader:
-    """Reads and tries the formulas of one exercise."""
+    """Reads the formulas of one exercise and evaluates them at trial values."""
 
     def __init__(self, vocabulary: Vocabulary, variables: tuple[Variable, ...]) -> None:
         self._vocabulary = vocabulary
         self._values = trial_values(variables)
 
     def read(self, field: str, source: Formula, quantity: Kind) -> Expression:
-        """The formula at ``field``. Raises FieldError where it cannot be read."""
+        """Read the formula at ``field``. Raises FieldError if it is unreadable."""
         try:
             return read(source, self._vocabulary, quantity=quantity)
         except ExpressionError as error:
@@ -115,7 +115,7 @@ class FormulaReader:
             raise FieldError(field, f"{error.message}{hint}") from error
 
     def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
-        """All formulas, tried; ``prefix`` stands before each field. Raises FieldError."""
+        """Read and check all formulas; prepend ``prefix`` to their fields. Raises FieldError."""
         path = prefix + written.path
         rows = enumerate(zip(written.rows, written.quantities, strict=True))
         grid = tuple(
@@ -125,25 +125,28 @@ class FormulaReader:
             )
             for i, (row, quantities) in rows
         )
-        numbers = self.tried(grid, lambda i, j: path.format(i=i, j=j))
+        numbers = self.trial_numbers(grid, lambda i, j: path.format(i=i, j=j))
         if written.check is not None:
             written.check(prefix + written.path.partition("[")[0], numbers)
         return grid
 
-    def tried(self, grid: FormulaGrid, field: Callable[[int, int], str]) -> Numbers:
-        """The numbers ``(rows, columns, TRIALS)``. Raises FieldError where one is undefined."""
+    def trial_numbers(self, grid: FormulaGrid, field: Callable[[int, int], str]) -> Numbers:
+        """Return the trial numbers ``(rows, columns, TRIALS)``.
+
+        Raises FieldError if one is undefined.
+        """
         numbers = grid_values(grid, self._values, TRIALS)
         for i, j in np.argwhere(~np.isfinite(numbers).all(axis=-1)).tolist():
             raise FieldError(
                 field(i, j),
-                f"{grid[i][j].text()} has no value for some values of its symbols; mend it, or "
+                f"{grid[i][j].text()} has no value for some values of its symbols; fix it, or "
                 f"narrow their ranges",
             )
         return numbers
 
 
 def check_rotation(field: str, numbers: Numbers) -> None:
-    """Check that numbers ``(3 or 4, 3 or 4, samples)`` hold rotations. Raises FieldError."""
+    """Raise FieldError unless numbers ``(3 or 4, 3 or 4, samples)`` begin with 3×3 rotations."""
     rotation = np.moveaxis(numbers[:3, :3], -1, 0)
     if np.abs(np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)).max() > EXACT:
         raise FieldError(
@@ -154,7 +157,7 @@ def check_rotation(field: str, numbers: Numbers) -> None:
 
 
 def check_transform(field: str, numbers: Numbers) -> None:
-    """Check that numbers ``(4, 4, samples)`` are homogeneous transforms. Raises FieldError."""
+    """Raise FieldError unless numbers ``(4, 4, samples)`` are homogeneous transforms."""
     check_rotation(field, numbers)
     if np.abs(numbers[3] - np.array([[0.0], [0.0], [0.0], [1.0]])).max() > EXACT:
         raise FieldError(field, "must end in the row 0, 0, 0, 1")

@@ -1,4 +1,4 @@
-"""The reference robot: its table as formulas, and the numbers that they give."""
+"""The reference robot given by a DH table: its formulas and their numbers."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,14 +25,14 @@ from service.kinematics.transforms import Matrices, Numbers
 
 FormulaRow = Row[Expression]
 
-# What the cells of a row are, in the order of ``COLUMNS``.
+# The quantities of the cells of a row, in the order of ``COLUMNS``.
 ROW_QUANTITIES: tuple[Kind, Kind, Kind, Kind] = ("length", "angle", "length", "angle")
 TOOL_ROW = "e"
 
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One joint: its index as the table's row label shows it, its variable, and how it moves."""
+    """One joint: its index, which is the label of its row, its variable, and its type."""
 
     index: int
     variable: str
@@ -40,13 +40,13 @@ class Joint:
 
     @property
     def column(self) -> str:
-        """The table column that the joint variable stands in."""
+        """The table column of the joint variable."""
         return "d" if self.prismatic else "theta"
 
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """A table of formulas in one convention; rows beyond the joints are fixed."""
+    """A table of formulas in one convention; the rows after those of the joints are fixed."""
 
     convention: Convention
     joints: tuple[Joint, ...]
@@ -54,16 +54,16 @@ class ReferenceTable:
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
-        """Row labels: the joint's number, and "e" for the fixed row after the last joint.
+        """The row labels: joint numbers, and "e" for the fixed row after the last joint.
 
-        A standard table with a row "e" takes two of them in the modified convention.
+        A standard table with a row "e" has two fixed rows in the modified convention, "e" and "e2".
         """
         joints = tuple(str(joint.index) for joint in self.joints)
         fixed = (TOOL_ROW, f"{TOOL_ROW}2")
         return joints + fixed[: len(self.rows) - len(joints)]
 
     def values(self, values: SymbolValues, samples: int) -> Table:
-        """The table in numbers, ``(rows, 4, samples)``, at the given values of the symbols."""
+        """Return the numbers of the table, ``(rows, 4, samples)``, at values of the symbols."""
         constants, formulas = self._constants_and_formulas
         table = np.repeat(constants[..., None], samples, axis=-1)
         for i, j, formula in formulas:
@@ -74,7 +74,7 @@ class ReferenceTable:
     def _constants_and_formulas(
         self,
     ) -> tuple[Numbers, tuple[tuple[int, int, Expression], ...]]:
-        """The cells that are numbers, ``(rows, 4)``, and those that depend on symbols."""
+        """The constant cells, ``(rows, 4)``, and the formulas of the other cells."""
         constants = np.zeros((len(self.rows), len(COLUMNS)))
         formulas = []
         for i, row in enumerate(self.rows):
@@ -87,18 +87,18 @@ class ReferenceTable:
 
 
 def at_home(joints: tuple[Joint, ...], values: SymbolValues, samples: int) -> SymbolValues:
-    """The same values with all joint variables 0."""
+    """Return the values with all joint variables replaced by 0."""
     return {**values, **{joint.variable: np.zeros(samples) for joint in joints}}
 
 
-# The screw axis of a joint, turning or sliding, in a frame whose z axis it is.
+# The screw axis of a revolute and of a prismatic joint along the z axis.
 ABOUT_Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 ALONG_Z = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """The reference mechanism. ``tables`` holds it in each convention that can express it."""
+    """The reference robot. ``tables`` has its table in each convention that can express it."""
 
     structure: str
     convention: Convention
@@ -106,48 +106,48 @@ class Robot:
     tables: Mapping[Convention, ReferenceTable]
 
     def pose(self, values: SymbolValues, samples: int) -> Matrices:
-        """The end-effector frame in the base frame, ``(samples, 4, 4)``."""
+        """Return the pose of the end effector in the base frame, ``(samples, 4, 4)``."""
         table = self.tables[self.convention]
         return pose(table.values(values, samples), table.convention)
 
     def fields(self) -> Iterator[FormulaField]:
-        """Every formula of the author's table."""
+        """Yield every formula of the author's table with its field and quantity."""
         for i, row in enumerate(self.tables[self.convention].rows):
             for column, formula, quantity in zip(COLUMNS, row, ROW_QUANTITIES, strict=True):
                 yield f"robot.table[{i}].{column}", formula, quantity
 
     @property
     def frames(self) -> tuple[int | str, ...]:
-        """The names of its frames, from first to last: "base", numbers, "tool"."""
+        """The names of the robot's frames from first to last: "base", numbers, "tool"."""
         first = self.joints[0].index
         last = first + len(self.tables[self.convention].rows) - 1
         return ("base", *range(first, last), "tool")
 
     def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
-        """The pose of a frame in the base frame, ``(samples, 4, 4)``.
+        """Return the pose of a frame in the base frame, ``(samples, 4, 4)``.
 
-        The last joint's frame answers to its number, too, where no row leads on from it, and the
-        base frame to the number before the first joint's.
+        Besides ``frames``, it accepts the number before the first joint's for the base frame, and,
+        without a fixed row, the last joint's number for the tool frame.
         """
         return np.asarray(self.all_frames(values, samples)[self.frame_number(name)])
 
     def all_frames(self, values: SymbolValues, samples: int) -> Matrices:
-        """The poses of all frames in the base frame, ``(frames, samples, 4, 4)``."""
+        """Return the poses of all frames in the base frame, ``(frames, samples, 4, 4)``."""
         table = self.tables[self.convention]
         return frames(table.values(values, samples), table.convention)
 
     def frame_number(self, name: int | str) -> int:
-        """How many rows of its table lead to a frame that ``frame`` takes."""
+        """The number of table rows from the base frame to the frame ``name``."""
         known = {"base": 0, "tool": len(self.tables[self.convention].rows)}
         return known[name] if isinstance(name, str) else name - self.joints[0].index + 1
 
     def has_frame(self, name: int | str) -> bool:
-        """Whether ``frame`` takes this name."""
+        """True if the robot has a frame of this name."""
         first = self.joints[0].index
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 
     def screws(self, values: SymbolValues, samples: int) -> Numbers:
-        """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
+        """Return the screw axes in the base frame at home, ``(joints, samples, 6)``."""
         poses = self.all_frames(at_home(self.joints, values, samples), samples)
         on_axis = joint_frames(poses, self.convention)
         return np.stack(
@@ -161,9 +161,9 @@ class Robot:
 def tables_in_both_conventions(
     joints: tuple[Joint, ...], rows: Sequence[FormulaRow], convention: Convention, zero: Expression
 ) -> dict[Convention, ReferenceTable]:
-    """The author's table, and the same chain in the other convention where that has a row for all.
+    """Return the author's table, and that of the other convention if it can express the robot.
 
-    A last row that is zero throughout is dropped beyond the joints: it moves nothing.
+    A fixed last row of zeros is dropped, because it moves nothing.
     """
     if convention is Convention.STANDARD:
         other, regrouped = Convention.MODIFIED, modified_rows(rows, zero)

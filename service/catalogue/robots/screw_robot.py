@@ -1,4 +1,4 @@
-"""The reference robot by its product of exponentials: its home pose and its screw axes."""
+"""The reference robot given by its product of exponentials: a home pose and screw axes."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class ScrewRobot:
-    """The reference mechanism. ``home`` is 4×4, ``axes`` holds a six-vector (ω; v) per joint."""
+    """The reference robot. ``home`` is 4×4, ``axes`` has a six-vector (ω; v) for each joint."""
 
     structure: str
     joints: tuple[Joint, ...]
@@ -29,21 +29,21 @@ class ScrewRobot:
     axes: FormulaGrid
 
     def fields(self) -> Iterator[FormulaField]:
-        """Every formula that its author has written."""
+        """Yield every formula of the author with its field and quantity."""
         yield from fields_of("robot.home[{i}][{j}]", self.home, HOMOGENEOUS)
         yield from fields_of("robot.screws[{i}][{j}]", self.axes, (SCREW,) * len(self.axes))
 
     @property
     def frames(self) -> tuple[int | str, ...]:
-        """The names of its frames: the base (space) frame and the tool (body) frame."""
+        """The names of the robot's frames: the base (space) frame and the tool (body) frame."""
         return ("base", "tool")
 
     def has_frame(self, name: int | str) -> bool:
-        """Whether ``frame`` takes this name."""
+        """True if the robot has a frame of this name."""
         return name in self.frames
 
     def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
-        """The pose of a frame in the base frame, ``(samples, 4, 4)``."""
+        """Return the pose of a frame in the base frame, ``(samples, 4, 4)``."""
         if name == "base":
             return np.broadcast_to(np.eye(4), (samples, 4, 4))
         home = np.moveaxis(grid_values(self.home, values, samples), -1, 0)
@@ -51,7 +51,7 @@ class ScrewRobot:
         return product_in_space(self.screws(values, samples), amounts, home)
 
     def screws(self, values: SymbolValues, samples: int) -> Numbers:
-        """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
+        """Return the screw axes in the base frame at home, ``(joints, samples, 6)``."""
         return np.swapaxes(grid_values(self.axes, values, samples), 1, 2)
 
 

@@ -1,4 +1,4 @@
-"""The letters of an exercise, and values to try an author's formulas at."""
+"""The variables of an exercise, and trial values to check an author's formulas."""
 
 from dataclasses import dataclass
 
@@ -7,16 +7,16 @@ import numpy as np
 from service.expressions import Kind
 from service.expressions.evaluation.samples import SymbolValues
 
-# The number of values of its symbols that an author's formula is tried at.
+# The number of trial values at which an author's formula is evaluated.
 TRIALS = 16
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A letter that may stand in an answer, with the range that its test values are drawn from.
+    """A symbol that answers may contain, with the range of its test values.
 
-    Angles are in radians, lengths in ``unit``. ``joint`` is the joint's number where the letter is
-    a joint variable.
+    Angles are in radians, lengths in ``unit``. ``joint`` is the joint's number if this is a joint
+    variable.
     """
 
     name: str
@@ -29,6 +29,6 @@ class Variable:
 
 
 def trial_values(variables: tuple[Variable, ...]) -> SymbolValues:
-    """Values of every symbol, the same each time, ``(TRIALS,)`` each."""
+    """Return values of every variable, ``(TRIALS,)`` each, the same in every call."""
     rng = np.random.default_rng(0)
     return {v.name: rng.uniform(v.low, v.high, TRIALS) for v in variables}

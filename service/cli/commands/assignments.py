@@ -1,4 +1,4 @@
-"""`dh-grader assignments`: files that set several exercises together."""
+"""`dh-grader assignments`: check assignment files, which set several exercises together."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,13 +14,13 @@ from service.submissions.assignment import AssignedExercise, Assignment, load_as
 from service.submissions.handed_in import HandedIn, all_handed_in
 
 commands = typer.Typer(
-    help="Several exercises that are set together.", no_args_is_help=True, add_completion=False
+    help="Assignments of several exercises.", no_args_is_help=True, add_completion=False
 )
 
 
 @commands.callback()
 def _group() -> None:
-    """Keep `check` a command of its own, though it is the only one."""
+    """Make `check` a subcommand, although it is the only one."""
 
 
 @commands.command("check")
@@ -30,14 +30,14 @@ def check(
         Path | None,
         typer.Argument(
             metavar="[FOLDER]",
-            help="Submissions of a class: tell which of their files would answer what.",
+            help="Submissions of a class: show which file answers which exercise.",
             show_default=False,
         ),
     ] = None,
 ) -> None:
-    """Check an assignment file, and tell what it sets. Nothing is graded.
+    """Check an assignment file, and show its exercises. Nothing is graded.
 
-    Exit code 2: the file, or the file of an exercise of its own, cannot be used.
+    Exit code 2: the file, or an exercise file that it names, cannot be used.
     """
     assignment = load_assignment(file, installed_exercise)
     console = stdout()
@@ -61,12 +61,12 @@ def _lines(assignment: Assignment) -> Iterator[Text]:
         level = assignment.ceiling(each)
         yield Text.assemble(
             "  ", (each.exercise.id, "bold"), f", {number(each.worth)} points: {parts}",
-            (f"; students are told {level}; files {visible(_files(each))}", "dim"),
+            (f"; feedback {level}; files {visible(_files(each))}", "dim"),
         )  # fmt: skip
 
 
 def _files(assigned: AssignedExercise) -> str:
-    """The names of files that answer the exercise."""
+    """The names of files that are taken as answers to the exercise."""
     own = assigned.exercise.id
     named = assigned.files or (f"{own}.json", f"{own}/PART.csv", "and the like")
     of_parts = (f"{', '.join(names)} for {part}" for part, names in assigned.part_files.items())

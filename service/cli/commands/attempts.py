@@ -49,12 +49,12 @@ _STILL_THERE: Final = (
 
 
 def encodable(value: str | None) -> str | None:
-    """What was given to the program, if it is text that a database can hold; else it ends."""
+    """Return the value of an option; end the program if it cannot be encoded as UTF-8."""
     if value is not None and not value.isascii():
         try:
             value.encode()
         except UnicodeEncodeError:
-            give_up(f"{value.encode(errors='replace').decode()}: this is no text in UTF-8.")
+            give_up(f"{value.encode(errors='replace').decode()}: this is not UTF-8 text.")
     return value
 
 
@@ -67,9 +67,9 @@ ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", 
 
 @contextmanager
 def database(*, create: bool = False) -> Iterator[Engine]:
-    """The database of this installation; ends the program where it cannot be used.
+    """Open the database of this installation; end the program if it cannot be used.
 
-    A file is made where there is none only if ``create``.
+    A missing file is created only with ``create``.
     """
     url = load_settings().database
     if url is None:
@@ -92,7 +92,9 @@ def list_attempts(
     learner: Annotated[
         str | None, typer.Option(help="Only this learner.", callback=encodable)
     ] = None,
-    limit: Annotated[int, typer.Option(min=1, max=_MOST_LISTED, help="How many.")] = 20,
+    limit: Annotated[
+        int, typer.Option(min=1, max=_MOST_LISTED, help="The number of attempts.")
+    ] = 20,
 ) -> None:
     """List the newest attempts."""
     wanted = AttemptFilter(exercise, learner)
@@ -119,7 +121,7 @@ def list_attempts(
 
 @commands.command("statistics")
 def show_statistics(exercise: ExerciseArgument) -> None:
-    """Show who is right where, and which mistakes are common."""
+    """Show how many answers are right in each part and cell, and the most common mistakes."""
     with database() as engine, engine.connect() as connection:
         told = exercise_statistics(connection, AttemptFilter(exercise))
     screen = stdout()
@@ -143,7 +145,7 @@ def show_statistics(exercise: ExerciseArgument) -> None:
 
 
 def _nothing(exercise: str | None) -> str:
-    """That no attempts are recorded; with the exercises there are, if none has this name."""
+    """The message that no attempts are recorded; it lists the exercises if the id is unknown."""
     found = "No attempts are recorded."
     if exercise is None or exercise in (known := installed()):
         return found
@@ -161,8 +163,8 @@ def export(
         GradesFormat,
         typer.Option(
             "--format",
-            help="csv or jsonl: every attempt; canvas or moodle: the one that counts, for the "
-            "gradebook.",
+            help="csv or jsonl: every attempt; canvas or moodle: a gradebook with each learner's "
+            "attempt that counts.",
         ),
     ] = GradesFormat.CSV,
     output: Annotated[Path | None, typer.Option(help="The file to write.")] = None,
@@ -180,14 +182,14 @@ def export(
 def regrade(
     exercise: ExerciseArgument,
     apply: Annotated[
-        bool, typer.Option("--apply", help="Write it; without this only show what would change.")
+        bool, typer.Option("--apply", help="Save the changes; otherwise only show them.")
     ] = False,
     jobs: Annotated[
-        int, typer.Option(min=1, max=64, help="How many processes; PostgreSQL only.")
+        int, typer.Option(min=1, max=64, help="The number of processes; PostgreSQL only.")
     ] = 1,
 ) -> None:
-    """Grade the attempts at a corrected exercise anew."""
-    # Only here: no other of these commands grades.
+    """Regrade the attempts at a corrected exercise."""
+    # Import here: no other command of this group grades.
     from service.cli.commands.regrade import regrade_all, show_what_would_change
 
     corrected = installed_exercise(exercise)
@@ -204,18 +206,18 @@ def regrade(
 def override_points(
     attempt: Annotated[str, typer.Argument(help="The id of an attempt.", callback=encodable)],
     points: Annotated[
-        float | None, typer.Argument(help="Its points; without them earlier ones are withdrawn.")
+        float | None, typer.Argument(help="The new points; omit them to withdraw earlier ones.")
     ] = None,
     reason_given: Annotated[
-        str, typer.Option("--reason", help="Why; always needed.", callback=encodable)
+        str, typer.Option("--reason", help="The reason; required.", callback=encodable)
     ] = "",
     author: Annotated[
-        str | None, typer.Option("--by", help="Who. [your user name]", callback=encodable)
+        str | None, typer.Option("--by", help="The author. [your user name]", callback=encodable)
     ] = None,
 ) -> None:
-    """Give an attempt other points than its report's, with a reason."""
+    """Override the points of an attempt, with a reason."""
     if not reason_given.strip():
-        give_up("Say why: --reason.")
+        give_up("Give a reason: --reason.")
     by = author or getpass.getuser()
     now = datetime.now(UTC)
     with database() as engine:
@@ -234,29 +236,29 @@ def override_points(
 @commands.command("forget")
 def forget_learner(
     learner: Annotated[
-        str, typer.Argument(help="The learner, as the course names them.", callback=encodable)
+        str, typer.Argument(help="The learner's name in the attempts.", callback=encodable)
     ],
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
 ) -> None:
-    """Delete all that is recorded of a learner."""
+    """Delete all records of a learner."""
     with database() as engine:
         with engine.connect() as connection:
             found = data_of(connection, learner)
         if not found.attempts:
-            # An earlier call may have left something to overwrite.
+            # After an earlier call, deleted data may still wait to be overwritten.
             left = overwrite_deleted(engine) is False
             give_up("Nothing is recorded of this learner." + (f" {_STILL_THERE}" if left else ""))
         if not yes:
-            question = f"Forget {visible(learner)}? For ever deleted are {_told(found)}."
+            question = f"Delete {visible(learner)} permanently? {_counts(found)}."
             typer.confirm(question, abort=True)
         deleted = in_transaction(engine, lambda connection: forget(connection, learner))
         erased = overwrite_deleted(engine)
-    typer.echo(f"Deleted: {_told(deleted)}.")
+    typer.echo(f"Deleted: {_counts(deleted)}.")
     if erased is False:
         typer.echo(_STILL_THERE)
 
 
-def _told(data: LearnerData) -> str:
+def _counts(data: LearnerData) -> str:
     return (
         f"attempts: {data.attempts}, earlier reports: {data.earlier_reports}, "
         f"points given by tutors: {data.overrides}"

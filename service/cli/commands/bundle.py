@@ -1,4 +1,4 @@
-"""`dh-grader bundle`: a zip file that a grading platform takes."""
+"""`dh-grader bundle`: write a zip file for a grading platform."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,17 +13,17 @@ from service.cli.terminal import give_up, installed_exercise
 from service.settings import load_settings
 
 commands = typer.Typer(
-    help="Write the zip file that a grading platform takes.",
+    help="Write a zip file for a grading platform.",
     no_args_is_help=True,
     add_completion=False,
 )
 
 _Exercise = Annotated[
     str | None,
-    typer.Option(metavar="ID", help="The exercise that is answered.", show_default=False),
+    typer.Option(metavar="ID", help="The exercise to grade.", show_default=False),
 ]
 _Assignment = Annotated[
-    Path | None, typer.Option(metavar="F", help="Several exercises instead: an assignment file.")
+    Path | None, typer.Option(metavar="F", help="An assignment file with several exercises.")
 ]
 _Output = Annotated[
     Path, typer.Option(metavar="F", help="The zip file to write.", show_default=False)
@@ -32,7 +32,7 @@ _Output = Annotated[
 
 @commands.command("gradescope")
 def gradescope(output: _Output, exercise: _Exercise = None, assignment: _Assignment = None) -> None:
-    """Write the autograder that Gradescope takes under "Configure Autograder"."""
+    """Write an autograder to upload to Gradescope under "Configure Autograder"."""
     _write("gradescope", output, exercise, assignment)
 
 
@@ -43,20 +43,20 @@ def prairielearn(
         str,
         typer.Option(
             metavar="NAME",
-            help="The name that the grader's image has in your registry.",
+            help="The name of the grader's image in your registry.",
             show_default=False,
         ),
     ],
     exercise: _Exercise = None,
     assignment: _Assignment = None,
 ) -> None:
-    """Write a folder `image` to build the grader from, and a folder `question` for a course."""
+    """Write a folder `image`, which builds the grader, and a folder `question` for a course."""
     _write("prairielearn", output, exercise, assignment, image)
 
 
 @commands.command("ci")
 def ci(output: _Output, exercise: _Exercise = None, assignment: _Assignment = None) -> None:
-    """Write a folder with the grader for jobs of GitHub, GitLab and others."""
+    """Write a folder with the grader for CI jobs of GitHub, GitLab and others."""
     _write("ci", output, exercise, assignment)
 
 

@@ -1,4 +1,4 @@
-"""`dh-grader exercises check`: faults in exercise files, for their authors."""
+"""`dh-grader exercises check`: find faults in exercise files."""
 
 import math
 from collections import Counter
@@ -28,13 +28,13 @@ def command(
     ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Let warnings fail as well.")] = False,
 ) -> None:
-    """Check exercise files: shape, model answer, the file's own checks, and what looks wrong.
+    """Check exercise files: their fields, model answers and own checks; warn of likely mistakes.
 
-    Exit code 0: every file can be used and passes, with warnings or without.
+    Exit code 0: every file can be used and passes, with or without warnings.
 
-    Exit code 1: a check failed, or with --strict there is a warning.
+    Exit code 1: a check failed, or there is a warning and --strict is given.
 
-    Exit code 2: a file cannot be used; other files are checked all the same.
+    Exit code 2: a file cannot be used; the other files are still checked.
     """
     console = stdout()
     if path is None:
@@ -52,7 +52,7 @@ def command(
 
 
 def _check(file: Path, console: Console) -> set[Level] | None:
-    """The levels of the remarks on a file, which are printed; None for a file that is unusable."""
+    """Print the remarks on a file; return their levels, or None if the file is unusable."""
     try:
         exercise = load_exercise(file)
     except CatalogueError as error:
@@ -60,7 +60,7 @@ def _check(file: Path, console: Console) -> set[Level] | None:
         return None
     remarks = examine(exercise)
     for line in _lines(exercise, remarks, file):
-        # A line of its own for each remark, however long: other programs read this, too.
+        # Do not wrap long lines: other programs read this, too.
         console.print(line, soft_wrap=True)
     return {remark.level for remark in remarks}
 

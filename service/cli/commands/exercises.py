@@ -1,4 +1,4 @@
-"""`dh-grader exercises`: the catalogue, its solutions, and the making of more exercises."""
+"""`dh-grader exercises`: list, show, check and create exercises."""
 
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -46,16 +46,16 @@ def show_exercise(
     ] = False,
     figure: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write the drawing of the robot, an SVG, instead."),
+        typer.Option(metavar="FILE", help="Write a drawing of the robot (SVG) instead."),
     ] = None,
     theme: Annotated[
-        Theme, typer.Option(help="Colours of the drawing; auto: as the reader's system asks.")
+        Theme, typer.Option(help="Colours of the drawing; auto follows the reader's system.")
     ] = Theme.AUTO,
     frames: Annotated[
-        bool, typer.Option("--frames", help="Draw the frames of the reference's table, too.")
+        bool, typer.Option("--frames", help="Draw the frames of the reference table, too.")
     ] = False,
 ) -> None:
-    """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
+    """Show an exercise: its statement, symbols and parts, or its solution."""
     exercise = installed_exercise(exercise_id)
     console = stdout()
     if figure is not None:
@@ -103,14 +103,14 @@ commands.command("check")(check.command)
 @commands.command("new")
 def new_exercise(
     exercise_id: Annotated[
-        str, typer.Argument(metavar="ID", help="Becomes the file's name.", show_default=False)
+        str, typer.Argument(metavar="ID", help="The name of the file.", show_default=False)
     ],
     output: Annotated[
-        Path, typer.Option(metavar="FOLDER", help="Where to write it; made if need be.")
+        Path, typer.Option(metavar="FOLDER", help="The folder; created if missing.")
     ] = Path(),
     like: Annotated[
         str | None,
-        typer.Option(metavar="ID", help="Copy this exercise of the catalogue, to change it."),
+        typer.Option(metavar="ID", help="Start from a copy of this exercise."),
     ] = None,
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
@@ -124,7 +124,7 @@ def new_exercise(
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
-        give_up(f"{file} is there already, and stays as it is; choose another id or folder")
+        give_up(f"{file} already exists and was not changed; choose another id or folder")
     except OSError as error:
         give_up(f"{file}: cannot be written: {error.strerror}")
     stdout().print(
@@ -133,7 +133,7 @@ def new_exercise(
 
 
 def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
-    """Each exercise's id, joints and title, and its parts below the title."""
+    """Yield lines with the id, joints and title of each exercise, and its parts below."""
     ids = max(len(exercise.id) for exercise in exercises)
     joints = max(len("joints"), *(len(exercise.structure or "") for exercise in exercises))
     indent = " " * (ids + joints + 4)
@@ -142,7 +142,7 @@ def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
     for exercise in exercises:
         first, *more = textwrap.wrap(exercise.title, room)
         yield Text(f"{exercise.id:{ids}}  {exercise.structure or '':{joints}}  {first}")
-        # A part and its points stay together: their blank is none that a line may break at.
+        # A no-break space keeps a part and its points on one line.
         parts = ", ".join(
             f"{part.id}\N{NO-BREAK SPACE}({part.points:g})" for part in exercise.parts
         )
@@ -152,12 +152,12 @@ def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
 
 
 def _write_solution(exercise: Exercise, console: Console, *, latex: bool) -> None:
-    """Print the answer to each part, each link transform and the pose."""
+    """Print the model answers, the link transforms and the pose."""
     solution = solve(exercise)
     links = not any(part.holds_links for part in exercise.parts)
     for heading, shown in _sections(solution, links=links):
         console.print(Text(heading, "bold"))
-        # Unbroken, so that it can be copied and pasted.
+        # Do not wrap, so that it can be copied and pasted.
         console.print(Text(shown.latex if latex else shown.text), soft_wrap=True)
         console.print()
     if solution.notation:

@@ -1,4 +1,4 @@
-"""`dh-grader grade`: submissions in files, graded here and now."""
+"""`dh-grader grade`: grade submissions in files."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -49,7 +49,7 @@ BELOW_PASS_MARK = 1
 commands = typer.Typer(add_completion=False)
 
 
-# Text is for people, so it comes first.
+# The format for people comes first.
 _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
 
@@ -61,32 +61,31 @@ def command(
         typer.Argument(
             metavar="PATH",
             show_default=False,
-            help="Files, folders of a class, or - for standard input. In a folder each file is the "
-            "submission of one student, and so is each folder with its files.",
+            help="Files, folders of a class, or - for standard input. In a folder, each file and "
+            "each subfolder is the submission of one student.",
         ),
     ],
     exercise: Annotated[
         str | None,
-        typer.Option(metavar="ID", help="The exercise that is answered.", show_default=False),
+        typer.Option(metavar="ID", help="The exercise to grade.", show_default=False),
     ] = None,
     assignment: Annotated[
         Path | None,
-        typer.Option(
-            metavar="F", help="Several exercises instead, in an assignment file.", exists=False
-        ),
+        typer.Option(metavar="F", help="An assignment file with several exercises.", exists=False),
     ] = None,
     part: Annotated[
         str | None,
         typer.Option(
             metavar="P",
-            help="Grade this part of the exercise only; a file may hold its answer alone.",
+            help="Grade only this part of the exercise; a file may contain just its answer.",
         ),
     ] = None,
     one_student: Annotated[
         bool,
         typer.Option(
             "--one-student",
-            help="A folder holds the files of one student. So it is in formats for one submission.",
+            help="The folder holds the files of one student. Formats for one submission imply "
+            "this.",
         ),
     ] = False,
     output_format: Annotated[
@@ -102,8 +101,8 @@ def command(
         Path | None,
         typer.Option(
             metavar="F",
-            help="Write to this file instead; html writes several submissions to a folder, with "
-            "an overview of the class.",
+            help="Write to this file; html writes several submissions into a folder, with an "
+            "overview of the class.",
         ),
     ] = None,
     pass_mark: Annotated[
@@ -111,7 +110,7 @@ def command(
         typer.Option(
             min=0,
             max=1,
-            help="The score to reach, of 1. By default that of the assignment, or 0.8.",
+            help="The score to pass, from 0 to 1. By default that of the assignment, or 0.8.",
             show_default=False,
         ),
     ] = None,
@@ -120,19 +119,19 @@ def command(
         typer.Option(
             parser=choice(FeedbackLevel),
             metavar=listed(FeedbackLevel),
-            help="How much to tell: hints and corrections, what to look at, right and wrong, or "
-            "bare marks. What could not be read is told in any case. By default what the file asks "
-            "for, else full, or what the exercise allows in a format that students read.",
+            help="How much feedback to give: hints and corrections, hints, verdicts, or only "
+            "marks. Unreadable entries are always named. By default the level in the file, "
+            "otherwise full; in formats for students, the level of the exercise.",
         ),
     ] = None,
-    echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
+    echo: Annotated[bool, typer.Option("--echo", help="Show how each cell was read.")] = False,
     jobs: Annotated[
         int | None,
         typer.Option(
             min=1,
             max=256,
-            help="How many processes grade, by default as many as there are cores, where there are "
-            f"many submissions; or how many requests a server has at once, by default {REQUESTS}.",
+            help="The number of processes, by default up to the number of cores; with --server, "
+            f"the number of concurrent requests, by default {REQUESTS}.",
             show_default=False,
         ),
     ] = None,
@@ -140,7 +139,7 @@ def command(
         str | None,
         typer.Option(
             metavar="URL",
-            help="Have this service grade, by its exercises; DH_GRADER_SERVER says the same.",
+            help="Let this server grade with its exercises. Also: DH_GRADER_SERVER.",
             show_default=False,
         ),
     ] = None,
@@ -148,7 +147,8 @@ def command(
         str | None,
         typer.Option(
             metavar="KEY",
-            help="The key for it. Rather set DH_GRADER_KEY: others may see a command line.",
+            help="The key for the server. Better set DH_GRADER_KEY: others may see your command "
+            "line.",
             show_default=False,
         ),
     ] = None,
@@ -165,9 +165,9 @@ def command(
 
     Exit code 0: every submission reaches the pass mark.
 
-    Exit code 1: one is below it.
+    Exit code 1: a submission is below the pass mark.
 
-    Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
+    Exit code 2: a file, exercise or part is unusable; the other files are still graded.
     """
     settings = load_settings(server=server, key=key)
     if key is not None and settings.server is None:
@@ -184,7 +184,7 @@ def command(
         )
     folders = [path for path in paths if path.is_dir()]
     if output is not None:
-        _keep(output, [*paths, *filter(None, [assignment])])
+        _require_no_input(output, [*paths, *filter(None, [assignment])])
         require_own(output, folders)
     terms = GradingTerms(
         chosen,
@@ -224,7 +224,7 @@ def command(
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
     except WorkerLostError:
-        give_up("A process that grades has been ended from outside; try again with fewer --jobs.")
+        give_up("A grading process was killed, perhaps for lack of memory; try fewer --jobs.")
     _explain_one_student(output_format, () if one_student else folders, run.exit_code)
     raise SystemExit(run.exit_code)
 
@@ -232,7 +232,7 @@ def command(
 def chosen_assignment(
     exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
 ) -> Assignment:
-    """The exercise, a part of it or an assignment, as the options name it; or give up."""
+    """Return the assignment that the options name; end the program if they are inconsistent."""
     if (exercise is None) == (file is None):
         give_up("Name what is answered: --exercise ID, or --assignment F instead.")
     if file is not None:
@@ -245,15 +245,15 @@ def chosen_assignment(
         give_up(str(error))
 
 
-def _keep(output: Path, read: Iterable[Path]) -> None:
-    """Give up where the output would take the place of a file that is read."""
+def _require_no_input(output: Path, read: Iterable[Path]) -> None:
+    """End the program if the output would replace a file that is read."""
     for path in read:
         if path.is_file() and output.exists() and path.samefile(output):
             give_up(f"{output}: is read, and would be overwritten; name another --output")
 
 
 def _explain_one_student(output_format: str, folders: Sequence[Path], exit_code: int) -> None:
-    """Tell who graded a class in a format for one submission why that went wrong."""
+    """Explain the failure if a class was graded in a format for one submission."""
     if folders and exit_code == UNUSABLE and report_format(output_format).is_single:
         complain(
             f"{output_format} holds one submission, so the folder {folders[0]} was taken for that "
@@ -269,7 +269,7 @@ def _grading(
     output: Path | None,
     settings: Settings,
 ) -> AbstractContextManager[Iterator[GradedSubmission]]:
-    """The submissions in order as they are graded, by the server or else here."""
+    """A context with the graded submissions in order, from the server or from this machine."""
     if server is not None:
         return graded_by(server, terms, found, jobs or REQUESTS, output, settings)
     jobs = min(jobs or jobs_for(len(found)), len(found))
@@ -277,9 +277,9 @@ def _grading(
 
 
 class _Run:
-    """The submissions as they are graded; ``exit_code`` is that of the worst so far.
+    """Passes graded submissions on; ``exit_code`` is that of the worst one so far.
 
-    ``check`` is called between them, and may end the run.
+    It calls ``check`` between submissions, which may end the run.
     """
 
     def __init__(
@@ -304,7 +304,7 @@ class _Run:
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
-    """The problems of its files, each once: one file may leave several exercises unanswered."""
+    """The distinct problems of files of a submission; one file may affect several exercises."""
     told = (f"{file.file}: {file.problem}" for file in submission.files if file.problem)
     return [visible(line) for line in dict.fromkeys(told)]
 

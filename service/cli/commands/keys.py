@@ -1,4 +1,4 @@
-"""`dh-grader keys …`: who may use the service, and for what."""
+"""`dh-grader keys`: create, list and revoke API keys."""
 
 from datetime import UTC, datetime, timedelta
 from typing import Annotated
@@ -17,7 +17,7 @@ from service.formats.shared.plain_text import visible
 from service.settings import load_settings
 
 commands = typer.Typer(
-    help="Who may use the service, and for what: create, list, revoke keys.",
+    help="API keys of the service: create, list, revoke.",
     no_args_is_help=True,
     add_completion=False,
 )
@@ -28,18 +28,18 @@ def create(
     name: Annotated[
         str,
         typer.Argument(
-            help="What it is for, such as the name of a course.",
+            help="The purpose of the key, such as the name of a course.",
             show_default=False,
             callback=encodable,
         ),
     ],
     scope: Annotated[
-        list[Scope] | None, typer.Option(help="What it may do besides grading. Repeatable.")
+        list[Scope] | None, typer.Option(help="A right besides grading. Repeatable.")
     ] = None,
     exercise: Annotated[
         list[str] | None, typer.Option(help="Only this exercise. Repeatable. [all]")
     ] = None,
-    days: Annotated[int, typer.Option(min=1, max=3650, help="How long it is valid.")] = 365,
+    days: Annotated[int, typer.Option(min=1, max=3650, help="The key's lifetime in days.")] = 365,
 ) -> None:
     """Create a key and show it, once."""
     secret = load_settings().known_secret()
@@ -64,7 +64,7 @@ def create(
         key = in_transaction(engine, added)
     if key is None:
         give_up(WRONG_SECRET)
-    # Alone on standard output, for a script that puts it where it belongs.
+    # Only the key goes to standard output, for scripts.
     typer.echo(text)
     typer.echo(
         f"Key {key.id}, valid until {key.expires_at:%Y-%m-%d}. Keep it now: it is not shown again.",
@@ -86,7 +86,7 @@ def list_keys() -> None:
         used = f"used {key.last_used_at:%Y-%m-%d %H:%M}" if key.last_used_at else "never used"
         told = (key.id, visible(key.name), " ".join(sorted(key.scopes)), bound, _state(key, now))
         screen.print("  ".join((*told, used)), soft_wrap=True)
-    # After the list: whoever has lost the secret finds there what to revoke.
+    # After the list: if the secret is lost, the list shows which keys to revoke.
     if not has_their_secret:
         give_up(WRONG_SECRET)
 
@@ -97,7 +97,7 @@ def revoke(
         str, typer.Argument(help="The id of a key, as list shows it.", callback=encodable)
     ],
 ) -> None:
-    """Revoke a key, and with it all tokens that it has made."""
+    """Revoke a key and all tokens made with it."""
     with database() as engine:
         now = datetime.now(UTC)
         if not in_transaction(engine, lambda connection: revoke_key(connection, key, now)):

@@ -1,4 +1,4 @@
-"""The regrading of an exercise's attempts, by one process or several."""
+"""Regrade the attempts at an exercise in one process or several."""
 
 import time
 from multiprocessing import get_context
@@ -16,13 +16,13 @@ from service.cli.terminal import installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible
 from service.settings import load_settings
 
-# Between two looks at what is left, and while others are at the last attempts (seconds).
+# The time between two counts of the queue, and to wait for other processes at the end (seconds).
 _PAUSE: Final = 0.2
 _MOST_SHOWN: Final = 200
 
 
 def show_what_would_change(engine: Engine, exercise: Exercise) -> None:
-    """Grade all outdated attempts, and print who would get another result and why."""
+    """Grade all outdated attempts; print whose result would change, and why."""
     regrading = Regrading(exercise, load_settings().feedback)
     changes: list[RegradedAttempt] = []
     with engine.connect() as connection:
@@ -49,18 +49,18 @@ def show_what_would_change(engine: Engine, exercise: Exercise) -> None:
         f"{of_which}."
     )
     if numbers:
-        screen.print("Nothing is written yet: --apply does that, and keeps the old reports.")
+        screen.print("Nothing is saved yet: add --apply to save. The old reports are kept.")
 
 
 def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
-    """Regrade what is outdated, beside any other process that does so, until nothing waits."""
+    """Regrade all outdated attempts in ``jobs`` processes. Other programs may do so at once."""
     regrading = Regrading(exercise, load_settings().feedback)
     in_transaction(engine, regrading.enqueue)
     with engine.connect() as connection:
         total = left = regrading.waiting(connection)
     context = get_context("spawn")
     others = [
-        context.Process(target=work_off, args=(exercise.id,), daemon=True) for _ in range(jobs - 1)
+        context.Process(target=work, args=(exercise.id,), daemon=True) for _ in range(jobs - 1)
     ]
     for each in others:
         each.start()
@@ -74,7 +74,7 @@ def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
                     continue
                 with engine.connect() as connection:
                     before, left = left, regrading.waiting(connection)
-                # A count of millions takes as long as regrading many.
+                # Counting millions of rows takes as long as regrading many attempts.
                 look_again = begun + max(_PAUSE, 20 * (time.monotonic() - begun))
                 for _ in range(before - left):
                     bar.advance()
@@ -87,8 +87,8 @@ def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
     stdout().print(f"Regraded: {total}. The reports before are kept.")
 
 
-def work_off(exercise_id: str) -> None:
-    """Regrade what waits and nobody else is at, in a process of its own; then end."""
+def work(exercise_id: str) -> None:
+    """Regrade batches of the queue until it is empty. This is the main function of a process."""
     settings = load_settings()
     assert settings.database is not None
     try:
@@ -98,5 +98,5 @@ def work_off(exercise_id: str) -> None:
             pass
         engine.dispose()
     except (SQLAlchemyError, UnusableDatabaseError):
-        # What it was at goes back to the queue, and the process that started it takes that.
+        # The attempts of this batch stay in the queue for the parent process.
         return

@@ -1,4 +1,4 @@
-"""`dh-grader serve`: the service on this machine."""
+"""`dh-grader serve`: run the service on this machine."""
 
 import gc
 from typing import Annotated
@@ -17,17 +17,17 @@ def command(
         str | None, typer.Option(help="The address to listen on; 0.0.0.0 for all. [127.0.0.1]")
     ] = None,
     port: Annotated[
-        int | None, typer.Option(help="The port; 0 takes a free one. [8000]", show_default=False)
+        int | None, typer.Option(help="The port; 0 for a free one. [8000]", show_default=False)
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(help="How many processes serve. [1]", show_default=False)
+        int | None, typer.Option(help="The number of processes. [1]", show_default=False)
     ] = None,
 ) -> None:
-    """Start the service; the environment variables DH_GRADER_… set it up."""
+    """Start the service. Configure it by environment variables DH_GRADER_…."""
     settings = load_settings(host=host, port=port, workers=workers)
-    # Until the application is up: what is loaded stays, so looking for garbage finds none.
+    # Until the application has started: loading modules produces no garbage to search for.
     gc.disable()
-    # Only here: the web framework is half of the program's weight, and grading needs none of it.
+    # Import here: the web framework is half of the program, and grading needs none of it.
     from service.server.start import serve
 
     if not serve(settings):

@@ -1,4 +1,4 @@
-"""Where reports go: the screen, or a file that is there only when it is whole."""
+"""Write reports to the screen or to a file. An incomplete file never appears."""
 
 import io
 from collections.abc import Iterable
@@ -12,12 +12,12 @@ from rich.console import Console
 
 from service.cli.terminal import give_up, stdout
 
-# More of a document than this waits on the disk.
+# Larger documents are buffered on the disk (bytes).
 _IN_MEMORY: Final = 1024 * 1024
 
 
 def console_of(output: Path | None) -> Console:
-    """The console that reports are laid out for: the screen, or 80 columns without colour."""
+    """The console that determines the layout: the screen, or 80 columns without colour."""
     if output is None:
         return stdout()
     page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
@@ -25,10 +25,10 @@ def console_of(output: Path | None) -> Console:
 
 
 def write(pieces: Iterable[bytes], output: Path | None, *, at_once: bool) -> None:
-    """Write the pieces; a file is there only when it is whole.
+    """Write the pieces to a file, which appears only when it is complete, or to the screen.
 
-    On the screen they appear as they come, or with ``at_once`` when all have come, so that nothing
-    half-written goes into a pipe.
+    The screen shows each piece immediately, or, with ``at_once``, all of them at the end, so that a
+    pipe never gets an incomplete document.
     """
     if output is not None:
         _write_file(pieces, output)
@@ -48,7 +48,7 @@ def _show(pieces: Iterable[bytes]) -> None:
 
 
 def _write_file(pieces: Iterable[bytes], output: Path) -> None:
-    # A pipe or a device is no file to be replaced.
+    # A pipe or a device cannot be replaced: write to it directly.
     is_replaced = output.is_file() or not output.exists()
     written = output.with_name(f".{output.name}.part") if is_replaced else output
     try:
@@ -60,6 +60,6 @@ def _write_file(pieces: Iterable[bytes], output: Path) -> None:
         give_up(f"{output}: cannot be written: {error.strerror}")
     finally:
         if is_replaced:
-            # Where it could not be written it is not there, or its folder is none.
+            # After a failure the file may be missing, or its folder is not a folder.
             with suppress(OSError):
                 written.unlink()

@@ -1,4 +1,4 @@
-"""Writing a folder of documents, all of it or nothing."""
+"""Write a folder of documents completely or not at all."""
 
 import secrets
 import shutil
@@ -9,22 +9,22 @@ from typing import Final
 
 from service.formats.shared.report_format import Document
 
-# What is being written has a name that nobody takes for finished.
+# The name of a folder that is still being written begins with this.
 _UNFINISHED: Final = ".dh-grader-unfinished-"
-# Lists the files that a run has written, a path in each line, so that a later one may replace them.
+# The file that lists what a run has written, one path per line, so that a later run may replace it.
 WRITTEN: Final = ".dh-grader-written"
 _OLD: Final = "old"
 _PAGES: Final = (".html", ".htm")
 
 
 class UnusableFolderError(Exception):
-    """A folder that must not be written to; the text says why."""
+    """The folder must not or cannot be written to; the message says why."""
 
 
 def is_for_folder(output: Path, *, several: bool) -> bool:
-    """Whether an output is meant as a folder: it is one, or it is new and has no ending of a page.
+    """True if the output is an existing folder, or a new path without the suffix of a page.
 
-    A single submission needs no folder, so a new output is then a file.
+    A single submission needs no folder: without ``several``, a new path is a file.
     """
     if output.exists():
         return output.is_dir()
@@ -32,10 +32,10 @@ def is_for_folder(output: Path, *, several: bool) -> bool:
 
 
 def write_folder(documents: Iterable[Document], folder: Path) -> None:
-    """Write the documents into the folder, which has them only when all are written.
+    """Write the documents into the folder, where they appear only when all are written.
 
-    A folder that exists must be empty, or hold nothing but what an earlier run has written: that is
-    replaced. Raises UnusableFolderError, before it takes a document or where the disk refuses.
+    An existing folder must be empty, or contain only documents of an earlier run, which are
+    replaced. Raises UnusableFolderError.
     """
     try:
         _write_all(documents, folder.resolve())
@@ -50,7 +50,7 @@ def _write_all(documents: Iterable[Document], folder: Path) -> None:
             written.rename(folder)
         return
     old = _replaceable(folder)
-    # Within it, for a folder that is mounted has no neighbours.
+    # Write inside the folder: it may be a mount point, into which nothing outside can be renamed.
     with _unfinished(folder) as written:
         _write(documents, written)
         _exchange(folder, written, old)
@@ -58,7 +58,7 @@ def _write_all(documents: Iterable[Document], folder: Path) -> None:
 
 @contextmanager
 def _unfinished(parent: Path) -> Iterator[Path]:
-    """A new folder that is gone in the end, unless it was renamed."""
+    """Create a temporary folder; delete it at the end of the context, unless it was renamed."""
     folder = parent / f"{_UNFINISHED}{secrets.token_hex(8)}"
     folder.mkdir()
     try:
@@ -79,7 +79,7 @@ def _write(documents: Iterable[Document], folder: Path) -> None:
 
 
 def _within(path: str) -> PurePosixPath:
-    """The path of a file in a folder or one below, which must not lead out of it."""
+    """Return the path. Raises ValueError if it leads out of the folder or is more than 2 deep."""
     within = PurePosixPath(path)
     if within.is_absolute() or len(within.parts) > 2 or ".." in within.parts or "\n" in path:
         raise ValueError(f"{path!r} does not stay in its folder")
@@ -87,11 +87,11 @@ def _within(path: str) -> PurePosixPath:
 
 
 def _replaceable(folder: Path) -> list[Path]:
-    """What stands in the folder, which is empty or was written by an earlier run."""
+    """The content of the folder. Raises UnusableFolderError if no earlier run has written it."""
     if not folder.is_dir():
         raise UnusableFolderError("is no folder")
     found = [path for path in folder.iterdir() if not path.name.startswith(_UNFINISHED)]
-    for path in _strange(found, _written_before(folder)):
+    for path in _foreign(found, _written_before(folder)):
         raise UnusableFolderError(
             f"holds {path.relative_to(folder).as_posix()!r}, which no earlier run has written; "
             "name an empty folder, or one that does not exist"
@@ -107,8 +107,8 @@ def _written_before(folder: Path) -> set[Path]:
     return {folder / path for path in (WRITTEN, *paths)}
 
 
-def _strange(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
-    """Of the paths and of what is directly below them, those that were not written."""
+def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
+    """Yield the paths, at this level or directly below, that are not in ``written``."""
     folders = {file.parent for file in written}
     for path in found:
         if path.is_symlink() or path not in (written if path.is_file() else folders):
@@ -118,7 +118,7 @@ def _strange(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
 
 
 def _exchange(folder: Path, written: Path, old: Iterable[Path]) -> None:
-    """Put what was written into the folder in place of what is old; undone if that fails."""
+    """Replace the old content of the folder by the new; undo everything if a step fails."""
     new = list(written.iterdir())
     aside = written / _OLD
     aside.mkdir()

@@ -1,4 +1,4 @@
-"""The files that runs have written among submissions, so that no student's is replaced."""
+"""A list of the files that runs have written among submissions. It protects students' files."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -8,19 +8,19 @@ from service.cli.terminal import give_up
 
 
 def require_own(output: Path, folders: Iterable[Path]) -> None:
-    """End the program with exit code 2 where the output would take the place of a student's file.
+    """End the program with exit code 2 if the output would replace a student's file.
 
-    A file that stands in one of the folders must be written by an earlier run.
+    A file in one of the folders may be replaced only if an earlier run has written it.
     """
     if output.is_file() and _holds(folders, output) and output.name not in _written(output):
         give_up(
-            f"{output}: stands among the submissions, and no earlier run has written it; "
+            f"{output}: is among the submissions, and no earlier run has written it; "
             "name another --output"
         )
 
 
 def remember(output: Path | None, folders: Iterable[Path]) -> None:
-    """Note an output that was written into one of the folders: a later run may replace it."""
+    """Record an output in one of the folders, so that a later run may replace it."""
     if output is not None and output.is_file() and _holds(folders, output):
         names = _written(output)
         if output.name not in names:

@@ -1,1 +1,1 @@
-"""Grading by a server in the place of this program."""
+"""Grading by a server instead of this program."""

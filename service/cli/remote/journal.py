@@ -1,6 +1,6 @@
-"""The reports that a server gave to a run which broke off, so that the next asks for the rest.
+"""The journal of reports from a server. After an interruption, the next run requests the rest.
 
-Lines of JSON, each with a report and the digest of what it is the report on.
+The file has lines of JSON, each with a report and the digest of its submission and options.
 """
 
 import hashlib
@@ -16,40 +16,41 @@ from service.formats.documents.json import read_report, rendered
 from service.grading import Report
 
 _LINE: Final = re.compile(rb'\{"digest": "([0-9a-f]{64})", "report": (\{.*\})\}\n')
-# Where there is no file that it could stand beside.
-_USUAL: Final = "dh-grader"
+# The name of a journal without an output file.
+_DEFAULT_NAME: Final = "dh-grader"
 
 
 def journal_beside(output: Path | None) -> Path:
-    """The place of the journal of a run with this output.
+    """The path of the journal of a run with this output.
 
-    Its name begins with a dot, so that it is no submission in a folder of them.
+    Its name begins with a dot, so that it is not taken for a submission.
     """
     if output is None or (output.exists() and not (output.is_file() or output.is_dir())):
-        return Path(f".{_USUAL}.graded")
+        return Path(f".{_DEFAULT_NAME}.graded")
     named = output.resolve() if output.name in ("", "..") else output
     return named.with_name(f".{named.name}.graded")
 
 
 def digest(content: Sequence[object]) -> str:
-    """The digest of JSON content, which no other content has."""
+    """The SHA-256 of JSON content."""
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 
 class Journal:
-    """The reports of earlier runs, which stay in the file, and those of this one, added to it.
+    """Reads the reports of earlier runs from a file, and appends those of this run.
 
-    Several threads may use it. Where the file cannot be written the run goes on, and says so.
+    Several threads may use it. If the file cannot be written, a warning is printed and the run goes
+    on.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._lock = Lock()
         self._places = dict(_places(path))
-        self._is_kept = True
+        self._is_writable = True
 
     def report(self, of: str) -> Report | None:
-        """The report that an earlier run was given on what has this digest, or None."""
+        """The report of an earlier run with this digest, or None."""
         if of not in self._places:
             return None
         try:
@@ -61,29 +62,29 @@ class Journal:
             return None
 
     def add(self, of: str, report: Report) -> None:
-        """Keep a report for the next run."""
-        # A line of its own, even after one that was broken off.
+        """Write a report for the next run."""
+        # Begin with a line break: the last line may be incomplete.
         line = b'\n{"digest": "%b", "report": %b}\n' % (of.encode(), rendered(report))
         with self._lock:
-            if not self._is_kept:
+            if not self._is_writable:
                 return
             try:
                 with self.path.open("ab") as file:
                     file.write(line)
             except OSError as error:
-                self._is_kept = False
+                self._is_writable = False
                 complain(
-                    f"{self.path}: cannot be written: {error.strerror}. If the run breaks off, the "
-                    "next one begins anew."
+                    f"{self.path}: cannot be written: {error.strerror}. If this run is "
+                    "interrupted, the next one sends every submission again."
                 )
 
     def remove(self) -> None:
-        """Forget everything: nothing is left to be graded."""
+        """Delete the journal after a complete run."""
         self.path.unlink(missing_ok=True)
 
 
 def _places(path: Path) -> list[tuple[str, int]]:
-    """The digests in a journal, each with the place of its line; what is no such line is passed."""
+    """The digests in a journal and the offsets of their lines; other lines are ignored."""
     found = []
     try:
         with path.open("rb") as file:

@@ -1,4 +1,4 @@
-"""The grading of what students handed in by a server. It loads httpx: import it late."""
+"""Grading of submissions by a server. This module loads httpx: import it late."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -17,12 +17,12 @@ from service.submissions.handed_in import HandedIn
 from service.submissions.lookup import UnknownExerciseError
 from service.submissions.outline import ExerciseOutline, PartOutline
 
-# The statuses for a key or a connection that is no good; others from 400 on are about the answers.
-_ABOUT_ALL: Final = {HTTPStatus.UNAUTHORIZED, HTTPStatus.FORBIDDEN, HTTPStatus.REQUEST_TIMEOUT}
+# The statuses that concern the key or the connection; other client errors concern the answers.
+_CONCERNING_ALL: Final = {HTTPStatus.UNAUTHORIZED, HTTPStatus.FORBIDDEN, HTTPStatus.REQUEST_TIMEOUT}
 
 
 def exercise_of(server: GraderClient, exercise_id: str) -> ExerciseOutline:
-    """The exercise of a server. Raises UnknownExerciseError or GraderClientError."""
+    """Return an exercise of the server. Raises UnknownExerciseError or GraderClientError."""
     try:
         told = server.exercise(exercise_id)
     except RequestRefusedError as error:
@@ -35,11 +35,12 @@ def exercise_of(server: GraderClient, exercise_id: str) -> ExerciseOutline:
 
 
 class RemoteGrading:
-    """Has submissions graded by a server, but for those on which the journal has a report already.
+    """Grades submissions by a server, unless the journal has their reports already.
 
     ``ungraded`` are the names of the submissions that the server could not grade now, and
-    ``reason`` is why. After an error that others would meet as well, nothing more is sent. Several
-    threads may use it. ``key`` is the one that is shown to the server: it may tell another more.
+    ``reason`` is why. After an error that concerns all submissions, nothing more is sent. Several
+    threads may use it. ``key`` distinguishes reports in the journal, because the feedback of a
+    server may depend on the key.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class RemoteGrading:
         self.ungraded: set[str] = set()
 
     def graded(self, handed: HandedIn) -> GradedSubmission:
-        """The submission with a report on each exercise, or the problem because of which not."""
+        """Return the submission with a report or a problem for each exercise."""
 
         def report_on(
             body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
@@ -64,7 +65,7 @@ class RemoteGrading:
             try:
                 return self._report(assigned, terms.submission(body, assigned)), ""
             except GraderClientError as error:
-                if _refuses_these(error):
+                if _concerns_these(error):
                     return None, f"is refused by the server: {error}"
                 self.reason = self.reason or str(error)
                 self.ungraded.add(handed.name)
@@ -73,7 +74,7 @@ class RemoteGrading:
         return graded(handed, self._terms, report_on)
 
     def _report(self, assigned: AssignedExercise, submission: Submission) -> Report:
-        """The report of an earlier run or of the server. Raises GraderClientError."""
+        """Return the report from the journal or from the server. Raises GraderClientError."""
         exercise = assigned.exercise
         parts = tuple(part.id for part in exercise.parts)
         terms = (submission.angle_unit, submission.feedback, submission.echo)
@@ -101,7 +102,7 @@ class RemoteGrading:
 
 
 def restricted(report: Report, parts: Collection[str]) -> Report:
-    """The report as if these parts alone were set, and answered."""
+    """Return the report with only these parts and their points."""
     kept = tuple(part for part in report.parts if part.part in parts)
     points = rounded_points(sum(part.points for part in kept))
     max_points = rounded_points(sum(part.max_points for part in kept))
@@ -110,13 +111,13 @@ def restricted(report: Report, parts: Collection[str]) -> Report:
 
 
 def _concerns_all(error: GraderClientError) -> bool:
-    """Whether other answers would meet the same error."""
+    """True if other submissions would cause the same error."""
     if isinstance(error, RequestRefusedError):
-        return error.status in _ABOUT_ALL or error.is_temporary
+        return error.status in _CONCERNING_ALL or error.is_temporary
     return True
 
 
-def _refuses_these(error: GraderClientError) -> bool:
-    """Whether the server refuses these answers, and would again."""
+def _concerns_these(error: GraderClientError) -> bool:
+    """True if the server refuses these answers, so that sending them again is useless."""
     is_refusal = isinstance(error, RequestRefusedError) and 400 <= error.status < 500
     return is_refusal and not _concerns_all(error)

@@ -1,4 +1,4 @@
-"""A server that grades in the place of this program. What loads httpx is imported late."""
+"""Use a server that grades instead of this program. Modules that load httpx are imported late."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,15 +19,15 @@ from service.submissions.outline import SetExercise
 if TYPE_CHECKING:
     from service.client import GraderClient
 
-# Requests at once, unless --jobs says otherwise: the server has work while answers are on the way.
+# Concurrent requests without --jobs: the server has work while answers are on their way.
 REQUESTS: Final = 4
 
 
 @contextmanager
 def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
-    """A client of the server that the settings name; None where they name none.
+    """Open a client of the server in the settings; yield None if they name no server.
 
-    The program ends with exit code 2 where these are no address and key.
+    End the program with exit code 2 if the address or the key is invalid.
     """
     if settings.server is None:
         yield None
@@ -47,9 +47,9 @@ def _key(settings: Settings) -> str | None:
 
 
 def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExercise:
-    """The exercise with this id of the server, or else of this installation.
+    """Return the exercise with this id from the server, or from this installation without one.
 
-    Raises UnknownExerciseError. The program ends with exit code 2 where the server does not answer.
+    Raises UnknownExerciseError. End the program with exit code 2 if the server fails.
     """
     if server is None:
         return installed_exercise(exercise_id)
@@ -63,7 +63,7 @@ def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExerc
 
 
 def require_no_own_files(assignment: Assignment) -> None:
-    """End the program with exit code 2 for an exercise that no server has."""
+    """End the program with exit code 2 if an exercise is a local file: no server has it."""
     for assigned in assignment.exercises:
         if assigned.path is not None:
             give_up(
@@ -81,10 +81,10 @@ def graded_by(
     output: Path | None,
     settings: Settings,
 ) -> Iterator[Iterator[GradedSubmission]]:
-    """The submissions in order, graded by the server, with so many requests at once.
+    """Yield the submissions in order, graded by the server, with ``requests`` at once.
 
-    ``settings`` are those of the client. Where the server fails, the reports that it gave stay
-    beside the output, and the end says what to do.
+    If the server fails, its reports stay in the journal beside the output, and a message says what
+    to do.
     """
     from service.cli.remote.remote_grading import RemoteGrading
 

@@ -1,4 +1,4 @@
-"""Ends from outside that leave nothing behind."""
+"""Handle SIGINT and SIGTERM so that no unfinished files and no processes are left."""
 
 import signal
 import threading
@@ -7,30 +7,30 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final, NoReturn
 
-# As a shell says it: 128 and the number of the signal.
+# The exit codes of a shell: 128 plus the number of the signal.
 INTERRUPTED: Final = 130
 TERMINATED: Final = 143
-# Programs that end others often send their signal twice.
-_TWICE: Final = 1.0
+# A second signal within this time is ignored: many programs send theirs twice (seconds).
+_REPEATED_WITHIN: Final = 1.0
 
 
 class _Signals:
-    """The signals that came, and when the last one did."""
+    """Ends the process after a signal; remembers the last signal and its time."""
 
     def __init__(self) -> None:
         self._last: tuple[int, float] | None = None
 
     def receive(self, number: int, _: object) -> None:
-        """End the process. What comes right after does not break its clearing up."""
+        """End the process; ignore a further signal that comes during its cleanup."""
         now = time.monotonic()
-        if self._last is None or now - self._last[1] > _TWICE:
+        if self._last is None or now - self._last[1] > _REPEATED_WITHIN:
             self._last = number, now
             _end(number)
 
     def check(self) -> None:
-        """End the process where a signal came and the exception that it raised was lost.
+        """End the process if a signal came but its exception was lost.
 
-        Python drops one that is raised while it collects garbage or lets a lock go.
+        Python drops exceptions that are raised during garbage collection or the release of a lock.
         """
         if self._last is not None:
             _end(self._last[0])
@@ -38,10 +38,10 @@ class _Signals:
 
 @contextmanager
 def interruptible() -> Iterator[Callable[[], None]]:
-    """Let SIGTERM end this process as Ctrl-C does: unfinished files go, processes are ended.
+    """Let SIGTERM end this process like Ctrl-C, so that files and processes are cleaned up.
 
-    To be called between two pieces of work, it yields what ends the process where a signal came
-    that has not done so. No other exception takes the place of the end.
+    Yield a function to call between two pieces of work: it ends the process if the exception of a
+    signal was lost. No other exception replaces that of a signal.
     """
     signals = _Signals()
     with _handled(signals.receive):
@@ -57,7 +57,7 @@ def _handled(handler: Callable[[int, object], None]) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    # A signal that this process was started to ignore, as in the background of a script, stays so.
+    # Keep ignoring signals that were ignored at the start, as in the background of a script.
     numbers = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) != signal.SIG_IGN]
     before = {number: signal.signal(number, handler) for number in numbers}
     try:

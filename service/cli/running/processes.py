@@ -1,4 +1,4 @@
-"""One function over many things in several processes: in order, and with few of them in memory."""
+"""Map a function over many items in several processes, in order, with few results in memory."""
 
 import os
 import signal
@@ -13,19 +13,19 @@ if TYPE_CHECKING:
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 
-# Large enough that handing over costs little, small enough that no process waits long for another.
+# Large enough that passing a chunk costs little, small enough that no process waits long.
 _CHUNK: Final = 8
-# A process takes half a second to start, in which one alone grades a hundred submissions.
+# A process takes half a second to start; in that time another one grades a hundred submissions.
 _WORTH_A_PROCESS: Final = 100
-_FOR_THE_GROUP: Final = (signal.SIGINT, signal.SIGTERM)
+_GROUP_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 class WorkerLostError(Exception):
-    """A process did not start, or ended before its work was done: it was killed, say."""
+    """A process did not start, or ended before its work was done, for example because of a kill."""
 
 
 def jobs_for(count: int) -> int:
-    """How many processes are worth their start for so many submissions."""
+    """The best number of processes for ``count`` submissions."""
     if hasattr(os, "sched_getaffinity"):
         cores = len(os.sched_getaffinity(0))
     else:
@@ -37,10 +37,10 @@ def jobs_for(count: int) -> int:
 def mapped(
     function: Callable[[_Item], _Result], items: Sequence[_Item], jobs: int
 ) -> Iterator[Iterator[_Result]]:
-    """The results in the order of the items, worked out as they are asked for.
+    """Yield an iterator over the results in the order of the items, computed on demand.
 
-    With one job all is done in this process. The others end with the context, whatever they are
-    at. ``function`` and the items are pickled. Raises WorkerLostError while iterated.
+    With one job, everything runs in this process. Otherwise ``function`` and the items are pickled,
+    and the worker processes are killed at the end of the context. Iteration raises WorkerLostError.
     """
     if jobs == 1:
         yield map(function, items)
@@ -50,7 +50,7 @@ def mapped(
 
 
 def _in_order(workers: Sequence["Connection"], items: Sequence[_Item]) -> Iterator[Any]:
-    """The results of chunks that the workers are given whenever they have none."""
+    """Give chunks to idle workers; yield the results in order."""
     from multiprocessing.connection import wait
 
     chunks = (items[i : i + _CHUNK] for i in range(0, len(items), _CHUNK))
@@ -59,7 +59,7 @@ def _in_order(workers: Sequence["Connection"], items: Sequence[_Item]) -> Iterat
     done: dict[int, list[Any]] = {}
     following = 0
     while True:
-        # As much is done ahead as waits in memory: a slow chunk holds the others up.
+        # Limit the finished chunks that wait in memory for a slow one.
         ahead = 2 * len(workers) - len(busy) - len(done)
         for i, chunk in islice(numbered, max(0, min(len(idle), ahead))):
             worker = idle.pop()
@@ -91,14 +91,14 @@ def _received(worker: "Connection") -> list[Any]:
 
 @contextmanager
 def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connection"]]:
-    """Processes that apply the function, by what leads to each. They end with the context."""
-    # Only here: one process needs none of it.
+    """Start worker processes and yield connections to them; kill them at the end."""
+    # Import here: a single process needs none of this.
     from multiprocessing import get_context, resource_tracker
 
-    # A fork of a process with threads, as numpy has, may hang.
+    # Do not fork: a forked process with threads, like those of numpy, may hang.
     context = get_context("spawn")
     if os.name == "posix":
-        # The first process would start it, and let signals through again in its own start.
+        # Otherwise the first process would start it, and unblock the signals while doing so.
         resource_tracker.ensure_running()
     processes, connections = [], []
     try:
@@ -107,12 +107,12 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
             connections.append(ours)
             process = context.Process(target=_work, args=(theirs, function), daemon=True)
             try:
-                with _unreached():
+                with _signals_blocked():
                     process.start()
             except OSError as error:
                 raise WorkerLostError from error
             processes.append(process)
-            # Where this process ends, however it does, the other then finds the pipe closed.
+            # With our copy closed, the worker sees the end of this process as a closed pipe.
             theirs.close()
         yield connections
     finally:
@@ -125,15 +125,15 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
 
 
 @contextmanager
-def _unreached() -> Iterator[None]:
-    """Start processes that no signal to the whole group ends, as Ctrl-C sends one.
+def _signals_blocked() -> Iterator[None]:
+    """Block signals to the process group, such as Ctrl-C, in processes that are started here.
 
-    This process ends them; if they ended first, it would take that for the fault.
+    This process ends its workers; if they ended first, it would report a lost worker instead.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, _FOR_THE_GROUP)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _GROUP_SIGNALS)
     try:
         yield
     finally:
@@ -141,10 +141,10 @@ def _unreached() -> Iterator[None]:
 
 
 def _work(connection: "Connection", function: Callable[[Any], Any]) -> None:
-    """Apply the function to one chunk after the other."""
-    for number in _FOR_THE_GROUP:
+    """Apply the function to chunks from the connection until it is closed."""
+    for number in _GROUP_SIGNALS:
         signal.signal(number, signal.SIG_IGN)
-    # Where the other end is closed, nobody waits for results.
+    # If the other end is closed, nobody waits for results.
     with suppress(EOFError, OSError):
         while True:
             chunk = connection.recv()

@@ -1,4 +1,4 @@
-"""A bar on a terminal that shows how far a long run is; none in a log."""
+"""A progress bar for long runs on a terminal."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -8,13 +8,13 @@ from typing import Final
 
 from service.cli.terminal import complain
 
-# Fewer are done before one could read it.
+# With fewer submissions the bar would vanish before anybody could read it.
 _LEAST: Final = 10
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a run is. ``is_shown`` says that a bar stands on the terminal."""
+    """Functions to advance the bar and to print a complaint; ``is_shown`` is True with a bar."""
 
     advance: Callable[[], None]
     complain: Callable[[str], None]
@@ -23,11 +23,11 @@ class Progress:
 
 @contextmanager
 def progress(total: int) -> Iterator[Progress]:
-    """A bar on standard error, above which complaints appear; it vanishes at its end."""
+    """Show a bar on standard error during the context; complaints appear above it."""
     if total < _LEAST or not sys.stderr.isatty():
         yield Progress(lambda: None, complain)
         return
-    # Only here: nothing else needs it.
+    # Import here: nothing else needs it.
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar

@@ -1,4 +1,4 @@
-"""One function over many things in several threads: for what waits, not for what computes."""
+"""Map a function over many items in several threads. It is for functions that wait for I/O."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -16,10 +16,10 @@ Result = TypeVar("Result")
 def mapped_in_threads(
     function: Callable[[Item], Result], items: Iterable[Item], jobs: int
 ) -> Iterator[Iterator[Result]]:
-    """The results in the order of the items, with few of them in memory.
+    """Yield an iterator over the results in the order of the items, with few of them in memory.
 
-    What has not begun when the context ends is never begun, and nobody waits for what has: the
-    threads of an executor would hold the end of the program up.
+    At the end of the context, waiting items are dropped, and running ones are not waited for: the
+    threads of an executor would delay the end of the program.
     """
     tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
     for _ in range(jobs):
@@ -57,7 +57,7 @@ def _task(
     def run() -> None:
         try:
             future.set_result(function(item))
-        except Exception as error:  # noqa: BLE001 -- raised where the result is asked for
+        except Exception as error:  # noqa: BLE001 -- raised by future.result()
             future.set_exception(error)
 
     return run

@@ -183,7 +183,7 @@ def test_a_regrade_goes_step_by_step(
     assert same.post(path) == {"applied": False, "regraded": 0, "left": 0, "changes": []}
     # Few to a step, as if each took long.
     monkeypatch.setattr(regrade_steps, "_MOST", 4)
-    monkeypatch.setattr(regrade_steps, "_FEW", 4)
+    monkeypatch.setattr(regrade_steps, "_PREVIEW_BATCH", 4)
     monkeypatch.setattr(regrading, "BATCH", 4)
     tutor = Tutor(corrected(tmp_path / "corrected"), store)
 

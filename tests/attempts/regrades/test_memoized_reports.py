@@ -1,7 +1,7 @@
 import pytest
 
 from service.attempts.outcome import Outcome
-from service.attempts.regrades.memoized_reports import KeptReports, WrittenReport
+from service.attempts.regrades.memoized_reports import MemoizedReports, WrittenReport
 from service.catalogue import FeedbackLevel
 
 HINTS, SCORE = FeedbackLevel.HINTS, FeedbackLevel.SCORE
@@ -16,26 +16,26 @@ def graded_again() -> WrittenReport:
 
 
 def test_the_same_answers_at_the_same_level_are_graded_once() -> None:
-    kept = KeptReports()
-    first = kept.of("answers", HINTS, lambda: report("hints"))
-    assert kept.of("answers", HINTS, graded_again) is first
-    assert kept.of("answers", SCORE, lambda: report("score")).text == "score"
-    assert kept.of("others", HINTS, lambda: report("of others")).text == "of others"
+    memoized = MemoizedReports()
+    first = memoized.get("answers", HINTS, lambda: report("hints"))
+    assert memoized.get("answers", HINTS, graded_again) is first
+    assert memoized.get("answers", SCORE, lambda: report("score")).text == "score"
+    assert memoized.get("others", HINTS, lambda: report("of others")).text == "of others"
 
 
-def test_what_was_asked_for_longest_ago_goes_first_and_long_reports_count_for_more() -> None:
-    kept = KeptReports(most_bytes=100_000)
+def test_the_least_recently_used_report_is_dropped_first() -> None:
+    memoized = MemoizedReports(most_bytes=100_000)
     for name in "abc":
-        kept.of(name, HINTS, lambda: report("x" * 20_000))
-    kept.of("a", HINTS, graded_again)
-    # There is room for four of this length; another 40,000 bytes take the place of two.
-    kept.of("d" * 20_000, HINTS, lambda: report("x" * 20_000))
-    kept.of("a", HINTS, graded_again)
-    kept.of("c", HINTS, graded_again)
-    assert kept.of("b", HINTS, lambda: report("anew")).text == "anew"
+        memoized.get(name, HINTS, lambda: report("x" * 20_000))
+    memoized.get("a", HINTS, graded_again)
+    # Four reports of this length fit; 40,000 more bytes displace two.
+    memoized.get("d" * 20_000, HINTS, lambda: report("x" * 20_000))
+    memoized.get("a", HINTS, graded_again)
+    memoized.get("c", HINTS, graded_again)
+    assert memoized.get("b", HINTS, lambda: report("new")).text == "new"
 
 
-def test_a_report_that_is_too_long_is_given_and_not_kept() -> None:
-    kept = KeptReports(most_bytes=10_000)
-    assert kept.of("answers", HINTS, lambda: report("x" * 20_000)).text[0] == "x"
-    assert kept.of("answers", HINTS, lambda: report("y" * 20_000)).text[0] == "y"
+def test_a_report_over_the_limit_is_not_memoized() -> None:
+    memoized = MemoizedReports(most_bytes=10_000)
+    assert memoized.get("answers", HINTS, lambda: report("x" * 20_000)).text[0] == "x"
+    assert memoized.get("answers", HINTS, lambda: report("y" * 20_000)).text[0] == "y"

@@ -25,7 +25,7 @@ from tests.guards import ANSWER
 
 @pytest.fixture
 def corrected(catalogue: Mapping[str, Exercise]) -> Exercise:
-    """The exercise of another version, in which the table is worth twice as much."""
+    """Another version of the exercise, in which the table is worth twice as much."""
     scara = catalogue["scara"]
     table, *others = scara.parts
     parts = (table.model_copy(update={"points": 2 * table.points}), *others)
@@ -75,10 +75,10 @@ def test_a_corrected_exercise_changes_points_and_keeps_the_reports_before(
     assert work_off(store, regrading) == []
 
 
-def test_no_more_is_told_after_a_regrade_than_before(
+def test_a_regrade_does_not_raise_the_feedback_level(
     sqlite_url: str, catalogue: Mapping[str, Exercise], corrected: Exercise
 ) -> None:
-    """The service may have had a ceiling that the process which regrades knows nothing of."""
+    """The service may have had a ceiling that the regrading process does not know."""
     store = AttemptStore.open(sqlite_url)
     under_a_ceiling = replace(catalogue["scara"], feedback_by_attempt=(FeedbackLevel.SCORE,))
     low = recorded(store, under_a_ceiling, "ada", NO_TWIST)
@@ -95,7 +95,7 @@ def test_no_more_is_told_after_a_regrade_than_before(
     store.close()
 
 
-def test_an_attempt_that_waits_again_is_not_regraded_twice(
+def test_an_attempt_queued_again_is_not_regraded_twice(
     store: AttemptStore, catalogue: Mapping[str, Exercise], corrected: Exercise
 ) -> None:
     number = recorded(store, catalogue["scara"], "ada", RIGHT).number
@@ -109,7 +109,7 @@ def test_an_attempt_that_waits_again_is_not_regraded_twice(
         assert regrading.waiting(connection) == 0
 
 
-def test_answers_to_a_part_that_was_taken_away_are_left_aside(
+def test_answers_to_a_removed_part_are_ignored(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     store = AttemptStore.open(sqlite_url)
@@ -152,7 +152,7 @@ def test_a_batch_ends_when_its_time_is_over(
     recorded_all(store, [new_attempt(catalogue["scara"], f"l{i}", RIGHT) for i in range(3)])
     regrading = Regrading(corrected, FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
-    monkeypatch.setattr(regrading_module, "_LONGEST", 0.0)
+    monkeypatch.setattr(regrading_module, "_BATCH_SECONDS", 0.0)
     done = [len(regrading.next_batch(store.engine)) for _ in range(4)]
     assert done == [1, 1, 1, 0]
 
@@ -165,11 +165,11 @@ def _worker(url: str, exercise: Exercise) -> None:
             connection = connection.execution_options(writes=True)
             with connection.begin():
                 regrading.work(connection)
-                # Held a moment, so that a kill comes in the midst of it.
+                # Hold the locks for a moment, so that the kill comes during the transaction.
                 time.sleep(0.02)
 
 
-def test_what_a_killed_worker_was_at_is_regraded_once_by_another(
+def test_attempts_of_a_killed_worker_are_regraded_once_by_another(
     postgresql_url: str,
     catalogue: Mapping[str, Exercise],
     corrected: Exercise,

@@ -26,11 +26,11 @@ def all_pages(store: AttemptStore, wanted: AttemptFilter, most: int) -> list[lis
     return pages
 
 
-def test_pages_have_every_attempt_once_also_while_more_come(
+def test_pages_list_every_attempt_once_while_more_are_recorded(
     store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
     scara = catalogue["scara"]
-    # Three of each moment: the order within one is that of arrival.
+    # Three attempts at each moment: they are ordered by arrival.
     written = [recorded(store, scara, f"l{i}", NO_TWIST, hours=i // 3).id for i in range(7)]
     assert [[each.id for each in shown] for shown in all_pages(store, EVERY, 3)] == [
         written[6:3:-1],
@@ -45,7 +45,7 @@ def test_pages_have_every_attempt_once_also_while_more_come(
     assert [each.id for each in following] == written[3:0:-1]
 
 
-def test_filters_hold_together(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:
+def test_filters_combine(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:
     scara, planar = catalogue["scara"], catalogue["planar-rr"]
     ada = recorded(store, scara, "ada", NO_TWIST)
     second = recorded(store, scara, "ada", RIGHT, 2, hours=1)
@@ -64,7 +64,7 @@ def test_filters_hold_together(store: AttemptStore, catalogue: Mapping[str, Exer
     assert found(AttemptFilter(learner="ada", counted=True, since=NOON + hour)) == {second.id}
 
 
-def test_a_cursor_that_is_none_is_refused(store: AttemptStore) -> None:
+def test_an_invalid_cursor_is_refused(store: AttemptStore) -> None:
     with store.engine.connect() as connection:
         for cursor in (
             "",
@@ -92,7 +92,7 @@ def test_an_attempt_has_its_answers(store: AttemptStore, catalogue: Mapping[str,
 
 
 def test_a_list_reads_no_report(store: AttemptStore) -> None:
-    """Reports are a hundred times larger than all else that is listed."""
+    """Reports are a hundred times larger than the listed columns."""
     statements: list[str] = []
     event.listen(store.engine, "before_cursor_execute", lambda *given: statements.append(given[2]))
     with store.engine.connect() as connection:

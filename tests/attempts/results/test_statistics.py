@@ -54,6 +54,6 @@ def test_a_span_of_time_is_counted(store: AttemptStore, catalogue: Mapping[str, 
     assert (told.misconceptions, told.identical) == ([], [])
 
 
-def test_nothing_recorded_is_nothing_counted(store: AttemptStore) -> None:
+def test_the_statistics_of_no_attempts_are_zero(store: AttemptStore) -> None:
     told = statistics(store)
     assert (told.attempts, told.learners, told.parts) == (0, 0, [])

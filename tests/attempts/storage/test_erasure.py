@@ -1,4 +1,4 @@
-"""What was deleted is in no file of SQLite any more, or the caller is told so."""
+"""Deleted data is in no file of SQLite any more, or the caller learns that it still is."""
 
 import random
 import time
@@ -34,18 +34,18 @@ def until_erased(text: str, path: str) -> None:
         time.sleep(0.02)
 
 
-def test_a_reader_keeps_what_was_deleted_until_it_ends(
+def test_deleted_data_stays_until_the_last_reader_ends(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     store = AttemptStore.open(sqlite_url)
     recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
     with reader(sqlite_url):
         assert forgotten(store.engine, "ada-4711") is False
-        # As is promised, it can be read there still.
+        # The data is still in the file, as False says.
         assert files_with(WRITTEN, sqlite_url)
         finish_overwriting(store.engine)
         assert files_with(WRITTEN, sqlite_url)
-        # Nobody else has to wait for the reader.
+        # Writers do not wait for the reader.
         recorded(store, catalogue["scara"], "grace", TABLE.format("θ2"))
     finish_overwriting(store.engine)
     assert files_with(WRITTEN, sqlite_url) == files_with("ada-4711", sqlite_url) == []
@@ -53,10 +53,10 @@ def test_a_reader_keeps_what_was_deleted_until_it_ends(
     store.close()
 
 
-def test_a_running_store_finishes_what_another_program_has_begun(
+def test_a_running_store_finishes_the_erasure_of_another_program(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.attempts.storage.writer._TIDYING", 0.05)
+    monkeypatch.setattr("service.attempts.storage.writer._TIDY_INTERVAL", 0.05)
     store = AttemptStore.open(sqlite_url)
     store.start()
     recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
@@ -71,10 +71,12 @@ def test_a_running_store_finishes_what_another_program_has_begun(
     command.dispose()
 
 
-def test_a_store_finishes_at_its_start(sqlite_url: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_store_finishes_an_erasure_when_it_starts(
+    sqlite_url: str, catalogue: Mapping[str, Exercise]
+) -> None:
     store = AttemptStore.open(sqlite_url)
     recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
-    # One that reads on and on keeps SQLite from tidying up when the others end.
+    # An open reader prevents SQLite from truncating the log when other connections close.
     with reader(sqlite_url):
         in_transaction(store.engine, lambda connection: forget(connection, "ada-4711"))
         store.close()
@@ -90,10 +92,10 @@ def test_a_store_finishes_at_its_start(sqlite_url: str, catalogue: Mapping[str, 
     idle.dispose()
 
 
-def test_nothing_stays_of_learners_whose_attempts_were_moved_about(
+def test_no_data_is_left_of_learners_whose_rows_were_rewritten(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """Rows of many sizes are regraded, given other points and deleted in any order."""
+    """Regrade, override and delete rows of many sizes in random order."""
     store = AttemptStore.open(sqlite_url)
     scara, draw = catalogue["scara"], random.Random(4)
     learners = [f"learner-{number:03}" for number in range(40)]

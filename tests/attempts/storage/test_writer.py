@@ -1,4 +1,4 @@
-"""The thread that writes: which jobs share a transaction."""
+"""The writer thread: which jobs share a transaction."""
 
 import asyncio
 import threading
@@ -23,7 +23,7 @@ def engine(tmp_path: Path) -> Iterator[Engine]:
 
 @pytest.fixture
 def commits(engine: Engine) -> list[Connection]:
-    """The connections that have committed, in order."""
+    """A list of connections that grows with each commit."""
     counted: list[Connection] = []
     event.listen(engine, "commit", counted.append)
     return counted
@@ -33,7 +33,7 @@ def nothing(_: Connection) -> None:
     pass
 
 
-def test_where_jobs_came_at_once_the_next_one_waits_for_others(
+def test_after_concurrent_jobs_the_next_one_waits_for_others(
     engine: Engine, commits: list[Connection], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun, all_wait = threading.Event(), threading.Event()

@@ -1,4 +1,4 @@
-"""Where in a file a value stands."""
+"""The line of each value in a file."""
 
 import re
 import tomllib
@@ -68,7 +68,7 @@ def test_the_text_is_toml() -> None:
 
 
 @pytest.mark.parametrize("field", LINES)
-def test_a_value(field: str) -> None:
+def test_the_line_of_each_value_is_found(field: str) -> None:
     assert value_lines(TEXT)[field] == LINES[field]
 
 
@@ -83,14 +83,12 @@ def test_a_value(field: str) -> None:
         ("", None),
     ],
 )
-def test_a_field_that_is_not_there_is_looked_for_where_it_would_be(
-    field: str, line: int | None
-) -> None:
+def test_a_missing_field_has_the_line_of_the_field_around_it(field: str, line: int | None) -> None:
     assert line_of(field, value_lines(TEXT)) == line
 
 
 @pytest.mark.parametrize("file", sorted(shipped_folder().glob("*.toml")), ids=lambda f: f.stem)
-def test_each_value_of_a_shipped_file_stands_where_it_is_said_to(file: Path) -> None:
+def test_each_value_of_a_shipped_file_is_on_its_line(file: Path) -> None:
     text = file.read_text(encoding="utf-8")
     lines = text.splitlines()
     found = value_lines(text)

@@ -1,4 +1,4 @@
-"""How the author of an exercise file is told of a value that is none of those known."""
+"""The messages for unknown values in an exercise file."""
 
 from pathlib import Path
 
@@ -40,7 +40,7 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
          f"is 'zyZ'; did you mean 'ZYZ'? Write {SEQUENCES}"),
         ('k = { kind = "number"', 'k = { kind = "nummber"', "symbols.k.kind",
          "is 'nummber'; did you mean 'number'? Write 'angle', 'length' or 'number'"),
-        # One fault, though the schema tells of each form by itself.
+        # One fault, although pydantic has a finding for each type.
         ('convention = "standard"\n\n[[parts]]', 'convention = "standart"\n\n[[parts]]',
          "parts[0].convention",
          f"is 'standart'; did you mean 'standard'? Write {CONVENTIONS}"),
@@ -50,18 +50,18 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
          "Input should be a valid string, or input should be a valid number"),
     ],
 )  # fmt: skip
-def test_the_nearest_of_those_known(
+def test_an_unknown_value_gets_a_suggestion(
     old: str, new: str, field: str, reason: str, tmp_path: Path
 ) -> None:
     assert VALID.count(old) == 1
     assert told(tmp_path, VALID.replace(old, new)) == [(field, reason)]
 
 
-def test_faults_of_shape_are_told_together(tmp_path: Path) -> None:
+def test_all_faults_of_a_file_are_reported_together(tmp_path: Path) -> None:
     text = VALID.replace(TABLE, 'kind = "tabel"').replace("points = 4", 'points = "four"')
     assert [field for field, _ in told(tmp_path, text)] == ["parts[0].kind", "parts[1].points"]
 
 
-def test_a_symbol_may_have_the_name_of_a_form(tmp_path: Path) -> None:
+def test_a_symbol_may_have_the_name_of_a_pydantic_type(tmp_path: Path) -> None:
     text = VALID.replace("[symbols]", "[symbols]\nfloat = 3")
     assert [field for field, _ in told(tmp_path, text)] == ["symbols.float"]

@@ -1,4 +1,4 @@
-"""What a part's own formulas must be, and how a robot may be given."""
+"""Checks of the formulas of parts and robots."""
 
 from collections.abc import Callable, Mapping
 
@@ -28,7 +28,7 @@ IDENTITY = (
     '[["1", "0", "0", "0"], ["0", "1", "0", "0"], ["0", "0", "1", "0"], ["0", "0", "0", "1"]]'
 )
 
-# The text of a file, the field that is named, and what the reason must say.
+# The text of a file, the expected field, and words of the expected reason.
 FAULTS: dict[str, tuple[str, str, str]] = {
     "no robot and no answer": (one_part("rotation", ""), "parts[0].expected", "no robot"),
     "a table without a robot": (
@@ -171,7 +171,7 @@ FAULTS: dict[str, tuple[str, str, str]] = {
         "robot",
         "one for each",
     ),
-    "a robot's screw that is none": (
+    "a robot's invalid screw": (
         HEAD + SCREWS.replace('"0", "1", "0", "0"]]', '"0", "0", "0", "0"]]') + PART,
         "robot.screws[1]",
         "unit vector",
@@ -197,7 +197,7 @@ FAULTS: dict[str, tuple[str, str, str]] = {
 
 
 @together("name", FAULTS)
-def test_a_fault_is_refused_where_it_is(name: str, make_exercise: Make) -> None:
+def test_a_fault_is_reported_with_its_field(name: str, make_exercise: Make) -> None:
     text, field, reason = FAULTS[name]
     with pytest.raises(CatalogueError) as caught:
         make_exercise(text)
@@ -214,7 +214,7 @@ def test_an_exercise_without_a_robot(make_exercise: Make) -> None:
         _ = exercise.robot
 
 
-def test_a_robot_by_its_screws(make_exercise: Make) -> None:
+def test_the_pose_of_a_robot_given_by_screws(make_exercise: Make) -> None:
     """Turning by q1 and sliding by q2 along the turned x: (l + q2) c1, (l + q2) s1."""
     exercise = make_exercise(HEAD + SCREWS + PART)
     robot = exercise.reference
@@ -229,7 +229,7 @@ def test_a_robot_by_its_screws(make_exercise: Make) -> None:
     np.testing.assert_allclose(robot.frame("base", values, 2), np.stack([np.eye(4)] * 2))
 
 
-def test_the_frames_of_a_robot_by_its_table(make_exercise: Make) -> None:
+def test_the_frames_of_a_robot_given_by_a_table(make_exercise: Make) -> None:
     robot = make_exercise(one_part("transform", "", SPATIAL_RRR)).reference
     assert isinstance(robot, Robot)
     values = {name: np.array([0.4]) for name in ("theta1", "theta2", "theta3", "R", "L1", "L2")}
@@ -243,10 +243,10 @@ def test_the_frames_of_a_robot_by_its_table(make_exercise: Make) -> None:
 
 
 @pytest.mark.parametrize("exercise_id", ["planar-rrr", "rrrp", "scara", "stanford-arm"])
-def test_screws_and_table_lead_to_one_pose(
+def test_screws_and_table_give_the_same_pose(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The product of exponentials of the axes that were read off the table."""
+    """The product of exponentials of the table's screw axes equals the table's pose."""
     exercise = catalogue[exercise_id]
     rng = np.random.default_rng(12)
     values = {v.name: rng.uniform(v.low, v.high, 5) for v in exercise.variables}
@@ -257,6 +257,6 @@ def test_screws_and_table_lead_to_one_pose(
     np.testing.assert_allclose(product, robot.pose(values, 5), atol=1e-12)
 
 
-def test_no_symbols_are_needed(make_exercise: Make) -> None:
+def test_an_exercise_needs_no_symbols(make_exercise: Make) -> None:
     setting = ANGLES[: ANGLES.index("[symbols]")]
     assert make_exercise(one_part("position", "expected = [1, 2, 3]", setting)).variables == ()

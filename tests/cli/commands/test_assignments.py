@@ -69,7 +69,7 @@ def test_each_exercise_has_an_entry_in_json(run: Run, folder: Path) -> None:
         (["--assignment", "."], "cannot be read: Is a directory"),
     ],
 )
-def test_what_is_graded_must_be_said_once(
+def test_exactly_one_of_exercise_and_assignment_is_required(
     run: Run, folder: Path, options: list[str], reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(folder)
@@ -78,13 +78,13 @@ def test_what_is_graded_must_be_said_once(
     assert reason in result.stderr
 
 
-def test_an_empty_folder_is_no_class(run: Run, folder: Path) -> None:
+def test_an_empty_folder_is_refused(run: Run, folder: Path) -> None:
     (folder / "empty").mkdir()
     result = run("grade", folder / "empty", "--assignment", folder / "hw.toml")
     assert (result.exit_code, "holds no submission" in result.stderr) == (2, True)
 
 
-def test_check_tells_which_file_answers_what(run: Run, folder: Path) -> None:
+def test_check_lists_which_file_answers_which_exercise(run: Run, folder: Path) -> None:
     (folder / "class/carl.csv").write_text("1", encoding="utf-8")
     result = run("assignments", "check", folder / "hw.toml", folder / "class")
     assert result.exit_code == 0
@@ -103,9 +103,7 @@ def test_check_names_the_line_of_a_fault(run: Run, folder: Path) -> None:
     )
 
 
-def test_a_file_that_cannot_be_used_stands_beside_the_report_on_the_others(
-    run: Run, folder: Path
-) -> None:
+def test_an_unusable_file_is_named_beside_the_report_on_the_others(run: Run, folder: Path) -> None:
     (folder / "class/anna/scara").mkdir()
     (folder / "class/anna/scara/table.csv").write_text("0, 0, 0, q1", encoding="utf-8")
     (folder / "class/anna/scara/pose.csv").write_bytes(b"\xff")

@@ -15,7 +15,7 @@ from tests.cli.conftest import Run
 def course(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, catalogue: Mapping[str, Exercise]
 ) -> list[str]:
-    """The ids of ada's right and then wrong attempt, and of grace's wrong one."""
+    """Record a right and a wrong attempt of ada and a wrong one of grace; return their ids."""
     file = tmp_path / "attempts.db"
     monkeypatch.setenv("DH_GRADER_DATABASE", str(file))
     store = AttemptStore.open(str(file))
@@ -39,7 +39,7 @@ def test_without_a_database_the_commands_say_so(run: Run, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("unset", ["", "  "])
-def test_an_empty_name_of_a_database_is_none(
+def test_an_empty_database_setting_means_no_database(
     run: Run, monkeypatch: pytest.MonkeyPatch, unset: str
 ) -> None:
     monkeypatch.setenv("DH_GRADER_DATABASE", unset)
@@ -47,7 +47,7 @@ def test_an_empty_name_of_a_database_is_none(
     assert (result.exit_code, "names no database" in result.output) == (2, True)
 
 
-def test_no_command_makes_a_database(
+def test_no_command_creates_a_database(
     run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     file = tmp_path / "missing.db"
@@ -79,7 +79,7 @@ def test_no_command_makes_a_database(
         ("list", "--limit", "99999999999999999999"),
     ],
 )
-def test_what_no_database_takes_is_refused(
+def test_values_that_no_database_can_store_are_refused(
     run: Run, course: list[str], arguments: tuple[str, ...]
 ) -> None:
     result = run("attempts", *arguments)
@@ -103,13 +103,13 @@ def test_shares_are_rounded(
     store = AttemptStore.open(str(tmp_path / "attempts.db"))
     recorded_all(store, [new_attempt(catalogue["scara"], each, RIGHT) for each in "bcd"])
     store.close()
-    # Four of six tables and twists.
+    # Four of six tables are right, and so are their twists.
     told = run("attempts", "statistics", "scara").output
     assert "table: 67 % right of 6" in told
     assert "alpha 67 %" in told
 
 
-def test_every_attempt_is_exported_and_the_one_that_counts_for_gradebooks(
+def test_gradebooks_contain_only_the_attempt_that_counts(
     run: Run, course: list[str], tmp_path: Path
 ) -> None:
     lines = [
@@ -147,7 +147,7 @@ def test_every_attempt_is_exported_and_the_one_that_counts_for_gradebooks(
 
 @pytest.fixture
 def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The exercise with another rule of marking, and the last attempt as the one that counts."""
+    """Install the exercise with another marking rule, where the last attempt counts."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
     folder = tmp_path / "exercises"
@@ -157,7 +157,7 @@ def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("corrected")
-def test_a_regrade_is_tried_before_it_is_done(run: Run, course: list[str]) -> None:
+def test_a_regrade_is_previewed_before_it_is_applied(run: Run, course: list[str]) -> None:
     before = run("attempts", "export").output
     tried = run("attempts", "regrade", "scara").output
     assert "3 attempts were graded by another version; 2 would change." in tried
@@ -178,7 +178,7 @@ def test_a_regrade_is_tried_before_it_is_done(run: Run, course: list[str]) -> No
     assert run("attempts", "regrade", "scara", "--apply", "--jobs", "2").exit_code == 2
 
 
-def test_points_are_given_with_a_reason(run: Run, course: list[str]) -> None:
+def test_an_override_requires_a_reason(run: Run, course: list[str]) -> None:
     assert run("attempts", "override", course[2], "20").exit_code == 2
     assert run("attempts", "override", "0" * 32, "20", "--reason", "r").exit_code == 2
     assert run("attempts", "override", course[2], "99", "--reason", "r").exit_code == 2
@@ -191,9 +191,7 @@ def test_points_are_given_with_a_reason(run: Run, course: list[str]) -> None:
     assert "grace,20" not in run(*moodle).output
 
 
-def test_a_forgotten_learner_is_nowhere_in_the_files(
-    run: Run, course: list[str], tmp_path: Path
-) -> None:
+def test_no_file_contains_a_forgotten_learner(run: Run, course: list[str], tmp_path: Path) -> None:
     assert run("attempts", "forget", "grace", "--yes").output.startswith("Deleted: attempts: 1,")
     assert run("attempts", "forget", "grace", "--yes").exit_code == 2
     assert run("attempts", "forget", "ada").exit_code == 1  # nobody confirms
@@ -202,7 +200,7 @@ def test_a_forgotten_learner_is_nowhere_in_the_files(
     assert "ada" in run("attempts", "export").output
 
 
-def test_a_text_that_is_still_in_a_file_is_told_of(
+def test_forget_reports_data_that_is_still_in_a_file(
     run: Run, course: list[str], tmp_path: Path
 ) -> None:
     [path] = map(str, tmp_path.glob("attempts.db"))

@@ -1,4 +1,4 @@
-"""`dh-grader exercises new` and `check`: from nothing to an exercise in a course's own CI."""
+"""`dh-grader exercises new` and `check`: from a new file to a check in a course's CI."""
 
 import os
 import subprocess
@@ -53,30 +53,30 @@ def test_a_copy_of_an_exercise_is_graded_like_it(run: Run, tmp_path: Path) -> No
     assert list(tmp_path.iterdir()) == [copy]
 
 
-def test_a_file_that_is_there_stays(run: Run, arm: Path) -> None:
+def test_new_does_not_overwrite_a_file(run: Run, arm: Path) -> None:
     arm.write_text("mine", encoding="utf-8")
     result = run("exercises", "new", "arm", "--output", arm.parent)
     assert result.exit_code == 2
-    assert "arm.toml is there already" in result.stderr
+    assert "arm.toml already exists" in result.stderr
     assert arm.read_text(encoding="utf-8") == "mine"
 
 
 @pytest.mark.parametrize("exercise_id", ["../arm", "My arm", "arm.toml", "/tmp/arm"])
-def test_an_id_that_is_none(run: Run, tmp_path: Path, exercise_id: str) -> None:
+def test_an_invalid_id_is_refused(run: Run, tmp_path: Path, exercise_id: str) -> None:
     result = run("exercises", "new", exercise_id, "--output", tmp_path)
     assert result.exit_code == 2
     assert "cannot be an exercise's id: write small letters" in result.stderr
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_place_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
+def test_an_unwritable_folder_is_reported(run: Run, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     result = run("exercises", "new", "arm", "--output", tmp_path / "file")
     assert result.exit_code == 2
-    assert "is there already" in result.stderr or "cannot be written" in result.stderr
+    assert "already exists" in result.stderr or "cannot be written" in result.stderr
 
 
-def test_a_failed_check_is_exit_code_1_with_its_line(run: Run, arm: Path) -> None:
+def test_a_failed_check_gives_exit_code_1_and_its_line(run: Run, arm: Path) -> None:
     changed(arm, ("points = 2.33", "points = 3"))
     result = run("exercises", "check", arm)
     assert result.exit_code == 1
@@ -92,7 +92,7 @@ def test_a_failed_check_is_exit_code_1_with_its_line(run: Run, arm: Path) -> Non
     )
 
 
-def test_a_warning_fails_only_strictly(run: Run, arm: Path) -> None:
+def test_a_warning_fails_only_with_strict(run: Run, arm: Path) -> None:
     changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
     result = run("exercises", "check", arm)
     assert result.exit_code == 0
@@ -100,9 +100,7 @@ def test_a_warning_fails_only_strictly(run: Run, arm: Path) -> None:
     assert run("exercises", "check", "--strict", arm).exit_code == 1
 
 
-def test_a_file_that_cannot_be_used_is_exit_code_2_and_the_others_are_checked(
-    run: Run, arm: Path
-) -> None:
+def test_an_unusable_file_gives_exit_code_2_and_the_others_are_checked(run: Run, arm: Path) -> None:
     run("exercises", "new", "broken", "--output", arm.parent)
     run("exercises", "new", "wrong", "--output", arm.parent)
     broken = changed(arm.parent / "broken.toml", ("[0.3, 0.9]", "[0.9, 0.3]"))
@@ -118,13 +116,13 @@ def test_a_file_that_cannot_be_used_is_exit_code_2_and_the_others_are_checked(
 
 
 @pytest.mark.parametrize("place", ["nowhere.toml", "."])
-def test_nothing_to_check(run: Run, tmp_path: Path, place: str) -> None:
+def test_a_path_without_exercise_files_is_refused(run: Run, tmp_path: Path, place: str) -> None:
     result = run("exercises", "check", tmp_path / place)
     assert result.exit_code == 2
     assert "cannot be read" in result.stderr or "holds no exercise file" in result.stderr
 
 
-def test_several_folders_by_the_environment(
+def test_the_environment_may_name_several_folders(
     run: Run, arm: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", f"{arm.parent}{os.pathsep}shipped")
@@ -132,8 +130,8 @@ def test_several_folders_by_the_environment(
     assert {"arm", "scara"} <= set(listed)
 
 
-def test_in_a_pipe_it_is_plain_and_nothing_is_broken_up(arm: Path) -> None:
-    """As a course's CI sees it."""
+def test_in_a_pipe_lines_are_plain_and_not_wrapped(arm: Path) -> None:
+    """The output in a course's CI."""
     changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
     result = subprocess.run(
         [sys.executable, "-m", "service", "exercises", "check", str(arm)],

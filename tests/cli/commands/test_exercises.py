@@ -25,7 +25,7 @@ table = [["0", "l9 +", "0", "q1"]]
 """
 
 
-def test_the_list_has_a_line_for_each(run: Run) -> None:
+def test_the_list_has_a_line_for_each_exercise(run: Run) -> None:
     result = run("exercises", "list")
     assert result.exit_code == 0
     for exercise_id in shipped_exercises():
@@ -33,7 +33,7 @@ def test_the_list_has_a_line_for_each(run: Run) -> None:
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
-def test_the_list_breaks_no_title_that_fits_and_no_part_from_its_points(run: Run) -> None:
+def test_the_list_keeps_titles_and_parts_with_points_on_one_line(run: Run) -> None:
     lines = run("exercises", "list").stdout.splitlines()
     assert lines[0].split() == ["id", "joints", "title,", "and", "parts", "(points)"]
     at = next(i for i, line in enumerate(lines) if line.startswith("planar-rr "))
@@ -47,7 +47,7 @@ def test_the_list_breaks_no_title_that_fits_and_no_part_from_its_points(run: Run
 
 
 @pytest.mark.parametrize("columns", ["40", "200"])
-def test_the_list_follows_the_terminal(
+def test_the_list_adapts_to_the_width_of_the_terminal(
     columns: str, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", columns)
@@ -57,7 +57,7 @@ def test_the_list_follows_the_terminal(
     assert "(8)" in text
 
 
-def test_show_tells_what_to_do_and_no_answer(run: Run) -> None:
+def test_show_prints_the_task_without_answers(run: Run) -> None:
     result = run("exercises", "show", "stanford-arm")
     assert result.exit_code == 0
     for expected in ("Stanford arm", "RRPRRR", "distance from the wrist centre", "table:", "pose:"):
@@ -67,7 +67,7 @@ def test_show_tells_what_to_do_and_no_answer(run: Run) -> None:
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
-def test_show_solution_shows_each_answer_and_what_leads_to_it(
+def test_show_solution_prints_answers_and_link_transforms(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "arm.toml").write_text(template("arm"), encoding="utf-8")
@@ -111,7 +111,7 @@ s1 = sin(theta1)
 """
 
 
-def test_where_no_part_asks_for_the_pose_it_is_shown_all_the_same(run: Run) -> None:
+def test_show_solution_prints_the_pose_even_if_no_part_asks_for_it(run: Run) -> None:
     text = run("exercises", "show", "stanford-arm-drawn", "--solution").stdout
     assert "Pose of the tool in the base frame\n[c1*(c2*(c4*c5*c6" in text
 
@@ -143,7 +143,7 @@ def test_show_says_why_there_is_no_figure(
     assert reason in result.stderr.replace("\n", " ")
 
 
-def test_show_of_an_unknown_one_brings_the_nearest(run: Run) -> None:
+def test_show_suggests_the_nearest_exercise(run: Run) -> None:
     result = run("exercises", "show", "skara")
     assert result.exit_code == 2
     assert "Did you mean 'scara'?" in result.stderr

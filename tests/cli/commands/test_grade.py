@@ -57,7 +57,7 @@ def test_a_right_answer_passes(run: Run, save: Save) -> None:
     assert result.stderr == ""
 
 
-def test_one_below_the_pass_mark_does_not(run: Run, save: Save) -> None:
+def test_an_answer_below_the_pass_mark_fails(run: Run, save: Save) -> None:
     file = save({"answers": {"table": HALF}})
     result = table_only(run, file)
     assert result.exit_code == 1
@@ -65,14 +65,14 @@ def test_one_below_the_pass_mark_does_not(run: Run, save: Save) -> None:
     assert table_only(run, file, "--pass-mark", "0.1").exit_code == 0
 
 
-def test_the_pass_mark_itself_passes(run: Run, save: Save) -> None:
+def test_a_score_equal_to_the_pass_mark_passes(run: Run, save: Save) -> None:
     file = save({"answers": {"table": RIGHT}})
     # 8 of the exercise's 16 points
     assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.5").exit_code == 0
     assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.51").exit_code == 1
 
 
-def test_a_file_may_hold_the_answer_of_the_part_alone(run: Run, save: Save) -> None:
+def test_a_file_may_contain_just_the_answer_to_the_part(run: Run, save: Save) -> None:
     assert table_only(run, save(RIGHT)).exit_code == 0
     toml = TOML.replace("[answers.table]", "").replace('angle_unit = "degrees"', "")
     toml = toml.replace("360", "0")
@@ -104,7 +104,7 @@ def test_json_holds_exactly_the_report(run: Run, save: Save) -> None:
     assert "\x1b" not in result.stdout
 
 
-def test_several_files_are_a_list_and_the_worst_decides(run: Run, save: Save) -> None:
+def test_the_worst_of_several_files_determines_the_exit_code(run: Run, save: Save) -> None:
     right, half = save(RIGHT, "right.json"), save(HALF, "half.json")
     broken = save(b"{", "broken.json")
     assert table_only(run, right, right).exit_code == 0
@@ -117,16 +117,14 @@ def test_several_files_are_a_list_and_the_worst_decides(run: Run, save: Save) ->
     assert [entry["report"]["score"] for entry in entries[1:]] == [1.0, pytest.approx(0.5, abs=0.3)]
 
 
-def test_several_files_are_told_apart_in_text(run: Run, save: Save) -> None:
+def test_the_text_format_names_each_file(run: Run, save: Save) -> None:
     right, half = save(RIGHT, "right.json"), save(HALF, "half.json")
     # A long path is wrapped.
     output = "".join(table_only(run, right, half).stdout.split())
     assert output.index("right.json") < output.index("100%") < output.index("half.json")
 
 
-def test_the_feedback_level_comes_from_the_command_or_else_from_the_file(
-    run: Run, save: Save
-) -> None:
+def test_the_feedback_level_of_the_command_precedes_that_of_the_file(run: Run, save: Save) -> None:
     full = {"answers": {"table": HALF}}
     short = save(full | {"feedback": "score"}, "short.json")
     assert "row" not in table_only(run, short).stdout
@@ -141,7 +139,7 @@ def test_echo_shows_how_each_cell_was_read(run: Run, save: Save) -> None:
 
 
 @pytest.mark.parametrize("output_format", ["text", "json", "csv", "html", "junit"])
-def test_the_output_goes_to_a_file(
+def test_output_writes_the_report_to_a_file(
     run: Run, save: Save, tmp_path: Path, output_format: str
 ) -> None:
     target = tmp_path / "report"
@@ -154,7 +152,7 @@ def test_the_output_goes_to_a_file(
     assert sorted(tmp_path.iterdir()) == sorted([answer, target])
 
 
-def test_an_interrupted_run_leaves_no_half_of_a_file(
+def test_an_interrupted_run_leaves_no_incomplete_file(
     run: Run, save: Save, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     answer, target = save(RIGHT), save(b"from yesterday", "out.csv")
@@ -190,14 +188,14 @@ def test_a_format_for_one_submission_refuses_several(run: Run, save: Save, tmp_p
     assert table_only(run, right, "--format", "gradescope").exit_code == 0
 
 
-def test_a_platform_hears_of_a_file_that_cannot_be_used(run: Run, save: Save) -> None:
+def test_a_platform_gets_a_result_for_an_unusable_file(run: Run, save: Save) -> None:
     result = table_only(run, save(b"{"), "--format", "prairielearn")
     assert result.exit_code == 2
     assert json.loads(result.stdout)["gradable"] is False
     assert "line 1, column 2" in result.stderr
 
 
-def test_a_format_that_lacks_its_platform_says_so(
+def test_a_format_names_the_missing_variable_of_its_platform(
     run: Run, save: Save, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("CLASSROOM", raising=False)
@@ -207,7 +205,9 @@ def test_a_format_that_lacks_its_platform_says_so(
     assert "CLASSROOM, " in result.stderr
 
 
-def test_students_are_told_no_more_than_the_exercise_allows(run: Run, save: Save) -> None:
+def test_formats_for_students_respect_the_feedback_level_of_the_exercise(
+    run: Run, save: Save
+) -> None:
     answer = save({"answers": {"table": HALF}})
     asked = save({"answers": {"table": HALF}, "feedback": "score"}, "score.json")
     greedy = save({"answers": {"table": HALF}, "feedback": "full"}, "full.json")
@@ -223,7 +223,7 @@ def test_students_are_told_no_more_than_the_exercise_allows(run: Run, save: Save
         assert "row 3" not in table_only(run, asked, "--format", name).stdout.replace("rows", "row")
 
 
-def test_the_time_of_release_is_told_to_gradescope(run: Run, save: Save) -> None:
+def test_visibility_is_passed_on_to_gradescope(run: Run, save: Save) -> None:
     result = table_only(
         run, save(RIGHT), "--format", "gradescope", "--visibility", "after_due_date"
     )
@@ -231,7 +231,7 @@ def test_the_time_of_release_is_told_to_gradescope(run: Run, save: Save) -> None
 
 
 @pytest.mark.skipif(os.name == "nt", reason="allows no such names")
-def test_the_name_of_a_file_is_a_name_and_nothing_else(run: Run, save: Save) -> None:
+def test_file_names_are_escaped(run: Run, save: Save) -> None:
     name = "\x1b[31m\n::set-output name=a::b\n##[error]<script>.json"
     broken = save(b"{", name)
     result = table_only(run, broken, "--format", "markdown")
@@ -243,7 +243,7 @@ def test_the_name_of_a_file_is_a_name_and_nothing_else(run: Run, save: Save) -> 
     assert entry["file"] == str(broken)
 
 
-def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path: Path) -> None:
+def test_an_unwritable_output_is_reported(run: Run, save: Save, tmp_path: Path) -> None:
     answer = save(RIGHT)
     for output in (tmp_path / "no" / "report", answer / "report"):
         result = table_only(run, answer, "--output", output)
@@ -251,9 +251,7 @@ def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path
         assert result.stderr.count("cannot be written") == len(result.stderr.splitlines()) == 1
 
 
-def test_an_output_takes_the_place_of_nothing_that_is_read(
-    run: Run, save: Save, tmp_path: Path
-) -> None:
+def test_the_output_must_not_replace_an_input_file(run: Run, save: Save, tmp_path: Path) -> None:
     answer = save(RIGHT)
     assignment = save(b'title = "1"\n[[exercises]]\nid = "planar-rrr"\n', "homework.toml")
     other_name = tmp_path / "folder" / ".." / "answer.json"
@@ -266,7 +264,7 @@ def test_an_output_takes_the_place_of_nothing_that_is_read(
         assert output.read_bytes() == before
 
 
-def test_an_output_takes_the_place_of_no_submission_but_of_an_earlier_output(
+def test_the_output_may_replace_an_earlier_output_but_no_submission(
     run: Run, save: Save, tmp_path: Path
 ) -> None:
     (tmp_path / "class" / "bert").mkdir(parents=True)
@@ -276,7 +274,7 @@ def test_an_output_takes_the_place_of_no_submission_but_of_an_earlier_output(
         before = answer.read_bytes()
         refused = run(*command, "--output", answer)
         assert (refused.exit_code, answer.read_bytes()) == (2, before)
-        assert "stands among the submissions" in refused.stderr
+        assert "is among the submissions" in refused.stderr
     points = tmp_path / "class" / "points.csv"
     for _ in range(2):
         assert run(*command, "--output", points).exit_code == 1
@@ -291,7 +289,7 @@ def test_an_output_takes_the_place_of_no_submission_but_of_an_earlier_output(
         ("--visibility", "visable", "visible"),
     ],
 )
-def test_a_mistyped_choice_brings_the_nearest(
+def test_a_mistyped_choice_gets_a_suggestion(
     run: Run, save: Save, option: str, word: str, meant: str
 ) -> None:
     result = table_only(run, save(RIGHT), option, word)
@@ -302,7 +300,7 @@ def test_a_mistyped_choice_brings_the_nearest(
     assert "Value error" not in told
 
 
-def test_a_class_in_a_format_for_one_submission_says_what_it_was_taken_for(
+def test_grading_a_class_in_a_format_for_one_submission_is_explained(
     run: Run, save: Save, tmp_path: Path
 ) -> None:
     for name in ("class/anna/answer.json", "class/bert/answer.json"):
@@ -366,14 +364,14 @@ def test_an_unusable_file_says_why(
     assert result.stdout == ""
 
 
-def test_a_missing_file_and_a_folder_say_why(run: Run, tmp_path: Path) -> None:
+def test_a_missing_file_and_an_empty_folder_are_refused(run: Run, tmp_path: Path) -> None:
     missing = run("grade", tmp_path / "none.json", "--exercise", "planar-rrr")
     assert missing.exit_code == 2
     assert "No such file" in missing.stderr
     assert run("grade", tmp_path, "--exercise", "planar-rrr").exit_code == 2
 
 
-def test_dates_and_nan_in_toml_cost_only_their_cells(run: Run, save: Save) -> None:
+def test_dates_and_nan_in_toml_affect_only_their_cells(run: Run, save: Save) -> None:
     toml = TOML.replace("d = 0.0", "d = 2024-01-01").replace('a = "l2"', "a = nan")
     result = table_only(run, save(toml.encode(), "a.toml"), "--format", "json")
     assert result.exit_code in (0, 1), result.output
@@ -382,13 +380,13 @@ def test_dates_and_nan_in_toml_cost_only_their_cells(run: Run, save: Save) -> No
     assert rows[2]["cells"][0]["verdict"] == "unreadable"
 
 
-def test_an_unknown_exercise_brings_the_nearest(run: Run, save: Save) -> None:
+def test_an_unknown_exercise_gets_a_suggestion(run: Run, save: Save) -> None:
     result = run("grade", save(RIGHT), "--exercise", "planar_rrr")
     assert result.exit_code == 2
     assert "Did you mean 'planar-rrr'?" in result.stderr
 
 
-def test_an_unknown_part_brings_the_nearest(run: Run, save: Save) -> None:
+def test_an_unknown_part_gets_a_suggestion(run: Run, save: Save) -> None:
     result = run("grade", save(RIGHT), "--exercise", "planar-rrr", "--part", "tabel")
     assert result.exit_code == 2
     assert "Did you mean 'table'?" in result.stderr
@@ -401,7 +399,7 @@ def test_a_wrong_command_line_is_unusable_input(run: Run, arguments: list[str]) 
     assert run("grade", *arguments).exit_code == 2
 
 
-def test_a_class_is_a_folder_of_pages_with_an_overview(
+def test_html_writes_a_class_into_a_folder_with_an_overview(
     run: Run, save: Save, tmp_path: Path
 ) -> None:
     files = [save(RIGHT, "anna.json"), save(HALF, "ben.json"), save(b"{", "cleo.json")]

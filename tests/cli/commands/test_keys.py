@@ -1,4 +1,4 @@
-"""`dh-grader keys`, and a start that is refused for want of them."""
+"""`dh-grader keys`, and the service's refusal to start without keys."""
 
 import re
 import shutil
@@ -35,7 +35,7 @@ def run(*arguments: str) -> Result:
 
 
 def refused(host: str | None = "0.0.0.0", **options: Any) -> str:
-    """Why the service does not start; empty where it does."""
+    """The reason why the service does not start; empty if it starts."""
     try:
         installed_app(load_settings(**options), host)
     except SettingsError as error:
@@ -61,7 +61,7 @@ def test_a_key_is_created_shown_once_listed_and_revoked(monkeypatch: pytest.Monk
     assert run("create", "c", "--exercise", "scarra").exit_code != 0
 
 
-def test_who_lets_others_in_has_keys_or_says_that_it_needs_none(
+def test_a_public_service_needs_keys_or_an_explicit_setting(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert "DH_GRADER_OPEN=until-keys" in refused()
@@ -79,7 +79,7 @@ def test_who_lets_others_in_has_keys_or_says_that_it_needs_none(
     assert "DH_GRADER_SECRET" in refused("127.0.0.1")
 
 
-def test_another_secret_than_that_of_the_keys_is_refused_until_they_are_revoked(
+def test_a_wrong_secret_is_refused_until_all_keys_are_revoked(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
@@ -92,13 +92,13 @@ def test_another_secret_than_that_of_the_keys_is_refused_until_they_are_revoked(
         assert (result.exit_code, told in result.stderr.replace("\n", " ")) == (2, True)
         assert "another" not in result.output
     assert key in run("list").stdout
-    # A database of the version before tells no secret, and keeps that of the next key.
+    # A database of the previous version records no secret; the next key sets it.
     with sqlite3.connect(tmp_path / "attempts.db") as connection:
         connection.execute("DELETE FROM key_secrets")
     assert not refused()
     monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
     [other] = re.findall(r"Key (\w{8}), valid until", run("create", "a course").stderr)
-    # Whoever has lost the secret begins anew.
+    # After losing the secret, revoke all keys and create new ones.
     monkeypatch.setenv("DH_GRADER_SECRET", SECRET[::-1])
     assert told in refused()
     for each in (key, other):
@@ -108,7 +108,7 @@ def test_another_secret_than_that_of_the_keys_is_refused_until_they_are_revoked(
     assert not refused()
 
 
-def test_what_cannot_be_used_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_unusable_settings_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     file = tmp_path / "secret"
     monkeypatch.setenv("DH_GRADER_SECRET_FILE", str(file))
     assert "DH_GRADER_SECRET_FILE: cannot be read" in refused()

@@ -1,4 +1,4 @@
-"""Whole folders or nothing, and nothing of anybody else's is touched."""
+"""A folder is written completely or not at all, and foreign files are not touched."""
 
 import os
 from collections.abc import Iterator
@@ -33,12 +33,12 @@ def content(folder: Path) -> dict[str, str]:
 TWO = {"reports/a.html": "page of a", "reports/b.html": "page of b", "index.html": "a b"}
 
 
-def test_a_new_folder(tmp_path: Path) -> None:
+def test_a_new_folder_is_created_with_all_documents(tmp_path: Path) -> None:
     write_folder(documents("a", "b"), tmp_path / "class")
     assert content(tmp_path) == {f"class/{name}": text for name, text in TWO.items()}
 
 
-def test_an_empty_folder_and_one_of_an_earlier_run(tmp_path: Path) -> None:
+def test_an_empty_folder_or_one_of_an_earlier_run_is_replaced(tmp_path: Path) -> None:
     for names in (("x", "y", "z"), ("a", "b")):
         write_folder(documents(*names), tmp_path)
     assert content(tmp_path) == TWO
@@ -47,7 +47,7 @@ def test_an_empty_folder_and_one_of_an_earlier_run(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("end", [KeyboardInterrupt(), OSError(28, "No space left on device")])
 @pytest.mark.parametrize("before", [(), ("a", "b")])
-def test_an_early_end_leaves_no_half_of_a_folder(
+def test_an_interrupted_run_leaves_no_incomplete_folder(
     tmp_path: Path, before: tuple[str, ...], end: BaseException
 ) -> None:
     folder = tmp_path / "class"
@@ -59,12 +59,12 @@ def test_an_early_end_leaves_no_half_of_a_folder(
     assert folder.exists() is bool(before)
 
 
-def test_what_cannot_be_put_in_place_leaves_what_was_there(tmp_path: Path) -> None:
+def test_a_failed_replacement_restores_the_old_content(tmp_path: Path) -> None:
     write_folder(documents("a", "b"), tmp_path)
 
     def with_somebody_else() -> Iterator[Document]:
         yield from documents("c")
-        # Another program writes into the folder meanwhile: a name that cannot be taken.
+        # Meanwhile another program writes to the folder, so that a name is taken.
         (tmp_path / "reports" / "late.html").write_text("late")
         (tmp_path / "last" / "x").mkdir(parents=True)
         yield Document("last", [b"a file"])
@@ -75,7 +75,7 @@ def test_what_cannot_be_put_in_place_leaves_what_was_there(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("strange", ["notes.txt", "reports/notes.txt", "other/", "reports/deep/"])
-def test_a_folder_that_holds_something_else_is_refused(tmp_path: Path, strange: str) -> None:
+def test_a_folder_with_foreign_content_is_refused(tmp_path: Path, strange: str) -> None:
     write_folder(documents("a", "b"), tmp_path)
     if strange.endswith("/"):
         (tmp_path / strange).mkdir()
@@ -87,7 +87,7 @@ def test_a_folder_that_holds_something_else_is_refused(tmp_path: Path, strange: 
     assert (tmp_path / strange).exists()
 
 
-def test_pages_that_somebody_else_wrote_are_not_replaced(tmp_path: Path) -> None:
+def test_foreign_pages_are_not_replaced(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("my home page")
     with pytest.raises(UnusableFolderError, match=r"index\.html"):
         write_folder(documents("a"), tmp_path)
@@ -114,12 +114,14 @@ def test_no_path_leads_out_of_the_folder(tmp_path: Path, path: str) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_within_nothing_is_refused(tmp_path: Path) -> None:
+def test_a_folder_whose_parent_is_missing_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UnusableFolderError, match="cannot be written: No such file"):
         write_folder(documents("a"), tmp_path / "no" / "class")
 
 
-def test_outputs_that_are_meant_as_folders(tmp_path: Path) -> None:
+def test_a_new_output_without_suffix_is_a_folder_for_several_submissions(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "file"
     file.touch()
     assert is_for_folder(tmp_path, several=False)

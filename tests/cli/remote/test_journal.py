@@ -20,13 +20,13 @@ def reports(catalogue: Mapping[str, Exercise]) -> tuple[Report, Report]:
     )
 
 
-def test_what_one_run_keeps_the_next_one_has(
+def test_the_next_run_reads_the_reports_of_the_previous_one(
     tmp_path: Path, reports: tuple[Report, Report]
 ) -> None:
     first = Journal(tmp_path / "j")
     first.add(ONE, reports[0])
     first.add(OTHER, reports[1])
-    assert first.report(ONE) is None  # what came in this run has been used already
+    assert first.report(ONE) is None  # only reports of earlier runs are read
     second = Journal(tmp_path / "j")
     assert (second.report(ONE), second.report(OTHER)) == reports
     assert second.report(THIRD) is None
@@ -36,7 +36,7 @@ def test_what_one_run_keeps_the_next_one_has(
 
 
 @pytest.mark.parametrize("cut", [2, 30, 120, 1000])
-def test_a_line_that_was_broken_off_costs_only_itself(
+def test_an_incomplete_line_affects_only_itself(
     tmp_path: Path, reports: tuple[Report, Report], cut: int
 ) -> None:
     path = tmp_path / "j"
@@ -52,12 +52,12 @@ def test_a_line_that_was_broken_off_costs_only_itself(
 
 
 @pytest.mark.parametrize("content", [b"", b"\xff\x00", b'{"digest": "%b", "report": {}}\n'])
-def test_a_file_that_is_no_journal_holds_nothing(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_a_journal_has_no_reports(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "j").write_bytes(content.replace(b"%b", ONE.encode()))
     assert Journal(tmp_path / "j").report(ONE) is None
 
 
-def test_a_run_goes_on_where_it_cannot_be_written(
+def test_a_journal_that_cannot_be_written_is_reported_once(
     tmp_path: Path, reports: tuple[Report, Report], capsys: pytest.CaptureFixture[str]
 ) -> None:
     journal = Journal(tmp_path / "no such folder" / "j")
@@ -66,7 +66,7 @@ def test_a_run_goes_on_where_it_cannot_be_written(
     assert capsys.readouterr().err.count("cannot be written") == 1
 
 
-def test_it_stands_beside_the_output_and_is_no_submission_there(
+def test_the_journal_is_a_hidden_file_beside_the_output(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

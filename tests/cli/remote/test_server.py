@@ -1,4 +1,4 @@
-"""``dh-grader grade --server``: a real server process grades, and is killed in the midst of it."""
+"""``dh-grader grade --server`` with a real server process, which is also killed during a run."""
 
 import json
 import signal
@@ -35,11 +35,11 @@ id = "stanford-arm"
 
 @pytest.fixture
 def homework(tmp_path: Path) -> Path:
-    """A class of right, wrong, unreadable, unusable and missing answers."""
+    """A folder of right, wrong, unreadable, unusable and missing answers."""
     folder = tmp_path / "class"
     folder.mkdir()
     entries = [*POSITION, "q1", "a1 c1 +", "1/0", "0", 0]
-    # No two alike: a report is kept by what it is on, and the second one would not be asked for.
+    # All answers differ: the journal has equal answers only once, so that they are sent once.
     positions = Random(5).sample([*product(entries, repeat=2)], 20)
     for i, position in enumerate(positions):
         answers = {"position": position, "table": "a1, 0, 0, q1\na2, 0, 0, q2"}
@@ -69,7 +69,7 @@ def graded_posts(server: Served) -> int:
     ],
     ids=lambda what: what[-1],
 )
-def test_a_server_gives_the_document_that_is_made_here(
+def test_a_server_and_this_program_give_the_same_document(
     run: Run, server: Served, homework: Path, monkeypatch: pytest.MonkeyPatch, what: tuple[str, ...]
 ) -> None:
     monkeypatch.chdir(homework.parent)
@@ -80,11 +80,11 @@ def test_a_server_gives_the_document_that_is_made_here(
     assert list(Path().glob(".*")) == []
 
 
-def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
+def test_after_a_kill_the_next_run_requests_exactly_the_rest(
     run: Run, homework: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    # The waits are tested elsewhere.
+    # Do not wait before retries.
     monkeypatch.setattr("service.client.retries.random.uniform", lambda *_: 0.0)
     kept: list[str] = []
     add = Journal.add
@@ -109,7 +109,7 @@ def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
     assert broken.exit_code == 2
     lines = broken.stderr.splitlines()
     ungraded = [line.partition(":")[0] for line in lines if ": is not graded: " in line]
-    # 21 can be sent; a second one may have been on its way when the server was killed.
+    # 21 can be sent; a second request may have been on its way when the server was killed.
     assert len(ungraded) == 21 - len(kept) > 10
     *_, told, advice = lines
     assert told.startswith(f"Not graded: {len(ungraded)} of 23, for {first.address} cannot be")
@@ -121,14 +121,14 @@ def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
     (tmp_path / "second").mkdir()
     with served(tmp_path / "second", DH_GRADER_PORT=str(first.port)) as second:
         again = run(*command)
-    # The last lines of the log may come later than their answers, but before the end.
+    # Count after the server has stopped: the log may be written later than the answers.
     assert graded_posts(second) == len(ungraded)
     assert again.stderr == expected.stderr
     assert Path("points.json").read_text(encoding="utf-8") == whole
     assert not Path(".points.json.graded").exists()
 
 
-def test_what_the_server_refuses_or_fails_at_costs_no_other(
+def test_a_refused_or_failed_request_does_not_affect_other_submissions(
     run: Run, server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -137,7 +137,7 @@ def test_what_the_server_refuses_or_fails_at_costs_no_other(
         answers = {"answers": {"position": POSITION}}
         report = http(200, client.post("/v1/exercises/planar-rr/grade", json=answers).text)
     for name in "abc":
-        # Three that are not alike, so that nothing but the order says which is which.
+        # Three different answers, identified by their order alone.
         answers["answers"]["position"] = [*POSITION[:1], f"{POSITION[1]} + 0 {ord(name)}"]
         Path(f"{name}.json").write_text(json.dumps(answers), encoding="utf-8")
     command = ["grade", "a.json", "b.json", "c.json", "--exercise", "planar-rr", "--format", "csv"]
@@ -160,7 +160,7 @@ def test_what_the_server_refuses_or_fails_at_costs_no_other(
     assert list(Path().glob(".*")) == []
 
 
-def test_another_key_is_given_reports_of_its_own(
+def test_the_journal_separates_reports_by_key(
     run: Run, server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -202,10 +202,10 @@ def test_the_environment_names_server_and_key(
             "has no part 'tabel'. Did you mean 'table'",
         ),
         (("--assignment", "hw.toml"), "exercises[0].id (line 3): There is no exercise 'own'"),
-        (("--exercise", "planar-rr", "--key", "a b"), "The key is empty or holds a character"),
+        (("--exercise", "planar-rr", "--key", "a b"), "The key is empty or has a character"),
     ],
 )
-def test_what_a_server_has_not_ends_with_the_reason(
+def test_unknown_exercises_parts_and_keys_of_a_server_are_named(
     run: Run, server: Served, homework: Path, monkeypatch: pytest.MonkeyPatch,
     arguments: tuple[str, ...], told: str,
 ) -> None:  # fmt: skip
@@ -217,7 +217,7 @@ def test_what_a_server_has_not_ends_with_the_reason(
     assert told in result.stderr
 
 
-def test_an_exercise_of_ones_own_file_is_not_on_a_server(
+def test_a_local_exercise_file_cannot_be_graded_by_a_server(
     run: Run, server: Served, homework: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(homework.parent)
@@ -230,12 +230,12 @@ def test_an_exercise_of_ones_own_file_is_not_on_a_server(
 
 
 @pytest.mark.parametrize("address", ["localhost:8000", "", "https://u:p@example.edu"])
-def test_an_address_that_is_none(run: Run, homework: Path, address: str) -> None:
+def test_an_invalid_server_address_is_refused(run: Run, homework: Path, address: str) -> None:
     result = run("grade", homework, "--exercise", "planar-rr", "--server", address)
     assert result.exit_code == 2
     assert "ddress of a server" in result.stderr
 
 
-def test_a_key_without_a_server_is_a_mistake(run: Run, homework: Path) -> None:
+def test_a_key_without_a_server_is_refused(run: Run, homework: Path) -> None:
     result = run("grade", homework, "--exercise", "planar-rr", "--key", "dhg_1")
     assert (result.exit_code, result.stderr) == (2, "--key goes with --server URL.\n")

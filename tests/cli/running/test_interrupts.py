@@ -1,4 +1,4 @@
-"""A signal ends a run however it meets it."""
+"""A signal always ends a run, even if Python drops its exception."""
 
 import os
 import signal
@@ -13,8 +13,8 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no signals between 
 
 
 @pytest.fixture(autouse=True)
-def _as_in_a_terminal() -> Iterator[None]:
-    """A suite that was started in the background ignores interrupts."""
+def _interrupts_enabled() -> Iterator[None]:
+    """Handle interrupts as in a terminal: in the background, a suite ignores them."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -22,7 +22,7 @@ def _as_in_a_terminal() -> Iterator[None]:
 
 @pytest.fixture
 def lose(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
-    """Sends this process a signal whose exception Python drops."""
+    """A function that sends this process a signal whose exception Python drops."""
     monkeypatch.setattr(sys, "unraisablehook", lambda _: None)
 
     def lose(number: int) -> None:
@@ -42,7 +42,7 @@ def test_a_signal_ends_the_work() -> None:
         signal.raise_signal(signal.SIGTERM)
 
 
-def test_one_that_was_lost_ends_it_between_two_pieces(lose: Callable[[int], None]) -> None:
+def test_a_lost_signal_ends_the_work_at_the_next_check(lose: Callable[[int], None]) -> None:
     with interruptible() as check:
         check()
         lose(signal.SIGINT)
@@ -54,7 +54,7 @@ def test_one_that_was_lost_ends_it_between_two_pieces(lose: Callable[[int], None
             check()
 
 
-def test_what_fails_after_it_is_not_the_reason(lose: Callable[[int], None]) -> None:
+def test_an_error_after_a_signal_does_not_replace_it(lose: Callable[[int], None]) -> None:
     def run() -> None:
         with interruptible():
             lose(signal.SIGINT)
@@ -64,7 +64,7 @@ def test_what_fails_after_it_is_not_the_reason(lose: Callable[[int], None]) -> N
         run()
 
 
-def test_a_second_one_at_once_does_not_break_the_clearing_up() -> None:
+def test_a_second_signal_does_not_interrupt_the_cleanup() -> None:
     cleared = []
 
     def run() -> None:
@@ -80,7 +80,7 @@ def test_a_second_one_at_once_does_not_break_the_clearing_up() -> None:
     assert cleared
 
 
-def test_what_was_to_be_ignored_stays_ignored() -> None:
+def test_ignored_signals_stay_ignored() -> None:
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         with interruptible() as check:

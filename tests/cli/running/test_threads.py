@@ -6,7 +6,7 @@ from service.cli.running.threads import mapped_in_threads
 from tests.guards import ANSWER
 
 
-def test_the_results_come_in_order_whoever_is_first() -> None:
+def test_results_come_in_the_order_of_the_items() -> None:
     second_is_done = threading.Event()
 
     def work(item: int) -> int:
@@ -20,7 +20,7 @@ def test_the_results_come_in_order_whoever_is_first() -> None:
         assert list(results) == [item * item for item in range(20)]
 
 
-def test_few_are_done_ahead() -> None:
+def test_only_few_items_are_computed_ahead() -> None:
     begun: list[int] = []
     with mapped_in_threads(begun.append, range(1000), 2) as results:
         next(results)
@@ -28,7 +28,7 @@ def test_few_are_done_ahead() -> None:
     assert len(begun) <= 6
 
 
-def test_the_end_waits_for_nobody() -> None:
+def test_the_end_of_the_context_does_not_wait_for_threads() -> None:
     begun, released = threading.Event(), threading.Event()
 
     def work(item: int) -> None:
@@ -43,7 +43,7 @@ def test_the_end_waits_for_nobody() -> None:
     released.set()
 
 
-def test_what_a_thread_raises_is_raised_where_its_result_is_due() -> None:
+def test_an_exception_in_a_thread_is_raised_in_place_of_its_result() -> None:
     with mapped_in_threads(lambda item: 1 // item, [1, 0], 2) as results:
         assert next(results) == 1
         with pytest.raises(ZeroDivisionError):

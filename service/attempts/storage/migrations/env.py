@@ -1,4 +1,4 @@
-"""Run by Alembic: the migrations on the connection that is handed over."""
+"""Run the migrations on the given connection; Alembic calls this module."""
 
 from alembic import context
 

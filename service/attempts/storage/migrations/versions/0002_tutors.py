@@ -1,4 +1,4 @@
-"""What tutors read and change: awarded points, earlier reports, a queue of what is regraded."""
+"""Tables for tutors: awarded points, earlier reports, and the queue of regrades."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -22,7 +22,7 @@ _UNCOUNTED = {
 
 
 def upgrade() -> None:
-    """Make the tables; attempts are listed by their moments and counted without their reports."""
+    """Create the tables, and indexes to list attempts by time and count them without reports."""
     for columns in _BEFORE:
         op.drop_index(f"ix_attempts_{'_'.join(columns)}", "attempts")
     for name, columns in _NOW.items():

@@ -1,4 +1,4 @@
-"""Keys: of their text only a keyed hash."""
+"""Add API keys; only a keyed hash is stored."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -10,7 +10,7 @@ down_revision = "0002"
 
 
 def upgrade() -> None:
-    """Make the table."""
+    """Create the table."""
     op.create_table(
         "keys",
         sa.Column("id", sa.String(8), primary_key=True),

@@ -1,4 +1,4 @@
-"""Of the secret of the keys a keyed hash, by which another secret is known."""
+"""Add a keyed hash that shows whether the secret of the keys has changed."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,7 +8,7 @@ down_revision = "0003"
 
 
 def upgrade() -> None:
-    """Make the table. It stays empty until the next key is made: nothing else tells the secret."""
+    """Create the table. It stays empty until the next key is added with the current secret."""
     op.create_table(
         "key_secrets",
         sa.Column("id", sa.Integer, primary_key=True, autoincrement=False),
