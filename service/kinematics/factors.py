@@ -39,6 +39,14 @@ class Factors:
     sizes: Numbers
     axes: Integers
 
+    @property
+    def table(self) -> Table:
+        """The table that the factors were made from, ``(rows, 4, L)``, with lengths in its unit."""
+        sizes = self.sizes.reshape(-1, 2, 2, self.sizes.shape[-1])
+        if self.convention is Convention.STANDARD:
+            sizes = sizes[:, ::-1]
+        return sizes.reshape(len(sizes), 4, -1)
+
     @cached_property
     def screws(self) -> Matrices:
         """The factors as matrices, ``(K, L, 4, 4)``."""

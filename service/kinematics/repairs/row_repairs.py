@@ -29,14 +29,14 @@ def one_row_repairs(
     The ``wrong`` cells are always among them.
     """
     needed = factors.inverse_before[:-1:2] @ pose @ factors.inverse_after[2::2]
+    numbers = np.flatnonzero(_misfit(needed, factors).max(axis=-1) < SAME_POSE)
+    values = row(needed[numbers], factors.convention)
+    changed = _changed(values, factors.table[numbers])
     found = []
-    for i in np.flatnonzero(_misfit(needed, factors).max(axis=-1) < SAME_POSE).tolist():
-        values = row(needed[i], factors.convention)
-        written = np.array([factors.sizes[factors.position((i, column))] for column in range(4)])
-        changed = _changed(values, written)
-        cells = [c for c in range(4) if changed[c] or (i, c) in wrong]
+    for k, i in enumerate(numbers.tolist()):
+        cells = [c for c in range(4) if changed[k, c] or (i, c) in wrong]
         if cells:
-            found.append(CellRepair(tuple((i, column) for column in cells), values[cells]))
+            found.append(CellRepair(tuple((i, column) for column in cells), values[k, cells]))
     return found
 
 
@@ -56,8 +56,8 @@ def _misfit(needed: Matrices, factors: Factors) -> Numbers:
 
 
 def _changed(values: Numbers, written: Numbers) -> NDArray[np.bool_]:
-    """Return the columns ``(4,)`` in which two rows ``(4, L)`` differ."""
+    """Return the cells ``(rows, 4)`` in which two tables ``(rows, 4, L)`` differ."""
     error = values - written
-    for column in (ALPHA, THETA):
-        error[column] -= 2 * np.pi * np.round(error[column] / (2 * np.pi))
+    angles = error[:, [ALPHA, THETA]]
+    error[:, [ALPHA, THETA]] = angles - 2 * np.pi * np.round(angles / (2 * np.pi))
     return np.asarray(np.abs(error).max(axis=-1) >= SAME_POSE)

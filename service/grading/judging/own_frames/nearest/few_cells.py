@@ -160,11 +160,11 @@ def _repairs(case: _Case) -> tuple[list[CellRepair], list[CellRepair]]:
     pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
     by_factor = one_factor_repairs(factors, pose)
     by_one_cell = _admissible(by_factor, [1], case)
-    by_row = _admissible(one_row_repairs(factors, pose, case.wrong), range(1, 5), case)
+    by_row = one_row_repairs(factors, pose, case.wrong)
     if by_one_cell:
-        return by_one_cell, by_row
+        return by_one_cell, _admissible(by_row, [2, 3, 4], case)
     by_two_cells = _admissible(chain(by_factor, two_factor_repairs(factors, pose)), [2], case)
-    return [*by_two_cells, *(each for each in by_row if len(each.cells) > MAX_CELLS)], []
+    return [*by_two_cells, *_admissible(by_row, [3, 4], case)], []
 
 
 def _admissible(
