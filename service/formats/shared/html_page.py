@@ -11,7 +11,8 @@ from xml.etree.ElementTree import Element, tostring
 
 from service.formats.shared.markup import element
 
-_SHARED_STYLE: Final = Path(__file__).with_suffix(".css").read_text(encoding="utf-8")
+_STYLE_FILE: Final = Path(__file__).with_name("templates") / "report.css"
+_SHARED_STYLE: Final = _STYLE_FILE.read_text(encoding="utf-8")
 CLOSING: Final = b"</body>\n</html>\n"
 
 

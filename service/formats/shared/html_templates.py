@@ -1,0 +1,70 @@
+"""HTML from Jinja2 templates that escape every text.
+
+A template is named by its path below ``service/``. Every value that a template prints becomes one
+visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
+"""
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from markupsafe import Markup, escape
+
+from service.formats.shared.plain_text import code_pieces, number, percent, visible, whole_percent
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_PACKAGE: Final = Path(__file__).parents[2]
+
+
+def html(template: str, /, **values: object) -> bytes:
+    """Return the document of a template in UTF-8."""
+    return _environment().get_template(template).render(values).encode()
+
+
+def html_pieces(template: str, /, **values: object) -> Iterator[bytes]:
+    """Yield the document piece by piece, while the template takes items from iterators in it."""
+    for piece in _environment().get_template(template).generate(values):
+        yield piece.encode()
+
+
+def own_html(text: str) -> Markup:
+    """Return a text that templates print as it is. The service itself must have made it.
+
+    There are three such texts: style sheets, statements (``statement_html``) and formulas in MathML
+    (``formula_html``).
+    """
+    return Markup(text)
+
+
+def lines(text: str) -> Markup:
+    """Return the text as HTML with its line breaks; each line of it is visible."""
+    return escape("\n".join(map(visible, text.split("\n"))))
+
+
+@cache
+def _environment() -> "Environment":
+    """Return the environment; it compiles each template once in a process."""
+    # Only here: a program that writes no HTML starts without it.
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(_PACKAGE),
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=_finalize,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        auto_reload=False,
+        cache_size=-1,
+    )
+    functions = (code_pieces, lines, number, percent, whole_percent)
+    environment.filters |= {each.__name__: each for each in functions}
+    return environment
+
+
+def _finalize(value: object) -> str:
+    """Return a printed value as HTML that a template made, or as a visible text."""
+    return value if isinstance(value, Markup) else visible(str(value))
