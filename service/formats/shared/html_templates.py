@@ -4,19 +4,38 @@ A template is named by its path below ``service/``. Every value that a template 
 visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
 """
 
+import base64
+import hashlib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from markupsafe import Markup, escape
 
-from service.formats.shared.plain_text import code_pieces, number, percent, visible, whole_percent
+from service.formats.shared.plain_text import (
+    code_pieces,
+    number,
+    percent,
+    visible,
+    whole_percent,
+    whole_score,
+)
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 _PACKAGE: Final = Path(__file__).parents[2]
+_SHARED_STYLE: Final = Path(__file__).with_name("templates") / "report.css"
+
+
+@dataclass(frozen=True, slots=True)
+class StyleSheet:
+    """A style sheet as it is printed in a page, and its hash as a policy of the page names it."""
+
+    html: Markup
+    hash: str
 
 
 def html(template: str, /, **values: object) -> bytes:
@@ -39,6 +58,13 @@ def own_html(text: str) -> Markup:
     return Markup(text)
 
 
+def style_sheet(file: Path) -> StyleSheet:
+    """Return the style of all reports, followed by that of one kind of report."""
+    style = _SHARED_STYLE.read_text(encoding="utf-8") + file.read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    return StyleSheet(own_html(style), f"sha256-{digest}")
+
+
 def lines(text: str) -> Markup:
     """Return the text as HTML with its line breaks; each line of it is visible."""
     return escape("\n".join(map(visible, text.split("\n"))))
@@ -57,10 +83,11 @@ def _environment() -> "Environment":
         finalize=_finalize,
         trim_blocks=True,
         lstrip_blocks=True,
+        keep_trailing_newline=True,
         auto_reload=False,
         cache_size=-1,
     )
-    functions = (code_pieces, lines, number, percent, whole_percent)
+    functions = (code_pieces, lines, number, percent, whole_percent, whole_score)
     environment.filters |= {each.__name__: each for each in functions}
     return environment
 

@@ -35,7 +35,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
         own = policy(
             script_src="'none'",
             connect_src="'none'",
-            style_src=style_sources(INDEX_STYLE, REPORT_STYLE),
+            style_src=style_sources(INDEX_STYLE, REPORT_STYLE.html),
         )
         content = '<!doctype html><html lang="en"><head><title>Report</title></head></html>'
         return HTMLResponse(content, headers={**PRIVATE_HEADERS, "Content-Security-Policy": own})

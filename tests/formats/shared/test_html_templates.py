@@ -16,6 +16,7 @@ SERVICE = Path(__file__).parents[3] / "service"
 TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
 # The functions that call `own_html`, with the HTML that they pass.
 TRUSTED = {
+    "formats/shared/html_templates.py style_sheet": "the style sheets of reports",
     "web/pages.py _markdown": "statements and prompts: statement_html()",
     "web/tutor/tutor_pages.py _formula": "MathML of model solutions: formula_html()",
 }
