@@ -40,12 +40,12 @@ class StyleSheet:
 
 def html(template: str, /, **values: object) -> bytes:
     """Return the document of a template in UTF-8."""
-    return _environment().get_template(template).render(values).encode()
+    return environment().get_template(template).render(values).encode()
 
 
 def html_pieces(template: str, /, **values: object) -> Iterator[bytes]:
-    """Yield the document piece by piece, while the template takes items from iterators in it."""
-    for piece in _environment().get_template(template).generate(values):
+    """Yield the document piece by piece; the template takes items of iterators one by one."""
+    for piece in environment().get_template(template).generate(values):
         yield piece.encode()
 
 
@@ -71,12 +71,12 @@ def lines(text: str) -> Markup:
 
 
 @cache
-def _environment() -> "Environment":
+def environment() -> "Environment":
     """Return the environment; it compiles each template once in a process."""
     # Only here: a program that writes no HTML starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    environment = Environment(
+    made = Environment(
         loader=FileSystemLoader(_PACKAGE),
         autoescape=True,
         undefined=StrictUndefined,
@@ -88,8 +88,8 @@ def _environment() -> "Environment":
         cache_size=-1,
     )
     functions = (code_pieces, lines, number, percent, whole_percent, whole_score)
-    environment.filters |= {each.__name__: each for each in functions}
-    return environment
+    made.filters |= {each.__name__: each for each in functions}
+    return made
 
 
 def _finalize(value: object) -> str:

@@ -24,7 +24,7 @@ TRUSTED = {
 
 @pytest.fixture
 def environment() -> Environment:
-    return html_templates._environment()
+    return html_templates.environment()
 
 
 def rendered(environment: Environment, source: str, **values: object) -> str:
@@ -79,7 +79,7 @@ def test_a_variable_that_is_missing_fails(environment: Environment) -> None:
 
 def test_a_template_is_compiled_once(environment: Environment) -> None:
     name = TEMPLATES[0].relative_to(SERVICE).as_posix()
-    assert html_templates._environment() is environment
+    assert html_templates.environment() is environment
     assert environment.get_template(name) is environment.get_template(name)
 
 
