@@ -44,7 +44,6 @@ FILES = 12
 CROWDED = {
     "service/api/document/examples": 21,
     "service/expressions/repairs": 56,  # one file for each repair
-    "service/formats/shared": 14,
     "tests": 15,
     "tests/attack": 17,
     "tests/attempts": 16,

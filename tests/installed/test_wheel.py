@@ -64,6 +64,18 @@ def test_a_submission_gets_the_same_points_from_wheel_and_http(
         assert graded["report"][figure] == over_http[figure]
 
 
+def test_the_wheel_holds_the_templates_of_reports_and_pages(programs: Path, tmp_path: Path) -> None:
+    (tmp_path / "wrong.json").write_text(json.dumps({"answers": WRONG}), encoding="utf-8")
+    options = ("grade", "wrong.json", "--exercise", "planar-rrr", "--format", "html")
+    report = run(programs / "dh-grader", *options, cwd=tmp_path)
+    assert report.stdout.startswith("<!doctype html>"), report.stderr
+    ask = (
+        "from service.web.assets import load_assets; from service.web.pages import play_page;"
+        "print(play_page(load_assets()).decode())"
+    )
+    assert "<dh-play>" in checked(programs / "python", "-c", ask, cwd=tmp_path)
+
+
 @pytest.mark.campaign
 def test_every_other_python_installs_and_starts_it(wheel: Path, tmp_path: Path) -> None:
     for i, python in enumerate(other_pythons()):

@@ -1,131 +1,96 @@
 """The index of a class: scores, success, slips, identical mistakes, and all submissions.
 
-It is for tutors. It has no script: what is long is folded by the browser itself.
+It is for tutors. It has no script: the browser itself folds long lists.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Final
-from xml.etree.ElementTree import Element
 
-from service.formats.class_page.overview import Overview, SubmissionLine
-from service.formats.class_page.scores import scores
-from service.formats.class_page.slips import identical_mistakes, misconceptions, unreadable_texts
-from service.formats.class_page.success import success
-from service.formats.class_page.words import link, note, plural, section
-from service.formats.shared.html_page import CLOSING, opening, style_sheet, written
-from service.formats.shared.markup import element
-from service.formats.shared.messages import SIGNS
-from service.formats.shared.plain_text import percent
-from service.grading import Verdict
+from service.formats.class_page.overview import Overview
+from service.formats.shared.html_templates import html_pieces, style_sheet
+from service.formats.shared.messages import SIGNS, places_in_words
+from service.formats.shared.part_results import LONGEST
+from service.formats.shared.plain_text import shortened
+from service.grading import Place, Verdict
+from service.statistics import CountedSlip, ScoreBin, Share
+from service.statistics.success import columns
 
 INDEX: Final = "index.html"
 STYLE: Final = style_sheet(Path(__file__).with_name("index.css"))
+# The shares at which a cell gets the next colour. The cell also shows the number.
+_BANDS: Final = (0.0, 0.25, 0.5, 0.75, 0.9)
 
 
 def index(overview: Overview) -> Iterator[bytes]:
-    """The index piece by piece."""
-    yield opening(f"Class overview · {_title(overview)}", STYLE)
-    yield b"<main>\n"
-    yield written(_head(overview)) + b"\n"
-    for each in _sections(overview):
-        yield written(each) + b"\n"
-    yield written(_footer(overview)) + b"\n</main>\n"
-    yield CLOSING
-
-
-def _sections(overview: Overview) -> Iterator[Element]:
-    yield scores(overview)
-    yield success(overview)
-    yield misconceptions(overview)
-    yield unreadable_texts(overview)
-    yield identical_mistakes(overview)
-    yield _ungraded(overview)
-    yield _submissions(overview)
-
-
-_CONTENTS: Final = (
-    ("scores", "Scores"),
-    ("success", "Success"),
-    ("misconceptions", "Misconceptions"),
-    ("unreadable", "Could not be read"),
-    ("identical", "Identical mistakes"),
-    ("ungraded", "Not graded"),
-    ("submissions", "Submissions"),
-)
+    """Yield the index piece by piece."""
+    return html_pieces(
+        "formats/class_page/templates/index.html",
+        style=STYLE,
+        title=_title(overview),
+        overview=overview,
+        sources=dict.fromkeys(each.source for each in overview.exercises.values()),
+        titles=_part_titles(overview),
+        bands=list(pairwise(f"{edge * 100:.0f}" for edge in (*_BANDS, 1.0))),
+        band_of=_band_of,
+        bars_of=_bars_of,
+        columns_of=columns,
+        grouped="{:,}".format,
+        place_of=_place_of,
+        plural=_plural,
+        sentence_of=_sentence_of,
+        signs=SIGNS,
+        span_of=_span_of,
+        verdicts=Verdict,
+    )
 
 
 def _title(overview: Overview) -> str:
     if len(overview.exercises) == 1:
         return next(iter(overview.exercises.values())).title
-    return plural(len(overview.exercises), "exercise")
+    return _plural(len(overview.exercises), "exercise")
 
 
-def _head(overview: Overview) -> Element:
-    sources = dict.fromkeys(each.source for each in overview.exercises.values())
-    entries = [element("li", element("a", words, href=f"#{name}")) for name, words in _CONTENTS]
-    return element(
-        "header",
-        element("p", "Class overview", class_="kicker"),
-        element("h1", _title(overview)),
-        *(note(source) for source in sources),
-        element("nav", element("ul", *entries), aria_label="Sections"),
-    )
+def _part_titles(overview: Overview) -> Mapping[tuple[str, str], str]:
+    """Return the titles of parts, with the exercise's title if there are several exercises."""
+    has_several = len(overview.exercises) > 1
+    return {
+        (each.id, part.id): f"{each.title}: {part.title}" if has_several else part.title
+        for each in overview.exercises.values()
+        for part in each.parts
+    }
 
 
-def _ungraded(overview: Overview) -> Element:
-    """The submissions that could not be graded or read, with the reason."""
-    rows = [
-        element(
-            "tr",
-            element("th", link(overview, line), scope="row"),
-            element("td", reason, class_="reason"),
-            element("td", f"counts {line.points} points" if line.is_graded else "is left out"),
-        )
-        for line in overview.ungraded
-        for reason in line.problems or ["Nothing in it could be read."]
-    ]
-    if not rows:
-        return section("ungraded", "Not graded", note("Everything was graded."))
-    table = _table(dict.fromkeys(("submission", "reason", "in the scores"), ""), rows)
-    return section("ungraded", "Not graded or not readable", table)
+def _plural(count: int, noun: str) -> str:
+    """Return ``1 submission``, or ``2,000 submissions``."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
-def _submissions(overview: Overview) -> Element:
-    rows = [_line(overview, line) for line in overview.lines]
-    heads = {"submission": "", "points": "figure spare", "score": "figure", "result": ""}
-    return section("submissions", "Submissions", _table(heads, rows))
+def _place_of(row: str, cell: str) -> str:
+    return places_in_words([Place(row, cell)])
 
 
-def _line(overview: Overview, line: SubmissionLine) -> Element:
-    name = element("th", link(overview, line), scope="row")
-    if not line.is_graded:
-        blanks = [element("td", "–", class_="figure spare"), element("td", "–", class_="figure")]
-        return element("tr", name, *blanks, _result(Verdict.UNREADABLE, "not graded"))
-    result = (Verdict.CORRECT, "passed") if line.passed else (Verdict.INCORRECT, "not passed")
-    points = element("td", line.points, class_="figure spare")
-    score = element("td", percent(line.score), class_="figure")
-    return element("tr", name, points, score, _result(*result))
+def _sentence_of(slip: CountedSlip) -> str:
+    return shortened(slip.sentence, LONGEST)
 
 
-def _result(verdict: Verdict, words: str) -> Element:
-    sign = element("span", SIGNS[verdict], class_="sign", aria_hidden="true")
-    return element("td", element("span", sign, f" {words}", class_=f"badge {verdict.value}"))
+def _band_of(share: Share) -> str:
+    """Return the class of a share: its colour."""
+    if share.value is None:
+        return "share-none"
+    return f"share{sum(share.value >= low for low in _BANDS) - 1}"
 
 
-def _table(heads: Mapping[str, str], rows: Sequence[Element]) -> Element:
-    """A table as wide as the page; ``heads`` are the names and classes of its columns."""
-    cells = (element("th", name, scope="col", class_=kind) for name, kind in heads.items())
-    head = element("tr", *cells)
-    table = element("table", element("thead", head), element("tbody", *rows), class_="wide")
-    return element("div", table, class_="card cells", tabindex="0")
+def _span_of(each: ScoreBin) -> str:
+    """Return the scores of a column of the histogram in words."""
+    until = "to" if each.high == 1 else "to under"
+    return f"{each.low * 100:.0f} {until} {each.high * 100:.0f} %"
 
 
-def _footer(overview: Overview) -> Element:
-    told = "Made on this machine; nothing was sent anywhere. This page names students: keep it to "
-    told += "yourself, and hand back the pages in the folder beside it."
-    footer = element("footer", element("p", told))
-    if overview.graders:
-        graders = ", ".join(sorted(overview.graders))
-        footer.append(element("p", f"Graded by DH Grader {graders}."))
-    return footer
+def _bars_of(each: ScoreBin, highest: int) -> Iterator[tuple[str, str, str]]:
+    """Yield class, top and height of the bars of a column: above those that passed, in per cent."""
+    tall, below = (100 * n / highest for n in (each.count, each.count - each.passed))
+    for side, top, height in (("below", 100 - below, below), ("over", 100 - tall, tall - below)):
+        if each.count and f"{height:.2f}" != "0.00":
+            yield side, f"{top:.2f}", f"{height:.2f}"

@@ -11,9 +11,8 @@ from typing import Final
 from xml.etree.ElementTree import Element, indent, tostring
 
 from service.formats.shared.graded import GradedSubmission
-from service.formats.shared.markup import element
 from service.formats.shared.part_results import PartResult, distinct_names, part_results
-from service.formats.shared.plain_text import points
+from service.formats.shared.plain_text import points, visible
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import Verdict
 
@@ -31,7 +30,7 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
 def _suite(submission: GradedSubmission, name: str) -> Element:
     cases = [_case(each, name) for each in part_results(submission)]
     found = Counter(child.tag for case in cases for child in case)
-    return element(
+    return _element(
         "testsuite",
         *cases,
         name=name,
@@ -44,23 +43,30 @@ def _suite(submission: GradedSubmission, name: str) -> Element:
 
 
 def _case(result: PartResult, suite: str) -> Element:
-    case = element("testcase", classname=suite, name=result.name, time="0")
+    case = _element("testcase", classname=suite, name=result.name, time="0")
     if not result.passed:
         case.append(_failure(result))
     return case
 
 
 def _failure(result: PartResult) -> Element:
-    """What was wrong; an error where the part could not be read and so was not judged."""
+    """Return what was wrong: an error if the part could not be read, and so was not judged."""
     is_unread = result.verdict is Verdict.UNREADABLE
     earned = points(result.points, result.max_points)
-    failure = element(
+    failure = _element(
         "error" if is_unread else "failure",
         message=f"{result.verdict.value}, {earned} points",
         type=result.verdict.value,
     )
     failure.text = "\n".join([f"{earned} points", *result.lines()])
     return failure
+
+
+def _element(tag: str, *children: Element, **attributes: str) -> Element:
+    """Return an element whose attributes are visible lines, without characters XML forbids."""
+    made = Element(tag, {name: visible(value) for name, value in attributes.items()})
+    made.extend(children)
+    return made
 
 
 FORMAT: Final = ReportFormat(_pieces, for_students=True)

@@ -1,0 +1,97 @@
+"""HTML from Jinja2 templates that escape every text.
+
+A template is named by its path below ``service/``. Every value that a template prints becomes one
+visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
+"""
+
+import base64
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from markupsafe import Markup, escape
+
+from service.formats.shared.plain_text import (
+    code_pieces,
+    number,
+    percent,
+    visible,
+    whole_percent,
+    whole_score,
+)
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_PACKAGE: Final = Path(__file__).parents[2]
+_SHARED_STYLE: Final = Path(__file__).with_name("templates") / "report.css"
+
+
+@dataclass(frozen=True, slots=True)
+class StyleSheet:
+    """A style sheet as it is printed in a page, and its hash as a policy of the page names it."""
+
+    html: Markup
+    hash: str
+
+
+def html(template: str, /, **values: object) -> bytes:
+    """Return the document of a template in UTF-8."""
+    return environment().get_template(template).render(values).encode()
+
+
+def html_pieces(template: str, /, **values: object) -> Iterator[bytes]:
+    """Yield the document piece by piece; the template takes items of iterators one by one."""
+    for piece in environment().get_template(template).generate(values):
+        yield piece.encode()
+
+
+def own_html(text: str) -> Markup:
+    """Return a text that templates print as it is. The service itself must have made it.
+
+    There are three such texts: style sheets, statements (``statement_html``) and formulas in MathML
+    (``formula_html``).
+    """
+    return Markup(text)
+
+
+def style_sheet(file: Path) -> StyleSheet:
+    """Return the style of all reports, followed by that of one kind of report."""
+    style = _SHARED_STYLE.read_text(encoding="utf-8") + file.read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    return StyleSheet(own_html(style), f"sha256-{digest}")
+
+
+def lines(text: str) -> Markup:
+    """Return the text as HTML with its line breaks; each line of it is visible."""
+    return escape("\n".join(map(visible, text.split("\n"))))
+
+
+@cache
+def environment() -> "Environment":
+    """Return the environment; it compiles each template once in a process."""
+    # Only here: a program that writes no HTML starts without it.
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    made = Environment(
+        loader=FileSystemLoader(_PACKAGE),
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=_finalize,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        auto_reload=False,
+        cache_size=-1,
+    )
+    functions = (code_pieces, lines, number, percent, whole_percent, whole_score)
+    made.filters |= {each.__name__: each for each in functions}
+    return made
+
+
+def _finalize(value: object) -> str:
+    """Return a printed value as HTML that a template made, or as a visible text."""
+    return value if isinstance(value, Markup) else visible(str(value))

@@ -1,0 +1,98 @@
+"""Templates escape every text, and only named places print HTML of the service itself."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from jinja2 import Environment, UndefinedError
+
+from service.formats.shared import html_templates
+from service.formats.shared.html_templates import lines, own_html
+from tests.formats.submissions import HOSTILE
+
+SERVICE = Path(__file__).parents[3] / "service"
+TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
+# The functions that call `own_html`, with the HTML that they pass.
+TRUSTED = {
+    "formats/shared/html_templates.py style_sheet": "the style sheets of reports",
+    "web/pages.py _markdown": "statements and prompts: statement_html()",
+    "web/tutor/tutor_pages.py _formula": "MathML of model solutions: formula_html()",
+}
+
+
+@pytest.fixture
+def environment() -> Environment:
+    return html_templates.environment()
+
+
+def rendered(environment: Environment, source: str, **values: object) -> str:
+    return environment.from_string(source).render(values)
+
+
+def calls(name: str) -> Iterator[str]:
+    """Yield the functions of service/ that call the function ``name``."""
+    for file in sorted(SERVICE.rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef):
+                called = {
+                    each.func.id
+                    for each in ast.walk(node)
+                    if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
+                }
+                if name in called:
+                    yield f"{file.relative_to(SERVICE).as_posix()} {node.name}"
+
+
+def test_a_printed_text_is_escaped_and_visible(environment: Environment) -> None:
+    shown = rendered(environment, '<p title="{{ text }}">{{ text }}</p>', text=HOSTILE)
+    assert "<script" not in shown
+    assert "&lt;script&gt;" in shown
+    assert shown.count('"') == 2
+    assert shown.isprintable()
+    assert not re.search("::|##", shown)
+
+
+def test_values_of_macros_and_loops_are_escaped_once(environment: Environment) -> None:
+    source = (
+        "{% macro m(t) %}<b>{{ t }}</b>{% endmacro %}{% for t in texts %}{{ m(t) }}{% endfor %}"
+    )
+    assert (
+        rendered(environment, source, texts=["<i>", "\u202e&"])
+        == "<b>&lt;i&gt;</b><b>\ufffd&amp;</b>"
+    )
+
+
+def test_html_of_the_service_is_printed_as_it_is(environment: Environment) -> None:
+    assert rendered(environment, "{{ html }}", html=own_html("<i>\n</i>")) == "<i>\n</i>"
+
+
+def test_line_breaks_are_kept_where_a_template_says_so() -> None:
+    assert lines("a <b>\n\x1b c\r") == "a &lt;b&gt;\n\ufffd c\ufffd"
+
+
+def test_a_variable_that_is_missing_fails(environment: Environment) -> None:
+    with pytest.raises(UndefinedError):
+        rendered(environment, "{{ misspelt }}")
+
+
+def test_a_template_is_compiled_once(environment: Environment) -> None:
+    name = TEMPLATES[0].relative_to(SERVICE).as_posix()
+    assert html_templates.environment() is environment
+    assert environment.get_template(name) is environment.get_template(name)
+
+
+@pytest.mark.parametrize("file", TEMPLATES, ids=lambda file: file.name)
+def test_no_template_turns_escaping_off(file: Path) -> None:
+    source = file.read_text(encoding="utf-8")
+    assert not re.search(r"\|\s*safe|autoescape|\bMarkup\b|xmlattr|\|\s*tojson", source)
+    # The text of an author's file, in a text area, keeps its control characters.
+    assert len(re.findall(r"\|\s*(?:e|escape|forceescape)\b", source)) == (
+        file.name == "editor.html"
+    )
+
+
+def test_the_html_that_is_not_escaped_comes_from_named_places() -> None:
+    assert set(calls("own_html")) == set(TRUSTED)
+    assert list(calls("Markup")) == ["formats/shared/html_templates.py own_html"]
