@@ -1,7 +1,9 @@
 """The lists of codes that are made from the records are current, and leave no record out."""
 
 from collections import Counter
+from pathlib import Path
 
+from service.grading.diagnosis.lists.position import WrongPosition
 from service.grading.misconception import all_records
 from tests.docs.misconceptions.records import DOCS, PAGES, kinds_in, records_in, written
 from tests.together import together
@@ -10,7 +12,7 @@ MESSAGES = (DOCS / "messages.md").read_text(encoding="utf-8")
 
 
 @together("page", PAGES)
-def test_a_page_is_what_the_records_say(page) -> None:  # type: ignore[no-untyped-def]
+def test_a_page_is_what_the_records_say(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert written(text) == text, "run `python -m tests.docs.misconceptions.records`"
 
@@ -30,5 +32,6 @@ def test_no_kind_is_in_two_tables() -> None:
 
 def test_a_list_is_written_between_its_marks() -> None:
     page = "## A\n<!-- codes: WrongPosition -->\nold\n<!-- end -->\nkept\n"
-    codes = "`exchanged_coordinates`, `reversed_position`.\n"
-    assert written(page) == page.replace("old\n", codes)
+    own = {code for each in all_records() if each.of is WrongPosition for code in each.codes}
+    codes = ", ".join(f"`{code}`" for code in sorted(own))
+    assert written(page) == page.replace("old\n", f"{codes}.\n")
