@@ -44,7 +44,7 @@ Example: TypeAlias = tuple[str, str, Any] | tuple[str, str, Any, str]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Record:
-    """All that is known of a misconception or a check besides its function.
+    """A misconception or a check.
 
     It is asked about each answer that is a case ``of`` that class and meets ``when``, in the order
     of ``rank``. It gives the first of ``codes``, unless its finding has another of them. ``means``
@@ -71,13 +71,13 @@ class Record:
         return self.codes[0]
 
     def meaning(self, code: str) -> str:
-        """What one of the codes means."""
+        """Return the meaning of one of the codes."""
         return self.means if isinstance(self.means, str) else self.means[self.codes.index(code)]
 
     def finding(
         self, hint: str, correction: str = "", severity: Severity = Severity.ERROR
     ) -> Finding:
-        """A finding with the code, for what is found by no function of its own."""
+        """Return a finding with the code, for a record without a function."""
         return Finding(self.code, hint, correction, severity)
 
     def hypotheses(self, source: object) -> Iterable["Hypothesis[Any]"]:
@@ -88,7 +88,7 @@ class Record:
         return found
 
     def verdict(self, source: object) -> "Hypothesis[Any] | None":
-        """The finding of a check, or None, if the answer passes it."""
+        """Return the finding of a check, or None if the answer passes it."""
         found = None
         if self.function and (self.when is None or self.when(source)):
             found = self.function(source)
@@ -108,7 +108,7 @@ def register(
 ) -> Record:
     """Add a record; ``code`` may be several, and ``known`` are other fields of Record.
 
-    Without a function it is that of a code that other code than the engine gives.
+    A record without a function is for a code that the engine does not give.
     """
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)
@@ -151,7 +151,7 @@ def all_records() -> tuple[Record, ...]:
 
 
 def says(hint: str, correction: str = "") -> Finding:
-    """The words of a message, which gets the code of its record."""
+    """Return the words of a message; the engine adds the code of the record."""
     return Finding("", hint, correction)
 
 

@@ -75,7 +75,7 @@ def _example(records: list[Record]) -> str:
 
 
 def shown_example(answer: object) -> tuple[str, str]:
-    """The place in the model answer that is changed, if one is, and what is written there."""
+    """Return the changed place of the model answer, if there is one, and the text."""
     if isinstance(answer, dict) and all("/" in place for place in answer):
         if len(answer) == 1:
             [(place, text)] = answer.items()

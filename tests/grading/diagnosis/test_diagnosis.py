@@ -21,12 +21,12 @@ PASSING_ON = [record for record in all_records() if record.function and not reco
 
 
 def what_is_wrong_with(record: Record) -> str:
-    """What a test says of a record that does not keep its word; empty if it does."""
+    """Return a complaint that names the record, or an empty string if it keeps its word."""
     if record.example is None or not record.means:
         return f"{record.name}: give it an example, and say what its code means"
     exercise, part, answer, *unit = record.example
     trace = trace_of(exercise, part, answer, *unit)
-    # A record without a function is that of a code that other code than the engine gives.
+    # The engine does not give the code of a record without a function.
     is_told = record in trace.told or (record.function is None and record.of is not Slip)
     if not is_told:
         return f"{record.name}: {_reason(record, trace)}"
@@ -88,7 +88,7 @@ def test_the_records_are_the_same_whatever_is_imported_first(first: str) -> None
     assert done.stdout.splitlines() == expected
 
 
-# --- what the test says of a record that does not keep its word
+# --- a record that does not keep its word is named
 
 
 class Nobody:
@@ -108,7 +108,7 @@ def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def said_of(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
-    """What the test says of a misconception about signs with this record."""
+    """Return the complaint about a misconception about signs with this record."""
 
     def signed(case: WrongPosition) -> Iterator[Written[Numbers]]:
         for sign in signs:

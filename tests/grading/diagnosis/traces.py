@@ -79,7 +79,7 @@ def exercises() -> Mapping[str, Exercise]:
 
 
 def answered(exercise_id: str, part_id: str, answer: Any) -> Any:
-    """An answer of a record as a student would send it."""
+    """Return an answer of a record as a student would send it."""
     if isinstance(answer, str):
         return answer.replace(END, "\n")
     if not (isinstance(answer, dict) and any("/" in place for place in answer)):
@@ -109,7 +109,7 @@ def _write(rows: Any, row: str, cell: str, written: str) -> None:
 
 
 def trace_of(exercise_id: str, part_id: str, answer: Any, unit: str = "radians") -> Trace:
-    """What grading an answer of a record does."""
+    """Grade an answer of a record; return its trace."""
     exercise = exercises()[exercise_id]
     sent = {part_id: answered(exercise_id, part_id, answer)}
     with traced() as trace:
