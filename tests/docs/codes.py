@@ -98,7 +98,10 @@ def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
     """The functions and methods that pass a code on, likewise."""
     for node in nodes:
         if isinstance(node, Function) and node.name != "__init__" and CODE in _arguments(node):
-            yield node.name, _arguments(node).index(CODE)
+            place = _arguments(node).index(CODE)
+            # What can be handed over only by its name is seen in the call.
+            if place < len(_arguments(node)) - len(node.args.kwonlyargs):
+                yield node.name, place
 
 
 def _arguments(function: Function) -> list[str]:
@@ -156,7 +159,10 @@ def _texts(value: ast.expr, function: Function | None, known: Given, file: str) 
     """The codes that an expression may stand for; none where it passes on that of another."""
     match value:
         case ast.Constant(str(text)):
-            return [text]
+            # A finding without a code gets that of its record.
+            return [text] if text else []
+        case ast.Tuple(elts=elements):
+            return [text for each in elements for text in _texts(each, function, known, file)]
         case ast.Attribute(attr="code"):
             return []
         case ast.IfExp(body=one, orelse=other):

@@ -1,8 +1,9 @@
 """The page of all sentences that a student can meet, each with an example: docs/sentences.md.
 
-``python -m tests.docs.sentences > docs/sentences.md`` writes it anew. Examples are those of
-docs/messages.md and of ``sentence_examples.toml``, the answers tried in the exercise files, and the
-corpus of formulas. Each is handed in; a sentence goes on the page with the first that draws it.
+``python -m tests.docs.sentences > docs/sentences.md`` writes it. Examples are those of the records
+of misconceptions, of docs/messages.md and of ``sentence_examples.toml``, the answers tried in the
+exercise files, and the corpus of formulas. Each is handed in; a sentence goes on the page with the
+first that draws it.
 """
 
 import sys
@@ -10,13 +11,13 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from service.api.routes.preview import GENERIC
-from service.catalogue import Exercise, load_catalogue
+from service.catalogue import Exercise
 from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from service.grading import FeedbackLevel, Submission, grade
+from service.grading.misconception import all_records
 from service.grading.reading.preview import preview_pasted
 from service.grading.report import Feedback, Place, messages_of
 from service.grids import GRID_LIMITS
@@ -24,9 +25,7 @@ from tests.docs import test_message_codes as messages_page
 from tests.docs.codes import sources
 from tests.docs.templates import Template, templates_in
 from tests.expressions.corpus_files import ROBOT, cases, repair_cases, repairs
-from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
-from tests.grading.support.submitting import table
-from tests.shipped import shipped_exercises
+from tests.grading.diagnosis.traces import END, answered, exercises
 
 ROOT: Final = Path(__file__).parents[2]
 EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
@@ -43,8 +42,6 @@ _NO_SENTENCES: Final = frozenset(
         "Write a number or a formula, not true or false.",
     }
 )  # fmt: skip
-# The end of a line in an answer.
-END: Final = " ↵ "
 _LONGEST: Final = 240
 
 
@@ -94,9 +91,11 @@ def pasted_texts() -> Iterator[str]:
 
 def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     """Answers to parts of exercises."""
-    for line in messages_page.LINES:
-        if line.example and (found := _of_the_page(line)):
-            yield found
+    for record in all_records():
+        if record.example is not None:
+            name, part, answer, *unit = record.example
+            given = {part: answered(name, part, answer)}
+            yield Example(name, given, "degrees" if unit else "radians")
     for each in _written()["answers"]:
         unit = each.get("angle_unit", "radians")
         yield Example(each["exercise"], {each["part"]: each["answer"]}, unit)
@@ -110,41 +109,6 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     # More than is explained of one.
     wrong = [["c1 c4", "c1 s4", "c4 s1", "s1 s4"]] * 4
     yield Example("stanford-arm", {"table": wrong[:1] * 6, "links": [wrong] * 6, "pose": wrong})
-
-
-def _of_the_page(line: messages_page.Line) -> Example | None:
-    """The example of a line of docs/messages.md as an answer."""
-    match line.section, line.example:
-        case messages_page.IN_CELLS, (place, _, written):
-            row, column = place.removeprefix("row ").split(", ")
-            rows = [list(cells) for cells in EXACT.rows(STANFORD)]
-            rows[int(row) - 1][COLUMNS.index(column)] = written
-            return Example("stanford-arm", {"table": table(rows)})
-        case messages_page.SINGLE, (right, written):
-            matrix = [["c12", "-s12", "0", "a1 c1 + a2 c12"], ["s12", "c12", "0", "a1 s1 + a2 s12"]]
-            matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
-            matrix[0][matrix[0].index(right)] = written
-            return Example("planar-rr", {"pose": matrix})
-        case "Positions" | "Slips behind a pose", (answer,):
-            return Example("planar-rr", {"position": answer})
-        case "Angles", (answer,):
-            return Example("spherical-wrist", {"zyz": answer})
-        case "Screws", (answer,):
-            part = "body-screws" if line.code == "space_for_body" else "space-screws"
-            middle = "L1 + L2" if part == "body-screws" else "0"
-            axes = [["0", "0", "1", "0", middle, "0"], ["0", "0", "0", "1", "0", "0"]]
-            axes.append(answer.strip("[]").split(", "))
-            return Example("planar-rpr-poe", {part: axes})
-    return None
-
-
-def _made() -> dict[str, Exercise]:
-    """The exercises that are made for some of the examples."""
-    with TemporaryDirectory() as folder:
-        for name, text in _written()["made"].items():
-            head = f'title = "{name}"\nsource = "made"\nstatement = "Made for this page."\n'
-            (Path(folder) / f"{name}.toml").write_text(head + text, encoding="utf-8")
-        return dict(load_catalogue(Path(folder)))
 
 
 def _written() -> dict[str, Any]:
@@ -250,7 +214,7 @@ def known_templates() -> list[Known]:
 
 def all_said() -> Iterator[Said]:
     """All that the examples draw."""
-    catalogue = {**shipped_exercises(), **_made()}
+    catalogue = exercises()
     yield from said_of_formulas(formulas())
     # A preview for no exercise reads in the names of books.
     yield from said_of_formulas(["g0"], GENERIC)
@@ -288,17 +252,19 @@ def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], lis
             )
         ]
         if met:
-            rows.append(Row(_section([template for template, _ in met]), each))
+            rows.append(Row(_section([template for template, _ in met], each.code), each))
             unmet = [one for one in unmet if one not in met]
     return rows, [template for template, _ in unmet]
 
 
-def _section(met: Iterable[Template]) -> str:
-    for template in met:
-        for sections, files in messages_page.PLACES:
-            if template.file.startswith(files):
-                return sections[0]
-    return _SHARED
+def _section(met: Iterable[Template], code: str) -> str:
+    """The section of docs/messages.md that has the code and most others of the sentence's file."""
+    told = [use.code for use in messages_page.program() for each in met if use.file == each.file]
+    listed: dict[str, set[str]] = {}
+    for line in messages_page.LINES:
+        listed.setdefault(line.section, set()).add(line.code)
+    found = [section for section, codes in listed.items() if code in codes]
+    return max(found, key=lambda section: len(listed[section].intersection(told)), default=_SHARED)
 
 
 # --- the page
@@ -322,7 +288,7 @@ These sentences have no example yet; … means a value that the program inserts.
 def page() -> str:
     """The whole page, in Markdown."""
     rows, unmet = chosen(all_said(), known_templates())
-    sections = [sections[0] for sections, _ in messages_page.PLACES]
+    sections = dict.fromkeys(line.section for line in messages_page.LINES)
     blocks = [_HEAD]
     for section in [*sections, _SHARED]:
         lines = [row.said for row in rows if row.section == section]
@@ -338,16 +304,18 @@ def page() -> str:
 
 
 def _line(said: Said) -> str:
-    correction = f" → {_code(said.correction)}" if said.correction else ""
+    correction = f" → {code_span(said.correction)}" if said.correction else ""
     where = f"{said.where}: " if said.where else ""
-    return f"| `{said.code}` | {where}{_code(said.answer)} | {_cell(said.sentence)}{correction} |"
+    return (
+        f"| `{said.code}` | {where}{code_span(said.answer)} | {_cell(said.sentence)}{correction} |"
+    )
 
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("\n", "↵").replace("<", "&lt;")
 
 
-def _code(text: str) -> str:
+def code_span(text: str) -> str:
     """A text as code, whatever it holds; a long one without its middle."""
     text = text.replace("\n", END)
     if len(text) > _LONGEST:

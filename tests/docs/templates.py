@@ -15,6 +15,8 @@ from typing import Final
 GAP: Final = "…"
 # The exceptions whose texts no student reads.
 _FOR_PROGRAMMERS: Final = {"ValueError", "TypeError", "RuntimeError", "UnknownPartError"}
+# What is registered by these is on the pages of codes and in no message.
+_RECORDS: Final = {"misconception", "check", "register"}
 _PATTERN: Final = re.compile(r"\\|\(\?|\[\^|\]\+|\)\*|\[A-Z|</?m|[\[(|].*\|")
 # What is put in later: {name}, or {…:in other words} where the first is put in at once.
 _FIELD: Final = re.compile(r"\{\w+\}|\{…(?::[^{}]*)?\}")
@@ -85,6 +87,8 @@ def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
             case ast.Raise(exc=ast.Call(func=ast.Name(name))) if name in _FOR_PROGRAMMERS:
                 continue
             case ast.Assert():
+                continue
+            case ast.Call(func=ast.Name(name)) if name in _RECORDS:
                 continue
             case ast.Constant(value=str(text)):
                 yield _with_gaps([text])

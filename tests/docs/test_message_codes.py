@@ -1,4 +1,7 @@
-"""docs/messages.md lists every code that the program gives, in its place, and no other."""
+"""docs/messages.md lists every code that the program gives, and no other.
+
+Its tables of slips are made from the records (``tests/docs/misconceptions``).
+"""
 
 import json
 import re
@@ -20,8 +23,7 @@ from service.grids import GRID_LIMITS
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
 from tests.grading.support.exercise_texts import all_codes
-from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
-from tests.grading.support.submitting import as_data, handed_in, part, table
+from tests.grading.support.submitting import as_data, handed_in, part
 from tests.together import together
 
 ROOT = Path(__file__).parents[2]
@@ -31,105 +33,6 @@ UNREAD = "A formula that cannot be read"
 NOTED = "A formula that is read, with a note"
 PASTED_UNREAD = "A pasted table or matrix that cannot be read"
 PASTED_NOTED = "A pasted table or matrix that is read, with a note"
-IN_CELLS = "Slips in table cells"
-SINGLE = "Single entries"
-DIAGNOSIS = "grading/diagnosis/"
-VALUES = f"{DIAGNOSIS}wrong_value.py"
-# The sections, and the files that tell what they list; a folder stands for all that is in it.
-PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
-    ((UNREAD,), ("expressions/repairs/",)),
-    ((NOTED,), ("expressions/parsing/",)),
-    (
-        (PASTED_UNREAD, PASTED_NOTED),
-        (
-            "grids/",
-            "grading/reading/tables/row_labels.py",
-            "grading/reading/tables/length_units.py",
-            "grading/reading/pasted.py",
-            "grading/reading/matrices/matrix_list.py",
-            "grading/reading/tables/pasted_table.py",
-            "grading/reading/preview.py",
-        ),
-    ),
-    (
-        ("The shape of an answer",),
-        (
-            "formats/shared/messages.py",
-            "grading/kinds/dh_row.py",
-            "grading/reading/entry.py",
-            "grading/kinds/link_transforms.py",
-            "grading/reading/matrices/screw_list.py",
-            "grading/reading/lists/value_list.py",
-            "grading/reading/written_names.py",
-            "grading/reading/matrices/matrix.py",
-            "grading/reading/tables/table.py",
-        ),
-    ),
-    (
-        ("Accepted, with a remark",),
-        (
-            "grading/judging/own_frames/remarks.py",
-            "grading/kinds/euler_angles.py",
-            "grading/feedback.py",
-            "grading/kinds/screw_axes.py",
-        ),
-    ),
-    ((IN_CELLS,), (f"{DIAGNOSIS}tables/table_cell.py", VALUES)),
-    (
-        ("Slips through a whole table",),
-        (
-            "grading/kinds/dh_table.py",
-            "grading/judging/table.py",
-            "grading/judging/convention.py",
-            "grading/judging/row_places.py",
-            "grading/judging/own_frames/written_table.py",
-            f"{DIAGNOSIS}tables/column_order.py",
-            f"{DIAGNOSIS}tables/intended_table.py",
-            f"{DIAGNOSIS}tables/joint_numbering.py",
-            f"{DIAGNOSIS}tables/table_freedom.py",
-            f"{DIAGNOSIS}tables/whole_table.py",
-        ),
-    ),
-    (("The row of a transform",), (f"{DIAGNOSIS}tables/dh_row.py",)),
-    (
-        ("Matrices",),
-        (
-            f"{DIAGNOSIS}matrices/exponentials.py",
-            f"{DIAGNOSIS}matrices/whole_matrix.py",
-            f"{DIAGNOSIS}motions/link_products.py",
-            f"{DIAGNOSIS}matrices/link_slips.py",
-            f"{DIAGNOSIS}matrices/rotation_steps.py",
-            f"{DIAGNOSIS}matrices/inverse_slips.py",
-            f"{DIAGNOSIS}motions/motion_slips.py",
-        ),
-    ),
-    (
-        (SINGLE,),
-        (f"{DIAGNOSIS}matrices/matrix_entry.py", f"{DIAGNOSIS}upstream/missing_symbol.py", VALUES),
-    ),
-    (
-        ("Slips behind a pose",),
-        (
-            f"{DIAGNOSIS}upstream/joint_slips.py",
-            f"{DIAGNOSIS}upstream/table_slips.py",
-            f"{DIAGNOSIS}tables/rows_and_columns.py",
-            f"{DIAGNOSIS}upstream/slip_search.py",
-        ),
-    ),
-    (("Positions",), (f"{DIAGNOSIS}lists/position.py",)),
-    (
-        ("Angles",),
-        (
-            f"{DIAGNOSIS}lists/angle.py",
-            f"{DIAGNOSIS}lists/angle_sum.py",
-            f"{DIAGNOSIS}lists/euler_triple.py",
-            VALUES,
-        ),
-    ),
-    (("Screws",), (f"{DIAGNOSIS}screws/screw_axis.py", f"{DIAGNOSIS}matrices/home_position.py")),
-    (("A table that is drawn",), ("figures/tables/table_frames.py",)),
-    (("Parts as a whole",), ("grading/follow_through.py", "grading/grade.py")),
-)
 
 
 class Line(NamedTuple):
@@ -181,19 +84,6 @@ def test_every_code_of_the_program_is_on_the_page() -> None:
 
 def test_every_code_on_the_page_is_one_of_the_programs() -> None:
     assert {line.code for line in LINES} - {use.code for use in program()} == set()
-
-
-def test_every_file_that_tells_codes_has_its_section() -> None:
-    files = tuple(file for _, files in PLACES for file in files)
-    assert {use.file for use in program() if not use.file.startswith(files)} == set()
-
-
-@pytest.mark.parametrize(("sections", "files"), PLACES, ids=lambda names: names[0])
-def test_a_section_lists_what_its_files_tell(
-    sections: tuple[str, ...], files: tuple[str, ...]
-) -> None:
-    listed = {line.code for line in LINES if line.section in sections}
-    assert listed == {use.code for use in program() if use.file.startswith(files)}
 
 
 def test_a_section_lists_a_code_once() -> None:
@@ -255,51 +145,6 @@ def test_a_text_that_is_no_grid_has_another_code_in_a_report(
     [line] = [line for line in LINES if line.code == "no_grid"]
     full, score = codes_of(catalogue["planar-rr"], "pose", line.example[0])
     assert full == score == {"wrong_shape"}
-
-
-@examples(IN_CELLS)
-def test_a_table_cell_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
-    place, right, written = line.example
-    row, column = place.removeprefix("row ").split(", ")
-    rows = [list(cells) for cells in EXACT.rows(STANFORD)]
-    assert rows[int(row) - 1][COLUMNS.index(column)] == right
-    rows[int(row) - 1][COLUMNS.index(column)] = written
-    assert codes_of(catalogue["stanford-arm"], "table", table(rows)) == ({line.code}, set())
-
-
-@examples(SINGLE)
-def test_an_entry_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
-    right, written = line.example
-    matrix = [["c12", "-s12", "0", "a1 c1 + a2 c12"], ["s12", "c12", "0", "a1 s1 + a2 s12"]]
-    matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
-    assert f"which is {', '.join(f'`{entry}`' for entry in matrix[0])}" in PAGE.replace("\n", " ")
-    matrix[0][matrix[0].index(right)] = written
-    full, score = codes_of(catalogue["planar-rr"], "pose", matrix)
-    assert full - {"rotation_not_orthonormal"} == {line.code}
-    # How a bare number was read is told at every level.
-    assert score <= {"bare_radians"}
-
-
-@examples("Slips behind a pose", "Positions")
-def test_a_position_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
-    exercise, [answer] = catalogue["planar-rr"], line.example
-    assert codes_of(exercise, "position", answer) == ({line.code}, set())
-
-
-@examples("Angles")
-def test_angles_draw_their_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
-    full, score = codes_of(catalogue["spherical-wrist"], "zyz", line.example[0])
-    assert line.code in full
-    assert line.code not in score
-
-
-@examples("Screws")
-def test_a_screw_axis_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
-    body = line.code == "space_for_body"
-    axes = [["0", "0", "1", "0", "L1 + L2" if body else "0", "0"], ["0", "0", "0", "1", "0", "0"]]
-    answer = [*axes, line.example[0].strip("[]").split(", ")]
-    part_id = "body-screws" if body else "space-screws"
-    assert codes_of(catalogue["planar-rpr-poe"], part_id, answer) == ({line.code}, set())
 
 
 def test_most_codes_have_an_example() -> None:

@@ -1,15 +1,23 @@
-"""The engine that finds which misconception explains a wrong answer."""
+"""The engine that finds which misconception explains an answer."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
+import pytest
+
+from service.grading import misconception as engine
 from service.grading.feedback import Finding
 from service.grading.misconception import (
     AnyHypothesis,
     Written,
+    check,
     diagnosed,
     explanation,
     hypotheses_of,
+    misconception,
+    register,
+    says,
 )
 
 
@@ -27,54 +35,107 @@ class WrongNumber:
                 yield hypothesis
 
 
-def too_small(_case: object) -> Iterator[Written[int]]:
-    yield Written(1, Finding("one", "One."))
-    yield Written(2, lambda: (Finding("two", "Two."), Finding("small", "Small.")))
+class Text(str):
+    """A source of hypotheses that is not the case itself."""
 
 
-def too_large(_case: object) -> Iterator[Written[int]]:
-    yield Written(8, Finding("eight", "Eight."))
+@pytest.fixture(autouse=True)
+def records(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Some records, of which those of a higher rank are registered first."""
+    monkeypatch.setattr(engine, "_RECORDS", [])
+    engine.records_of.cache_clear()
+
+    @misconception(of=WrongNumber, rank=20, code="large")
+    def too_large(_case: object) -> Iterator[Written[int]]:
+        yield Written(8, "Eight.")
+
+    @misconception(of=WrongNumber, rank=10, code="small")
+    def too_small(_case: object) -> Iterator[Written[int]]:
+        yield Written(1, says("One.", "Add one."))
+        yield Written(2, lambda: (Finding("two", "Two."), says("Small.")))
+
+    @misconception(of=WrongNumber, rank=15, code="half", when=lambda case: case.actual > 100)
+    def too_large_by_half(_case: object) -> Iterator[Written[int]]:
+        yield Written(150, "Half.")
+
+    @check(of=WrongNumber, rank=5, code="negative")
+    def negative(case: WrongNumber) -> Finding | None:
+        return says("Negative.") if case.actual < 0 else None
+
+    @misconception(of=Text, rank=10, code="length")
+    def of_text(text: Text) -> Iterator[Written[int]]:
+        yield Written(len(text), str(text))
+
+    yield
+    engine.records_of.cache_clear()
 
 
-def negative(case: WrongNumber) -> Finding | None:
-    return Finding("negative", "Negative.") if case.actual < 0 else None
+def codes(found: Any) -> list[str]:
+    assert found is not None
+    return [finding.code for finding in found.findings]
 
 
 def test_the_first_that_explains_is_taken_and_none_after_it_is_tried() -> None:
     case = WrongNumber(1)
-    found = explanation(case, (too_small, too_large))
-    assert found is not None
-    assert [finding.code for finding in found.findings] == ["one"]
+    assert codes(explanation(case)) == ["small"]
     assert case.tried == [1]
 
 
-def test_each_misconception_is_tried_until_one_explains() -> None:
+def test_the_rank_decides_and_not_the_order_of_registration() -> None:
     case = WrongNumber(8)
-    assert explanation(case, (too_small, too_large)) is not None
+    assert codes(explanation(case)) == ["large"]
     assert case.tried == [1, 2, 8]
-    assert explanation(WrongNumber(5), (too_small, too_large)) is None
+    assert explanation(WrongNumber(5)) is None
 
 
 def test_two_findings_where_two_misconceptions_are_held() -> None:
-    found = explanation(WrongNumber(2), (too_small,))
-    assert found is not None
-    assert [finding.code for finding in found.findings] == ["two", "small"]
+    assert codes(explanation(WrongNumber(2))) == ["two", "small"]
+
+
+def test_a_correction_beside_the_hint() -> None:
+    finding = diagnosed(WrongNumber(1))
+    assert finding is not None
+    assert (finding.code, finding.hint, finding.correction) == ("small", "One.", "Add one.")
 
 
 def test_a_misconception_may_be_a_function_of_something_else() -> None:
-    def of_text(text: str) -> Iterator[Written[int]]:
-        yield Written(len(text), Finding("length", text))
-
-    assert explanation(WrongNumber(3), (of_text,), "abc") is not None
+    assert codes(explanation(WrongNumber(3), Text("abc"))) == ["length"]
+    assert codes(explanation(WrongNumber(3), "abc", of=Text)) == ["length"]
 
 
-def test_checks_come_first() -> None:
-    def code(case: WrongNumber) -> str | None:
-        finding = diagnosed(case, (too_small,), (negative,))
-        return finding.code if finding else None
-
-    assert [code(WrongNumber(n)) for n in (-1, 1, 5)] == ["negative", "one", None]
+def test_a_check_is_ranked_like_a_misconception() -> None:
+    assert codes(explanation(WrongNumber(-1))) == ["negative"]
 
 
-def test_hypotheses_in_the_order_of_the_list() -> None:
-    assert [each.answer for each in hypotheses_of(0, (too_large, too_small))] == [8, 1, 2]
+def test_a_misconception_that_does_not_concern_a_case_is_not_tried() -> None:
+    few, many = WrongNumber(99), WrongNumber(150)
+    assert explanation(few) is None
+    assert 150 not in few.tried
+    assert codes(explanation(many)) == ["half"]
+
+
+def test_a_case_has_the_records_of_its_base_classes() -> None:
+    class Special(WrongNumber):
+        pass
+
+    assert codes(explanation(Special(8))) == ["large"]
+
+
+def test_a_record_that_is_registered_later_is_found() -> None:
+    assert explanation(WrongNumber(7)) is None
+
+    @misconception(of=WrongNumber, rank=1, code="seven")
+    def seven(_case: object) -> Iterator[Written[int]]:
+        yield Written(7, "Seven.")
+
+    assert codes(explanation(WrongNumber(7))) == ["seven"]
+
+
+def test_a_code_without_a_function_gives_its_finding() -> None:
+    record = register(of=WrongNumber, code="other")
+    assert record.finding("Look.", "Do.") == Finding("other", "Look.", "Do.")
+    assert explanation(WrongNumber(5)) is None
+
+
+def test_hypotheses_in_the_order_of_the_ranks() -> None:
+    assert [each.answer for each in hypotheses_of(WrongNumber(0))] == [1, 2, 8]

@@ -1,1 +1,7 @@
-"""Which slip explains a wrong answer: small pure functions, one for each misconception."""
+"""What explains a wrong answer. All files are imported, so that every record is known."""
+
+from importlib import import_module
+from pkgutil import walk_packages
+
+for _found in walk_packages(__path__, f"{__name__}."):
+    import_module(_found.name)

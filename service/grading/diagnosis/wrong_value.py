@@ -14,7 +14,7 @@ from service.expressions import Expression
 from service.expressions.printing.spelling import PLAIN, Spelling
 from service.grading.diagnosis.wording import MEASURED, SYMBOLS
 from service.grading.feedback import EXPECTED, YOURS, Finding
-from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
+from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written, check
 from service.grading.numerics.comparison import (
     difference,
     nearly_equal,
@@ -83,14 +83,13 @@ class WrongValue:
 
 def finding_on(
     case: WrongValue,
-    code: str,
     hint: str,
     values: dict[str, float | str] | None = None,
     *,
     otherwise: str = "",
 ) -> Finding:
-    """A finding with the correction of the wrong value; ``otherwise`` where none is known."""
-    return Finding(code, hint, case.correction or otherwise, values=values)
+    """The words of a finding with the correction of the wrong value; ``otherwise`` without one."""
+    return Finding("", hint, case.correction or otherwise, values=values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,6 +186,15 @@ class WrongNumbers:
 UNEXPLAINED = "value"
 
 
+@check(
+    of=WrongValue,
+    rank=10,
+    code="undefined",
+    means="a formula without a value: it divides by zero, takes the root of a negative number, or "
+    "grows beyond bounds",
+    example=("stanford-arm", "table", {"2/d": "d2/0"}),
+    unlike={"6/d": "0"},
+)
 def undefined(case: WrongValue) -> Finding | None:
     """The formula has no value where the robot can be: 1/0, √−1, or beyond all bounds."""
     bad = np.flatnonzero(~np.isfinite(case.actual))
@@ -196,7 +204,6 @@ def undefined(case: WrongValue) -> Finding | None:
     where = ", ".join(f"{name} = {number:g}" for name, number in at.items())
     return finding_on(
         case,
-        "undefined",
         f"{case.expression.text()} has no value{' at ' if where else ''}{where}: check for a "
         f"division by zero, a root of a negative number, or a number that is too large.",
         {**at},
@@ -217,7 +224,7 @@ def differs(case: WrongValue, hint: str) -> Finding:
         values[YOURS] = _printed(case, _at_printed(case))
         if case.corrects:
             values[EXPECTED] = _printed(case, float(case.expected[0]))
-    return finding_on(case, UNEXPLAINED, hint, values or None)
+    return finding_on(case, hint, values or None)
 
 
 def _at_printed(case: WrongValue) -> float:

@@ -3,11 +3,33 @@
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.feedback import Finding
 from service.grading.judging.table import Judgement, judged_table
+from service.grading.misconception import register
 from service.grading.part import Grading
 from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Severity
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
+
+_TAKEN = register(
+    of=StudentTable,
+    code="convention_taken",
+    means="either convention will do and the answer names none: it was read in the one that fits "
+    "best (an info)",
+    example=("skew", "table", "a, alpha, d, theta ↵ 0, 60°, 0, theta1 ↵ a2, 0, 0, theta2"),
+    unlike={"1/alpha": "0"},
+)
+_NOT_ASKED_FOR = register(
+    of=StudentTable,
+    code="convention_not_asked_for",
+    means="the answer, or the links of a script, name another convention than the part; it was "
+    "graded in the part's, and costs nothing by that",
+    example=(
+        "planar-rr",
+        "table",
+        {"convention": "modified", "rows": [["a1", "0", "0", "q1"], ["a2", "0", "0", "q2"]]},
+    ),
+    unlike="a2, 0, 0, theta2",
+)
 
 
 def judged_in_convention(
@@ -45,8 +67,7 @@ def _misfit(judgement: Judgement) -> int:
 
 
 def _taken(convention: Convention) -> Finding:
-    return Finding(
-        "convention_taken",
+    return _TAKEN.finding(
         f"The answer names no convention; it was read as {convention.value}, which fits it best. "
         f"Check which convention you used, and name it.",
         severity=Severity.INFO,
@@ -59,8 +80,7 @@ def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...
         return ()
     named = table.convention.value
     return (
-        Finding(
-            "convention_not_asked_for",
+        _NOT_ASKED_FOR.finding(
             f"This part asks for the {asked.value} convention and was graded in it, but the answer "
             f"says {named}.",
             severity=Severity.WARNING,

@@ -1,9 +1,10 @@
-"""Which of the student's rows is graded as which: told where the numbers differ."""
+"""Which of the student's rows is graded as which, and which are missing or too many."""
 
 from typing import Final
 
 from service.grading.feedback import Finding
 from service.grading.judging.table import JudgedRow, Judgement
+from service.grading.misconception import register
 from service.grading.part import Grading
 from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Severity
@@ -11,6 +12,50 @@ from service.kinematics.dh import Convention
 
 # Fixed rows by their labels.
 _FIXED: Final = {"0": "the fixed row before the first joint", "e": "the end effector"}
+_MATCHED = register(
+    of=StudentTable,
+    code="rows_matched",
+    means="rows that are graded under another number than they have in the answer, because some "
+    "are missing or too many (an info)",
+    example=("planar-rr", "table", "a2, 0, 0, q2"),
+    unlike={"1/d": "1"},
+)
+
+EXTRA_ROW = register(
+    of=StudentTable,
+    code="extra_row",
+    means="a row that belongs to no joint of this robot; it costs what a wrong cell costs",
+    example=(
+        "planar-rrr-drawn",
+        "table",
+        (
+            "a, alpha, d, theta ↵ 0, 0, 0, q1 ↵ l1, 0, 0, q2 ↵ l2, 0, 0, q3 ↵ l3, 0, 0, 0 ↵ l3, 0, "
+            "0, 0"
+        ),
+    ),
+    unlike={"1/a": "l1"},
+)
+_MISSING_ROW = register(
+    of=StudentTable,
+    code="missing_row",
+    means="a joint has no row",
+    example=("planar-rr", "table", "a1, 0, 0, q1"),
+    unlike={"1/d": "1"},
+)
+_MISSING_TOOL_ROW = register(
+    of=StudentTable,
+    code="missing_tool_row",
+    means="the last row, from the last joint's frame to the end effector, is not there",
+    example=("planar-rrr", "table", "0, 0, 0, q1 ↵ l1, 0, 0, q2 ↵ l2, 0, 0, q3"),
+    unlike="0, 0, 0, q1 ↵ l2, 0, 0, q3 ↵ l3, 0, 0, 0",
+)
+_ROW_TOO_MANY = register(
+    of=StudentTable,
+    code="row_too_many",
+    means="a fixed row that the arm does not need, in a wrong table: it earns nothing (a warning)",
+    example=("planar-rr", "table", "a1, 0, 0, q1 ↵ 5, 0, 0, 0 ↵ a2, 0, 0, q2 ↵ a1, 0, 0, 0"),
+    unlike={"2/a": "a1"},
+)
 
 
 def row_places(
@@ -38,10 +83,35 @@ def row_places(
     if not moved:
         return ()
     message = f"Your rows were compared in this way: {', '.join(moved)}."
-    return (Finding("rows_matched", message, severity=Severity.INFO),)
+    return (_MATCHED.finding(message, severity=Severity.INFO),)
 
 
 def _of(judged: JudgedRow) -> str:
     if judged.joint is not None:
         return f"joint {judged.joint.index}"
     return _FIXED.get(judged.label, f"the fixed row {judged.label} behind the last joint")
+
+
+def missing_row(judged: JudgedRow) -> Finding:
+    """The finding on a row that is not there."""
+    if judged.joint is not None:
+        return _MISSING_ROW.finding(f"There is no row for joint {judged.joint.index}.")
+    return _MISSING_TOOL_ROW.finding(
+        "The fixed row that leads from the last joint's frame to the end effector is missing.",
+    )
+
+
+def row_too_many(i: int) -> Finding:
+    """The finding on a fixed row that the arm does not need."""
+    return _ROW_TOO_MANY.finding(
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector: check whether "
+        f"you need it.",
+        severity=Severity.WARNING,
+    )
+
+
+def extra_row(i: int) -> Finding:
+    """The finding on a row that belongs to nothing."""
+    return EXTRA_ROW.finding(
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector: leave it out.",
+    )

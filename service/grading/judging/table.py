@@ -24,6 +24,7 @@ from service.grading.judging.own_frames.nearest.nearest_table import parallel_ne
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
 from service.grading.judging.own_frames.row_roles import Role, freedom_of, pair_in_order
+from service.grading.misconception import register
 from service.grading.numerics.comparison import Match, difference, entry_matches, nearly_equal
 from service.grading.numerics.samples import SAMPLES
 from service.grading.numerics.tolerances import (
@@ -33,7 +34,7 @@ from service.grading.numerics.tolerances import (
     PLAINLY_DIFFERENT,
 )
 from service.grading.part import Grading
-from service.grading.reading.tables.table import IS_ANGLE, StudentRow, values_of
+from service.grading.reading.tables.table import IS_ANGLE, StudentRow, StudentTable, values_of
 from service.grading.report import Verdict
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
@@ -216,8 +217,26 @@ def _judged_as_read(
     return replace(judgement, findings=())
 
 
-_UNREACHED = Finding(
-    "tool_not_reached",
+_TOOL_NOT_REACHED = register(
+    of=StudentTable,
+    code="tool_not_reached",
+    means="each row could stand in a right table, but all of them together do not lead to the "
+    "given end-effector frame; it costs what a wrong cell costs",
+    example=(
+        "rrrp-proximal",
+        "table",
+        {
+            "rows": [
+                {"a": "0", "alpha": "0", "d": "-l1", "theta": "-q1"},
+                {"a": "-l2", "alpha": "0", "d": "0", "theta": "-q2"},
+                {"a": "-l3", "alpha": "-180deg", "d": "-l4", "theta": "-q3"},
+                {"a": "0", "alpha": "0", "d": "-q4", "theta": "0"},
+            ]
+        },
+    ),
+    unlike={"4/d": "2*q4"},
+)
+_UNREACHED = _TOOL_NOT_REACHED.finding(
     "Each row alone fits this robot, but the product of all rows does not give the end-effector "
     "frame of the exercise: compare the origin and the axes of your last frame with it.",
 )

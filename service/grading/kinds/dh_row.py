@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.expressions import Expression
 from service.expressions.printing.spelling import Spelling, spelling_for
-from service.grading.diagnosis.tables.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
+from service.grading.diagnosis.tables.dh_row import WrongRow, has_a_row, violated
 from service.grading.diagnosis.tables.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
@@ -86,7 +86,7 @@ def _against_the_row(
     explained: Finding | None = None
     if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
         case = WrongRow(written.values, expected, scale, transform, part.convention)
-        explained = diagnosed(case, MISCONCEPTIONS)
+        explained = diagnosed(case)
     spelling = grading.spelling(written.entries)
     slips = {
         i: _slip(i, expression, written.values[i], expected[i], spelling, grading)

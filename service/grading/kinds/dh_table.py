@@ -27,7 +27,13 @@ from service.grading.judging.report_rows import (
     is_right_throughout,
     right_row,
 )
-from service.grading.judging.row_places import row_places
+from service.grading.judging.row_places import (
+    EXTRA_ROW,
+    extra_row,
+    missing_row,
+    row_places,
+    row_too_many,
+)
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content
 from service.grading.judging.table_filled import as_still, with_lazy_cells, with_wrong_cells
@@ -40,7 +46,6 @@ from service.grading.report import (
     CellReport,
     Place,
     RowReport,
-    Severity,
     Verdict,
     row_report,
 )
@@ -52,7 +57,6 @@ from service.kinematics.transforms import Matrices
 COST = 0.25
 COSTS = {"other_convention": 0.5}
 _QUANTITIES = tuple(QUANTITIES.values())
-_EXTRA_ROW = "extra_row"
 # The work of finding a freedom that the joints have lost, as the budget counts it.
 FREEDOM_WORK = 8.0
 # The work of judging a wrong table once: with given frames, with free ones (more for each row), and
@@ -212,10 +216,10 @@ def _with_rows_too_many(
     rows = tuple(answer.rows[i] for i in kept)
     without = _judged_as_read(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
-    is_told = any(message.code == _EXTRA_ROW for message in judged.feedback)
+    is_told = any(message.code in EXTRA_ROW.codes for message in judged.feedback)
     # Where nothing that was read is wrong, the table may be right.
     tells = judged.is_wrong and not is_told
-    messages = grading.messages(tuple(map(_row_too_many, extra))) if tells else ()
+    messages = grading.messages(tuple(map(row_too_many, extra))) if tells else ()
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
@@ -282,9 +286,9 @@ def _judged(
         message
         for judged in judgement.rows
         if judged.row is None and not found
-        for message in grading.messages((_missing(judged),), (Place(judged.label),))
+        for message in grading.messages((missing_row(judged),), (Place(judged.label),))
     )
-    extra = grading.messages(tuple(_extra_row(i) for i in judgement.extra))
+    extra = grading.messages(tuple(extra_row(i) for i in judgement.extra))
     row_messages = grading.messages(row_places(answer, judgement, convention, grading))
     return Judged(
         _row_reports(judgement, grading, slips),
@@ -372,28 +376,3 @@ def _cell(
     if judged.row is None:
         return CellReport(label, Verdict.MISSING)
     return cell_report(judged.row.entries[column], label, match, slip, grading)
-
-
-def _missing(judged: JudgedRow) -> Finding:
-    if judged.joint is not None:
-        return Finding("missing_row", f"There is no row for joint {judged.joint.index}.")
-    return Finding(
-        "missing_tool_row",
-        "The fixed row that leads from the last joint's frame to the end effector is missing.",
-    )
-
-
-def _row_too_many(i: int) -> Finding:
-    return Finding(
-        "row_too_many",
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector: check whether "
-        f"you need it.",
-        severity=Severity.WARNING,
-    )
-
-
-def _extra_row(i: int) -> Finding:
-    return Finding(
-        _EXTRA_ROW,
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector: leave it out.",
-    )

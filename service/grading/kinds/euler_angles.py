@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from service.catalogue.parts.euler_angles import EulerAnglesSpec
 from service.grading.diagnosis.lists.angle import has_arctangent
-from service.grading.diagnosis.lists.euler_triple import RepairedTriple, WrongTriple, explain_triple
+from service.grading.diagnosis.lists.euler_triple import WrongTriple, explain_triple
 from service.grading.diagnosis.lists.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.formula_text import value_formula
@@ -20,6 +20,7 @@ from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import asked_pose, formula_values
 from service.grading.judging.report_rows import value_rows
 from service.grading.judging.value_list import ComparedValues
+from service.grading.misconception import Explained
 from service.grading.numerics.comparison import (
     Match,
     SharedDecimals,
@@ -190,7 +191,7 @@ def _arctangents(entries: Sequence[Entry]) -> list[bool]:
 
 
 def _explained(
-    found: NDArray[np.int_], explained: RepairedTriple | None
+    found: NDArray[np.int_], explained: Explained | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
     """The matches, the slips of single angles and the findings on all three together."""
     if explained is None:

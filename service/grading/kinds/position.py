@@ -4,11 +4,10 @@ import numpy as np
 
 from service.catalogue import Robot
 from service.catalogue.parts.position import PositionSpec
-from service.grading.diagnosis.lists.position import WrongPosition, explain_position
+from service.grading.diagnosis.lists.position import WrongPosition
 from service.grading.diagnosis.lists.value_list import SEARCH_WORK, search_of, slips_of
 from service.grading.diagnosis.motions.given_motion import GivenMotion
 from service.grading.diagnosis.motions.link_products import chains_of
-from service.grading.diagnosis.motions.motion_slips import explain_displacements
 from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
@@ -16,6 +15,7 @@ from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
+from service.grading.misconception import diagnosed
 from service.grading.numerics.comparison import Match
 from service.grading.part import Grading, Judged
 from service.grading.reading.lists.component_names import names_of_coordinates
@@ -88,10 +88,10 @@ def _explained(
         scale=exercise.length_scale,
         axes=tuple(_axes(part)),
         chains=chains_of(exercise, grading.samples) if linked else (),
+        slips=search_of(answers, compared, wrong, grading),
+        motion=GivenMotion.of(part.id, exercise, grading.samples),
     )
-    search = search_of(answers, compared, wrong, grading)
-    motion = GivenMotion.of(part.id, exercise, grading.samples)
-    finding = explain_position(case, search) or explain_displacements(case, motion)
+    finding = diagnosed(case)
     return ((finding,), value_places(wrong)) if finding else None
 
 

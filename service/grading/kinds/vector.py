@@ -57,4 +57,5 @@ def _slip(
 ) -> Finding | None:
     """The slip of the table of which all wrong values follow; one alone has its own message."""
     search = search_of(answers, compared, wrong, grading)
-    return search.finding(np.ones_like(wrong)) if search else None
+    found = search.explanation(np.ones_like(wrong)) if search else None
+    return None if found is None else found.findings[0]

@@ -1,12 +1,13 @@
-"""The pair of cases that each misconception has: one that it explains, one that it leaves alone."""
+"""Pairs of cases of a misconception in numbers: one that it explains, one that it leaves alone."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import pytest
 
 from service.grading.feedback import Finding
-from service.grading.misconception import explanation
+from service.grading.misconception import Explained, Record, all_records, explained_by_one
 
 
 class Pair(NamedTuple):
@@ -27,13 +28,24 @@ def each_pair(pairs: Sequence[Pair]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("pair", pairs, ids=lambda pair: pair.function.__name__)
 
 
+def record_of(function: Callable[[Any], Any]) -> Record:
+    """The record of a function."""
+    [record] = (record for record in all_records() if record.function is function)
+    return record
+
+
+def explained(case: Any, function: Callable[[Any], Any], source: Any = None) -> Explained | None:
+    """The hypothesis of one misconception or check that explains a case, or None.
+
+    It is asked whether its record says that it concerns such a case or not.
+    """
+    record = replace(record_of(function), when=None)
+    return explained_by_one(record, case, case if source is None else source)
+
+
 def _finding(pair: Pair, case: Any) -> Finding | None:
-    source = pair.source(case)
-    found = pair.function(source)
-    if found is None or isinstance(found, Finding):
-        return found
-    explains = explanation(case, (pair.function,), source)
-    return explains.findings[-1] if explains else None
+    found = explained(case, pair.function, pair.source(case))
+    return found.findings[-1] if found else None
 
 
 def assert_explains_one_case_alone(pair: Pair) -> Finding:

@@ -24,7 +24,7 @@ MAX_NODES = 100
 MAX_TEXT = 200
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Rewritten(Repaired[Node]):
     """The student's formula without the misconception.
 
@@ -37,9 +37,13 @@ class Rewritten(Repaired[Node]):
 
 @dataclass(frozen=True, kw_only=True)
 class WrongEntry(WrongValue):
-    """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number."""
+    """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number.
+
+    The formula of an entry that ``stays_whole`` is not taken apart.
+    """
 
     turning: Mapping[int, Symbol]
+    stays_whole: bool = False
 
     @cached_property
     def tree(self) -> Node:
@@ -51,10 +55,11 @@ class WrongEntry(WrongValue):
         """How many nodes the formula has."""
         return sum(1 for _ in nodes(self.tree))
 
-    @property
+    @cached_property
     def can_be_repaired(self) -> bool:
         """Whether the formula is small enough to be taken apart, and has a value everywhere."""
-        return self.size <= MAX_NODES and bool(np.isfinite(self.actual).all())
+        is_small = not self.stays_whole and self.size <= MAX_NODES
+        return is_small and bool(np.isfinite(self.actual).all())
 
     @cached_property
     def sines_and_cosines(self) -> list[Call]:

@@ -4,16 +4,24 @@ import numpy as np
 
 from service.expressions.tree import Call, Node
 from service.grading.diagnosis.formulas.formula_rewriting import nodes
-from service.grading.diagnosis.lists.angle_sum import BETWEEN, explain_sum
+from service.grading.diagnosis.lists.angle_sum import BETWEEN, WrongSum
 from service.grading.diagnosis.wrong_value import (
+    UNEXPLAINED,
     Hypotheses,
     WrongValue,
     differs,
     finding_on,
-    undefined,
 )
 from service.grading.feedback import Finding
-from service.grading.misconception import Repaired, Written, diagnosed
+from service.grading.misconception import (
+    Explained,
+    Repaired,
+    Written,
+    check,
+    diagnosed,
+    explanation,
+    misconception,
+)
 from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import CONSTANT, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
@@ -38,21 +46,49 @@ ARGUMENTS_SWAPPED = (
 )
 
 
+class WrongAngle(WrongValue):
+    """A wrong angle in a list; it may be a plain WrongValue."""
+
+
+@misconception(
+    of=WrongAngle,
+    rank=100,
+    code="sign",
+    means="the sign of an angle is wrong",
+    example=("spherical-wrist", "zyz", "[-theta4, theta5, theta6]"),
+    unlike="[theta4, theta5, theta6 + 1]",
+)
 def sign(case: WrongValue) -> Hypotheses:
     """The size is right, the direction is not."""
-    yield Written(-case.expected, finding_on(case, "sign", WRONG_SIGN))
+    yield Written(-case.expected, finding_on(case, WRONG_SIGN))
 
 
+@misconception(
+    of=WrongAngle,
+    rank=110,
+    code="degrees_as_radians",
+    means="a number of degrees where radians are read, or a variable times 180/π",
+    example=("spherical-wrist", "zyz", "[180*theta4/pi, theta5]"),
+    unlike={"2/1": "0"},
+)
 def degrees_as_radians(case: WrongValue) -> Hypotheses:
     """An angle in degrees was handed in where radians are read."""
     hint = FITS_IN_DEGREES if is_constant(case.actual) else CONVERTED
-    yield Repaired(np.radians(case.actual), finding_on(case, "degrees_as_radians", hint))
+    yield Repaired(np.radians(case.actual), finding_on(case, hint))
 
 
+@misconception(
+    of=WrongAngle,
+    rank=120,
+    code="radians_as_degrees",
+    means="a number of radians where degrees are read, or a variable times π/180",
+    example=("spherical-wrist", "zyz", "[pi*theta4/180, theta5]"),
+    unlike={"2/1": "0"},
+)
 def radians_as_degrees(case: WrongValue) -> Hypotheses:
     """An angle in radians was handed in where degrees are read."""
     hint = FITS_IN_RADIANS if is_constant(case.actual) else CONVERTED
-    yield Repaired(np.degrees(case.actual), finding_on(case, "radians_as_degrees", hint))
+    yield Repaired(np.degrees(case.actual), finding_on(case, hint))
 
 
 def is_constant(angle: Numbers) -> bool:
@@ -60,19 +96,34 @@ def is_constant(angle: Numbers) -> bool:
     return bool(np.ptp(angle) < CONSTANT)
 
 
+@misconception(
+    of=WrongAngle,
+    rank=130,
+    code="lost_quadrant",
+    means="atan, acos or asin for atan2: right for some joint values, not for others",
+    example=("spherical-wrist", "zyz", "[atan(s4/c4), theta5, theta6]"),
+    unlike={"3/1": "theta6/2"},
+)
 def lost_quadrant(case: WrongValue) -> Hypotheses:
     """atan(y/x) was taken for atan2(y, x), which differs by half a turn where x is negative."""
     opposite = np.abs(difference(case.actual, case.expected, angle=True)) > np.pi / 2
     if opposite.any() and not opposite.all():
         finding = finding_on(
             case,
-            "lost_quadrant",
             "This angle is right for some joint values only: atan(y/x) gives one angle for two "
             "opposite directions. Use atan2(y, x).",
         )
         yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED_VALUE)
 
 
+@misconception(
+    of=WrongAngle,
+    rank=140,
+    code="lost_quadrant",
+    means="atan, acos or asin for atan2: right for some joint values, not for others",
+    example=("several-kinds", "angle", "[asin(l*sin(phi)/sqrt(a^2 + l^2 + 2*a*l*cos(phi))), e1]"),
+    unlike="[asind(e1), a]",
+)
 def lost_sign(case: WrongValue) -> Hypotheses:
     """Acos or asin gave the angle, which is right for one half of all directions."""
     names = {
@@ -84,33 +135,45 @@ def lost_sign(case: WrongValue) -> Hypotheses:
             is_other = np.abs(difference(case.actual, other, angle=True)) < ROUNDED_VALUE
             finding = finding_on(
                 case,
-                "lost_quadrant",
                 f"This angle is right for some joint values only: {reason}. Use atan2(y, x).",
             )
             written = np.where(is_other, other, case.expected)
             yield Written(written, finding, tolerance=ROUNDED_VALUE)
 
 
+@misconception(
+    of=WrongAngle,
+    rank=150,
+    code="half_turn",
+    means="an angle is off by 180°",
+    example=("spherical-wrist", "zyz", "[theta4, theta5, theta6 + pi]"),
+    unlike="[theta6, theta5, theta4]",
+)
 def half_turn(case: WrongValue) -> Hypotheses:
     """A direction was taken for its opposite."""
     finding = finding_on(
         case,
-        "half_turn",
         "This angle is off by half a turn: check its signs, and in atan2 those of both arguments.",
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
 
 
+@misconception(
+    of=WrongAngle,
+    rank=160,
+    code="swapped_atan2",
+    means="the arguments of atan2 are exchanged",
+    example=("spherical-wrist", "zyz", "[atan2(c4, s4), theta5]"),
+    unlike={"3/1": "theta6/2"},
+)
 def swapped_atan2(case: WrongValue) -> Hypotheses:
     """The arguments of atan2 were exchanged, which takes the angle from a quarter turn.
 
     Without an arctangent, a constant is more likely to lack a quarter turn.
     """
     if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
-        yield Written(
-            np.pi / 2 - case.expected, finding_on(case, "swapped_atan2", ARGUMENTS_SWAPPED)
-        )
+        yield Written(np.pi / 2 - case.expected, finding_on(case, ARGUMENTS_SWAPPED))
 
 
 def has_arctangent(tree: Node) -> bool:
@@ -122,11 +185,18 @@ def _calls(tree: Node, *functions: str) -> bool:
     return any(isinstance(node, Call) and node.function in functions for node in nodes(tree))
 
 
+@misconception(
+    of=WrongAngle,
+    rank=170,
+    code="quarter_turn",
+    means="an angle is off by 90°",
+    example=("spherical-wrist", "zyz", "[theta4, theta5, theta6 + pi/2]"),
+    unlike="[theta4, theta5, theta6 + pi]",
+)
 def quarter_turn(case: WrongValue) -> Hypotheses:
     """A turn by 90° was left out or added."""
     finding = finding_on(
         case,
-        "quarter_turn",
         f"This angle is not right: {BETWEEN}",
         otherwise="It is off by a quarter turn (90°).",
     )
@@ -134,13 +204,27 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
     yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
 
 
-CHECKS = (undefined,)
-OF_UNIT = (degrees_as_radians, radians_as_degrees)
-OF_TURNS = (lost_quadrant, lost_sign, half_turn, swapped_atan2, quarter_turn)
-MISCONCEPTIONS = (sign, *OF_UNIT, *OF_TURNS)
+@check(of=WrongAngle, rank=200)
+def of_sum(case: WrongValue) -> Explained | None:
+    """A sum of angles has other addends."""
+    return explanation(case, WrongSum.of(case))
+
+
+@check(
+    of=WrongAngle,
+    rank=300,
+    code=UNEXPLAINED,
+    means="wrong, and none of the above",
+    example=("spherical-wrist", "zyz", "[theta4, theta5, theta6 + 1]"),
+    unlike="[theta4, theta5, theta6 + pi]",
+)
+def unexplained(case: WrongValue) -> Finding:
+    """No misconception explains the angle."""
+    return differs(case, f"This angle is not right: {BETWEEN}")
 
 
 def diagnose_angle(case: WrongValue) -> Finding:
     """The finding on a wrong angle."""
-    found = diagnosed(case, MISCONCEPTIONS, CHECKS) or explain_sum(case)
-    return found or differs(case, f"This angle is not right: {BETWEEN}")
+    finding = diagnosed(case, of=WrongAngle)
+    assert finding is not None
+    return finding

@@ -8,8 +8,7 @@ import numpy as np
 
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongValue, finding_on
-from service.grading.feedback import Finding
-from service.grading.misconception import Written, explanation
+from service.grading.misconception import Written, misconception
 from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import CONSTANT, WHOLE_MULTIPLE
 from service.kinematics.transforms import Numbers
@@ -80,23 +79,45 @@ class WrongSum:
                 yield name, self.case.samples.values[name]
 
 
+@misconception(
+    of=WrongSum,
+    rank=10,
+    code="joint_variable_missing",
+    means="an angle that belongs in a sum of angles is left out, or all of them are",
+    example=("planar-rrr-standard", "task-space", {"3/1": "q1"}),
+    unlike={"3/1": "2*q1 + q2 + q3"},
+)
 def left_out(wrong: WrongSum) -> Hypotheses:
     """Some of the angles are not counted: the last joint's alone for the sum of all."""
     for names, part in wrong.subsets():
         verb = "is" if len(names) == 1 else "are"
         hint = f"{wrong.named(names)} {verb} missing from this angle. {SUMMED}"
-        yield Written(
-            wrong.case.expected - part, finding_on(wrong.case, "joint_variable_missing", hint)
-        )
+        yield Written(wrong.case.expected - part, finding_on(wrong.case, hint))
 
 
+@misconception(
+    of=WrongSum,
+    rank=60,
+    code="joint_variable_missing",
+    means="an angle that belongs in a sum of angles is left out, or all of them are",
+    example=("baxter-left-arm", "wrist", {"3/1": "0"}),
+    unlike={"3/1": "theta7/2"},
+)
 def constant(wrong: WrongSum) -> Hypotheses:
     """No angle is counted."""
     if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
         hint = "This angle is constant, but it must not be: check which variables it depends on."
-        yield Written(wrong.case.actual, finding_on(wrong.case, "joint_variable_missing", hint))
+        yield Written(wrong.case.actual, finding_on(wrong.case, hint))
 
 
+@misconception(
+    of=WrongSum,
+    rank=20,
+    code="joint_variable_sign",
+    means="an angle of such a sum has the wrong sign",
+    example=("planar-rr", "task-space", {"3/1": "q1 - q2"}),
+    unlike={"3/1": "0"},
+)
 def reversed_addends(wrong: WrongSum) -> Hypotheses:
     """Some of the angles are subtracted that are to be added, or the other way."""
     for names, part in wrong.subsets():
@@ -105,41 +126,54 @@ def reversed_addends(wrong: WrongSum) -> Hypotheses:
             f"{wrong.named(names)} {verb} the wrong sign in this angle: check which way this turn "
             "counts positive."
         )
-        yield Written(
-            wrong.case.expected - 2 * part, finding_on(wrong.case, "joint_variable_sign", hint)
-        )
+        yield Written(wrong.case.expected - 2 * part, finding_on(wrong.case, hint))
 
 
+@misconception(
+    of=WrongSum,
+    rank=30,
+    code="joint_variable_doubled",
+    means="an angle of such a sum counts twice",
+    example=("spherical-wrist", "zyz", {"1/1": "2*theta4"}),
+    unlike={"1/1": "π/2"},
+)
 def counted_twice(wrong: WrongSum) -> Hypotheses:
     """An angle is counted twice."""
     for name, count in wrong.counts.items():
         hint = f"{wrong.named([name])} counts twice in this angle. {SUMMED}"
         written = wrong.case.expected + count * wrong.case.samples.values[name]
-        yield Written(written, finding_on(wrong.case, "joint_variable_doubled", hint))
+        yield Written(written, finding_on(wrong.case, hint))
 
 
+@misconception(
+    of=WrongSum,
+    rank=40,
+    code="joint_variable_extra",
+    means="an angle that does not belong in the sum",
+    example=("spherical-wrist", "zyz", "[theta4 + theta6, theta5, theta6]"),
+    unlike={"1/1": "theta5"},
+)
 def added(wrong: WrongSum) -> Hypotheses:
     """An angle is counted that does not turn the direction."""
     for name, value in wrong.others():
         hint = f"{wrong.named([name])} does not belong in this angle: {BETWEEN}"
         for sign in (1, -1):
-            finding = finding_on(wrong.case, "joint_variable_extra", hint)
+            finding = finding_on(wrong.case, hint)
             yield Written(wrong.case.expected + sign * value, finding)
 
 
+@misconception(
+    of=WrongSum,
+    rank=50,
+    code="joint_variable_index",
+    means="the angle of another joint",
+    example=("baxter-left-arm", "wrist", {"1/1": "theta4"}),
+    unlike={"3/1": "0"},
+)
 def of_another_joint(wrong: WrongSum) -> Hypotheses:
     """An angle is counted in place of another."""
     for other, value in wrong.others():
         for name, count in wrong.counts.items():
             hint = f"{wrong.named([other])} stands in the place of another angle: {BETWEEN}"
             written = wrong.case.expected + count * (value - wrong.case.samples.values[name])
-            yield Written(written, finding_on(wrong.case, "joint_variable_index", hint))
-
-
-MISCONCEPTIONS = (left_out, reversed_addends, counted_twice, added, of_another_joint, constant)
-
-
-def explain_sum(case: WrongValue) -> Finding | None:
-    """The finding that explains a wrong sum of angles."""
-    found = explanation(case, MISCONCEPTIONS, WrongSum.of(case))
-    return found.findings[0] if found else None
+            yield Written(written, finding_on(wrong.case, hint))

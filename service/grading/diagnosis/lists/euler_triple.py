@@ -8,7 +8,14 @@ import numpy as np
 
 from service.grading.diagnosis.lists import angle
 from service.grading.feedback import Finding
-from service.grading.misconception import AnyHypothesis, Repaired, explanation
+from service.grading.misconception import (
+    AnyHypothesis,
+    Explained,
+    Repaired,
+    explanation,
+    misconception,
+    says,
+)
 from service.grading.numerics.tolerances import ROUNDED_VALUE
 from service.kinematics.rotations import SEQUENCES, from_angles
 from service.kinematics.transforms import Matrices, Numbers
@@ -43,6 +50,19 @@ class WrongTriple:
 RepairedTriple = Repaired[WrongTriple]
 
 
+@misconception(
+    of=WrongTriple,
+    rank=10,
+    code=("sign", "degrees_as_radians", "radians_as_degrees", "swapped_atan2"),
+    means=(
+        "the sign of one angle, or of several, is wrong",
+        "one angle, or several, in degrees where radians are read",
+        "one angle, or several, in radians where degrees are read",
+        "the arguments of atan2 are exchanged in one angle, or in several",
+    ),
+    example=("spherical-wrist", "zyz", "[atan2(c4, s4), theta5, theta6]"),
+    unlike="[theta4, theta5, theta6 + 1]",
+)
 def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The same slip was made in one, two or all three of the angles."""
     angles = case.angles
@@ -72,10 +92,17 @@ def _told_of(finding: Finding, angles: Numbers) -> Finding:
     return finding
 
 
+@misconception(
+    of=WrongTriple,
+    rank=20,
+    code="angle_order",
+    means="the right angles in another order",
+    example=("spherical-wrist", "zyz", "[theta6, theta5, theta4]"),
+    unlike={"1/1": "theta5"},
+)
 def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The angles were written down in another order, most often from last to first."""
-    finding = Finding(
-        "angle_order",
+    finding = says(
         "These angles are right, but in another order: the first angle is that of the first axis "
         "of the sequence.",
         f"The order here is that of the axes {case.sequence}.",
@@ -84,16 +111,31 @@ def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
         yield Repaired(replace(case, angles=case.angles[order]), finding)
 
 
+@misconception(
+    of=WrongTriple,
+    rank=30,
+    code="inverse_rotation",
+    means="the angles of the inverse rotation",
+    example=("spherical-wrist", "zyz", "[-theta6, -theta5, -theta4]"),
+    unlike={"1/1": "theta5"},
+)
 def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The angles describe the first frame in the last."""
-    finding = Finding(
-        "inverse_rotation",
+    finding = says(
         "These angles describe the inverse rotation: the first frame as seen from the last.",
         "Take them from the matrix whose columns are the axes of the last frame.",
     )
     yield Repaired(replace(case, rotation=np.swapaxes(case.rotation, 1, 2)), finding)
 
 
+@misconception(
+    of=WrongTriple,
+    rank=40,
+    code="other_euler_sequence",
+    means="the angles of another sequence, or of fixed axes for moving ones",
+    example=("spherical-wrist", "zyz", "[theta4 + pi/2, theta5, theta6 - pi/2]"),
+    unlike={"3/1": "theta6/2"},
+)
 def other_sequence(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The angles are those of another sequence of axes, or of fixed axes for moving ones."""
     others = sorted(
@@ -101,8 +143,7 @@ def other_sequence(case: WrongTriple) -> Iterator[RepairedTriple]:
         key=lambda other: (other[0] != case.sequence, other[1] != case.fixed),
     )
     for sequence, fixed in others:
-        finding = Finding(
-            "other_euler_sequence",
+        finding = says(
             f"These are the right angles of another sequence: {_named(sequence, fixed)}.",
             f"Asked for are those of {_named(case.sequence, case.fixed)}.",
         )
@@ -113,9 +154,6 @@ def _named(sequence: str, fixed: bool) -> str:
     return f"{sequence} about {'fixed' if fixed else 'moving'} axes"
 
 
-MISCONCEPTIONS = (some_angles, other_order, inverse_rotation, other_sequence)
-
-
-def explain_triple(case: WrongTriple) -> RepairedTriple | None:
+def explain_triple(case: WrongTriple) -> Explained | None:
     """The first hypothesis that explains the angles together; its entries are those with a slip."""
-    return None if case.is_right else explanation(case, MISCONCEPTIONS)
+    return None if case.is_right else explanation(case)

@@ -1,15 +1,24 @@
 """Slips in the coordinates of a point, taken together."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import permutations
 
 import numpy as np
 
+from service.grading.diagnosis.motions.given_motion import GivenMotion
 from service.grading.diagnosis.motions.link_products import Chain, named, other_poses
+from service.grading.diagnosis.motions.motion_slips import Displacements
 from service.grading.diagnosis.upstream.slip_search import BEHIND_SIGNS, SlipSearch
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
-from service.grading.feedback import Finding
-from service.grading.misconception import Written, diagnosed
+from service.grading.misconception import (
+    Explained,
+    Written,
+    check,
+    explanation,
+    misconception,
+    says,
+)
 from service.grading.numerics.tolerances import EXACT_VALUE
 
 
@@ -17,33 +26,69 @@ from service.grading.numerics.tolerances import EXACT_VALUE
 class WrongPosition(WrongNumbers):
     """Wrong coordinates ``(n, SAMPLES)`` of a point, along the ``axes`` 0, 1, 2.
 
-    ``chains`` holds the links that lead to the point, where it is the end of a chain.
+    ``chains`` holds the links that lead to the point, where it is the end of a chain. ``slips``
+    holds it against the answers that slips of the table lead to. ``motion`` is what formulas say
+    that it is made of.
     """
 
     axes: tuple[int, ...]
     chains: tuple[Chain, ...] = ()
+    slips: SlipSearch | None = None
+    motion: GivenMotion | None = None
+
+    @cached_property
+    def slip(self) -> Explained | None:
+        """The slip of the table that explains all coordinates."""
+        every = np.ones(len(self.axes), dtype=np.bool_)
+        return None if self.slips is None else self.slips.explanation(every)
 
 
+@misconception(
+    of=WrongPosition,
+    rank=10,
+    code="exchanged_coordinates",
+    means="the right coordinates in each other's places",
+    example=("planar-rr", "position", "[a1 s1 + a2 s12, a1 c1 + a2 c12]"),
+    unlike="[a1 s1 - a2 s12, a1 c1 + a2 c12]",
+)
 def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
     """The coordinates are right, but stand in the wrong places."""
     names = ", ".join("xyz"[axis] for axis in case.axes)
-    finding = Finding(
-        "exchanged_coordinates",
-        f"These coordinates are in the wrong order: it must be {names}.",
-    )
+    finding = says(f"These coordinates are in the wrong order: it must be {names}.")
     for order in permutations(range(len(case.axes))):
         yield Written(case.expected[list(order)], finding)
 
 
+@check(of=WrongPosition, rank=20)
+def slip(case: WrongPosition) -> Explained | None:
+    """The table has a slip that says more than that the position is reversed."""
+    found = case.slip
+    return None if found is None or found.findings[0].code in BEHIND_SIGNS else found
+
+
+@misconception(
+    of=WrongPosition,
+    rank=30,
+    code="reversed_position",
+    means="all signs are wrong: the vector leads from the point to the origin",
+    example=("planar-rr", "position", "[-a1 c1 - a2 c12, -a1 s1 - a2 s12]"),
+    unlike="[a1 c1 + a2 c12, -a1 s1 - a2 s12]",
+)
 def reversed_position(case: WrongPosition) -> Hypotheses:
     """The vector was taken from the point to the origin."""
-    finding = Finding(
-        "reversed_position",
+    finding = says(
         "Every coordinate has the wrong sign: check where the vector must start and end.",
     )
     yield Written(-case.expected, finding)
 
 
+@check(of=WrongPosition, rank=40)
+def slip_behind_signs(case: WrongPosition) -> Explained | None:
+    """The table has a slip; a position that is reversed is half a turn off, too."""
+    return case.slip
+
+
+@misconception(of=WrongPosition, rank=50)
 def other_pose(case: WrongPosition) -> Hypotheses:
     """The position was taken from another pose of the chain.
 
@@ -52,19 +97,11 @@ def other_pose(case: WrongPosition) -> Hypotheses:
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
         if np.ptp(position, axis=-1).max() > EXACT_VALUE:
-            yield Written(position, named(pose, "This position comes from"))
+            found = named(pose, "This position comes from")
+            yield Written(position, found, record=pose.record)
 
 
-LIKELIER = (exchanged_coordinates, reversed_position)
-MISCONCEPTIONS = (*LIKELIER, other_pose)
-
-
-def explain_position(case: WrongPosition, slips: SlipSearch | None) -> Finding | None:
-    """What explains all coordinates: themselves, a slip of the table, or another pose."""
-    whole = diagnosed(case, LIKELIER)
-    if whole is None or whole.code == "reversed_position":
-        slip = slips and slips.finding(np.ones(len(case.axes), dtype=np.bool_))
-        # A position that is reversed is half a turn off, too; a length says more.
-        if slip and (whole is None or slip.code not in BEHIND_SIGNS):
-            return slip
-    return whole or diagnosed(case, (other_pose,))
+@check(of=WrongPosition, rank=60)
+def displacement(case: WrongPosition) -> Explained | None:
+    """The displacements that the position is the sum of were not added rightly."""
+    return None if case.motion is None else explanation(case, case.motion, Displacements)

@@ -71,5 +71,5 @@ def slips_of(
             corrects=grading.corrects,
         )
         required = requirements.of(i) if requirements else None
-        slips[i, 0] = diagnose_angle(case) if angle else diagnose(case, required=required)
+        slips[i, 0] = diagnose_angle(case) if angle else diagnose(case, required)
     return slips

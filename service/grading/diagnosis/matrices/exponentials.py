@@ -9,7 +9,7 @@ from service.catalogue.robots.robot import at_home
 from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase, as_explanations
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, explanation
+from service.grading.misconception import Written, explanation, misconception, says
 from service.grading.numerics.samples import Samples
 from service.kinematics.screws import moved, product_in_body, product_in_space
 from service.kinematics.transforms import Matrices, Numbers, inverse
@@ -38,10 +38,25 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
     return Written(np.moveaxis(pose, 0, -1), finding)
 
 
+@misconception(
+    of=Exponentials,
+    rank=10,
+    code="home_on_wrong_side",
+    means="a product of exponentials with M on the wrong side: space axes go in front of it, body "
+    "axes behind",
+    example=(
+        "planar-rpr-poe",
+        "pose",
+        (
+            "[c13, -s13, 0, L1 c1 - L1 c13 + L1 + L2 + theta2 c1; s13, c13, 0, L1 s1 - L1 s13 + "
+            "theta2 s1; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"4/2": "1"},
+)
 def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     """Space axes were multiplied behind M, or body axes in front of it."""
-    finding = Finding(
-        "home_on_wrong_side",
+    finding = says(
         "M stands on the wrong side of the exponentials: space axes are multiplied in front of M, "
         "body axes behind it.",
         "T = e^[S1]θ1 … e^[Sn]θn M = M e^[B1]θ1 … e^[Bn]θn.",
@@ -50,10 +65,24 @@ def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     yield _pose(product_in_space(product.body, product.amounts, product.home), finding)
 
 
+@misconception(
+    of=Exponentials,
+    rank=20,
+    code="missing_home",
+    means="a product of exponentials without M",
+    example=(
+        "planar-rpr-poe",
+        "pose",
+        (
+            "[c13, -s13, 0, c1 theta2 + L1 c1 - L1 c13; s13, c13, 0, s1 theta2 + L1 s1 - L1 s13; "
+            "0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"2/1": "2*s13"},
+)
 def missing_home(product: Exponentials) -> Hypotheses:
     """The home pose was left out."""
-    finding = Finding(
-        "missing_home",
+    finding = says(
         "This is the product of the exponentials alone: the home pose M is missing.",
         "Multiply M behind the space axes' exponentials.",
     )
@@ -61,10 +90,26 @@ def missing_home(product: Exponentials) -> Hypotheses:
         yield _pose(product_in_space(axes, product.amounts, np.eye(4)), finding)
 
 
+@misconception(
+    of=Exponentials,
+    rank=30,
+    code="reversed_product",
+    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
+    "or another",
+    example=(
+        "planar-rpr-poe",
+        "pose",
+        (
+            "[c13, -s13, 0, -L1 c3 + L1 c13 + L1 + L2 c13 + theta2 c3; s13, c13, 0, -L1 s3 + "
+            "L1 s13 "
+            " + L2 s13 + theta2 s3; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"4/2": "1"},
+)
 def reversed_product(product: Exponentials) -> Hypotheses:
     """The exponentials were multiplied from the last joint to the first."""
-    finding = Finding(
-        "reversed_product",
+    finding = says(
         "The exponentials are multiplied in reverse order: check which joint comes first.",
         "Begin with that of joint 1, nearest to the base.",
     )
@@ -73,10 +118,24 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     yield _pose(product_in_body(product.body[::-1], amounts, product.home), finding)
 
 
+@misconception(
+    of=Exponentials,
+    rank=40,
+    code="moment_sign",
+    means="a product of exponentials with v = ω × q in place of −ω × q",
+    example=(
+        "planar-rpr-poe",
+        "pose",
+        (
+            "[c13, -s13, 0, -L1 c1 + 2 L1 c13 + L2 c13 + theta2 c1; s13, c13, 0, -L1 s1 + 2 L1 s13 "
+            "+ L2 s13 + theta2 s1; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"4/2": "1"},
+)
 def moment_sign(product: Exponentials) -> Hypotheses:
     """V was taken to be ω × q for every turning joint."""
-    finding = Finding(
-        "moment_sign",
+    finding = says(
         "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
         "cross product.",
     )
@@ -86,13 +145,10 @@ def moment_sign(product: Exponentials) -> Hypotheses:
         yield _pose(multiply(axes * signs, product.amounts, product.home), finding)
 
 
-MISCONCEPTIONS = (home_on_the_wrong_side, missing_home, reversed_product, moment_sign)
-
-
 def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
     """What explains the whole of a wrong pose that is a product of exponentials."""
     if not isinstance(exercise.reference, ScrewRobot):
         return []
     subset = samples.subset(case.actual.shape[-1] // 2)
     product = Exponentials.of(exercise.reference, subset)
-    return as_explanations(case, explanation(case, MISCONCEPTIONS, product))
+    return as_explanations(case, explanation(case, product))

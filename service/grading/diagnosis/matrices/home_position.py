@@ -6,12 +6,18 @@ import numpy as np
 
 from service.catalogue import Exercise
 from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.screws.all_screws import WrongScrews
 from service.grading.diagnosis.wrong_value import Mask
-from service.grading.feedback import Finding
+from service.grading.misconception import register
 from service.grading.reading.entry import Entry
 
-NOT_AT_HOME = Finding(
-    "not_at_home",
+NOT_AT_HOME = register(
+    of=WrongScrews,
+    code="not_at_home",
+    means="a joint variable in what is taken in the home position; a home pose M likewise",
+    example=("planar-rpr-poe", "space-screws", {"3/4": "q1 q2"}),
+    unlike={"3/4": "1"},
+).finding(
     "In the home position every joint variable is 0: no joint variable belongs here.",
     "Put 0 for each joint variable.",
 )

@@ -12,10 +12,13 @@ from service.grading.diagnosis.matrices.matrix_case import (
     ROTATION_BLOCK,
     UPPER_ROWS,
     MatrixCase,
+    PositionBlock,
+    RotationBlock,
+    UpperRows,
 )
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
-from service.grading.misconception import Written
+from service.grading.misconception import Written, misconception, says
 from service.kinematics.transforms import Numbers
 
 RULE = "The inverse of (R, p) is (Rᵀ, −Rᵀp)."
@@ -31,10 +34,22 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
     return np.asarray(np.einsum("ijs,js->is", rotation, vector))
 
 
+@misconception(
+    of=MatrixCase,
+    rank=20,
+    code="transposed_for_inverse",
+    when=lambda case: case.motion is not None,
+    means="the transpose of a transform in place of its inverse",
+    example=(
+        "homogeneous-inverse",
+        "about-z",
+        "[cos(phi), sin(phi), 0, 0; -sin(phi), cos(phi), 0, 0; 0, 0, 1, 0; px, py, pz, 1]",
+    ),
+    unlike={"1/4": "-px", "2/4": "-py"},
+)
 def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     """The whole transform was transposed, as only a rotation may be."""
-    finding = Finding(
-        "transposed_for_inverse",
+    finding = says(
         "This is the transpose of the transform, not its inverse: only a rotation is inverted so. "
         f"{RULE}",
     )
@@ -46,6 +61,19 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
         yield Written(written, finding)
 
 
+@misconception(
+    of=UpperRows,
+    rank=80,
+    code="negated_for_inverse",
+    when=lambda case: case.motion is not None,
+    means="signs changed in place of inverting: −R for Rᵀ, or R with −p",
+    example=(
+        "homogeneous-inverse",
+        "about-z",
+        "[cos(phi), -sin(phi), 0, -px; sin(phi), cos(phi), 0, -py; 0, 0, 1, -pz; 0, 0, 0, 1]",
+    ),
+    unlike={"1/4": "-px", "2/4": "-py"},
+)
 def negated_for_inverse(case: MatrixCase) -> Hypotheses:
     """Signs were changed, of all entries or of the position, and nothing was transposed."""
     if case.is_transform:
@@ -55,6 +83,15 @@ def negated_for_inverse(case: MatrixCase) -> Hypotheses:
             yield Written(written, NEGATED, UPPER_ROWS)
 
 
+@misconception(
+    of=RotationBlock,
+    rank=80,
+    code="negated_for_inverse",
+    when=lambda case: case.motion is not None,
+    means="signs changed in place of inverting: −R for Rᵀ, or R with −p",
+    example=("rigid-motion-chain", "parallel-axes", {"1/1": "-1"}),
+    unlike={"1/1": "0", "1/3": "1"},
+)
 def negated_rotation(case: MatrixCase) -> Hypotheses:
     """The signs of the rotation were changed, as if that were its inverse."""
     rotation = case.expected[ROTATION_BLOCK]
@@ -62,16 +99,21 @@ def negated_rotation(case: MatrixCase) -> Hypotheses:
         yield Written(written, NEGATED, ROTATION_BLOCK)
 
 
-NEGATED = Finding(
-    "negated_for_inverse",
-    f"The signs were changed, but that does not invert a rotation. {RULE}",
+NEGATED = says(f"The signs were changed, but that does not invert a rotation. {RULE}")
+
+
+@misconception(
+    of=PositionBlock,
+    rank=80,
+    code="position_not_turned",
+    when=lambda case: case.motion is not None,
+    means="the right vector in the axes of the other frame: −p in an inverse, for −Rᵀp",
+    example=("homogeneous-inverse", "about-z", {"1/4": "-px", "2/4": "-py"}),
+    unlike={"1/1": "0", "1/4": "0", "3/4": "0", "4/4": "0"},
 )
-
-
 def position_not_turned(case: MatrixCase) -> Hypotheses:
     """The position of the inverse was taken to be −p."""
-    finding = Finding(
-        "position_not_turned",
+    finding = says(
         "The position is the right vector, but seen in the axes of the other frame: it must be "
         f"turned, too. {RULE}",
     )
@@ -80,33 +122,55 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
         yield _position(-position, finding)
 
 
+@misconception(
+    of=PositionBlock,
+    rank=82,
+    code="position_not_inverted",
+    when=lambda case: case.motion is not None,
+    means="the position of the transform the other way round: p in an inverse",
+    example=("simple-twist", "exponential", {"2/4": "2*sin(theta)"}),
+    unlike={"3/3": "0", "3/4": "1"},
+)
 def position_not_inverted(case: MatrixCase) -> Hypotheses:
     """The position was left as it was before the transform was inverted."""
-    finding = Finding(
-        "position_not_inverted",
-        f"The position is still that of the transform that was to be inverted. {RULE}",
-    )
+    finding = says(f"The position is still that of the transform that was to be inverted. {RULE}")
     if case.is_transform:
         _, position = _parts(case)
         yield _position(position, finding)
 
 
+@misconception(
+    of=PositionBlock,
+    rank=84,
+    code="reversed_position",
+    when=lambda case: case.motion is not None,
+    means="the position has the wrong sign throughout: Rᵀp in an inverse",
+    example=(
+        "homogeneous-inverse",
+        "about-z",
+        "[cφ, sφ, 0, px cφ + py sφ; -sφ, cφ, 0, py cφ - px sφ; 0, 0, 1, pz; 0, 0, 0, 1]",
+    ),
+    unlike={"3/4": "2*pz"},
+)
 def position_reversed(case: MatrixCase) -> Hypotheses:
     """The position was turned into the other frame, but not reversed."""
-    finding = Finding(
-        "reversed_position",
-        f"Every coordinate of the position has the wrong sign. {RULE}",
-    )
+    finding = says(f"Every coordinate of the position has the wrong sign. {RULE}")
     if case.is_transform:
         yield _position(-case.expected[:3, 3], finding)
 
 
+@misconception(
+    of=PositionBlock,
+    rank=86,
+    code="position_turned_back",
+    when=lambda case: case.motion is not None,
+    means="turned by R in place of its transpose: −R p in an inverse",
+    example=("homogeneous-inverse", "numbers", {"1/4": "1"}),
+    unlike={"2/4": "3"},
+)
 def position_turned_back(case: MatrixCase) -> Hypotheses:
     """The position of the inverse was taken to be −R p."""
-    finding = Finding(
-        "position_turned_back",
-        f"The position was turned by R, not by its transpose. {RULE}",
-    )
+    finding = says(f"The position was turned by R, not by its transpose. {RULE}")
     if case.is_transform:
         rotation, position = _parts(case)
         for sign in (-1, 1):
@@ -115,15 +179,3 @@ def position_turned_back(case: MatrixCase) -> Hypotheses:
 
 def _position(position: Numbers, finding: Finding) -> Written[Numbers]:
     return Written(position[:, None], finding, POSITION_BLOCK)
-
-
-OF_MATRIX = (transposed_for_inverse,)
-OF_UPPER_ROWS = (negated_for_inverse,)
-OF_ROTATION = (negated_rotation,)
-OF_POSITION = (
-    position_not_turned,
-    position_not_inverted,
-    position_reversed,
-    position_turned_back,
-)
-MISCONCEPTIONS = (*OF_MATRIX, *OF_UPPER_ROWS, *OF_ROTATION, *OF_POSITION)

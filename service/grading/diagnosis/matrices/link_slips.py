@@ -1,6 +1,6 @@
 """Slips in one of several link transforms: what belongs in the links before it stands in it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +15,8 @@ from service.grading.diagnosis.matrices.matrix_case import (
     as_explanations,
 )
 from service.grading.diagnosis.wrong_value import Hypotheses
-from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
-from service.grading.misconception import Written, explanation
+from service.grading.misconception import Written, explanation, hypotheses_of, misconception, says
 from service.grading.numerics.samples import Samples
 from service.kinematics.chain import A, D, compound
 from service.kinematics.dh import Convention
@@ -53,10 +52,24 @@ class LinkAmongOthers:
         return cls(np.moveaxis(subset, -1, 1), [values[name] for name in turning], convention)
 
 
+@misconception(
+    of=LinkAmongOthers,
+    rank=10,
+    code="absolute_angle",
+    means="a link transform holds the angles of the joints before it, too: θ1 + θ2 in A2",
+    example=(
+        "planar-rr",
+        "links",
+        (
+            "A1 = [c1, -s1, 0, a1 c1; s1, c1, 0, a1 s1; 0, 0, 1, 0; 0, 0, 0, 1] ↵ A2 = [c12, -s12, "
+            "0, a2 c12; s12, c12, 0, a2 s12; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"A1.3/2": "1"},
+)
 def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     """The angle was measured from the base: A2 holds θ1 + θ2, not θ2."""
-    finding = Finding(
-        "absolute_angle",
+    finding = says(
         "A link transform holds the variable of its own joint only. The joints before it have link "
         "transforms of their own.",
     )
@@ -70,10 +83,24 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
             yield Written(as_entries(product), finding)
 
 
+@misconception(
+    of=LinkAmongOthers,
+    rank=20,
+    code="pose_for_link",
+    means="the product of all link transforms up to one in place of that one",
+    example=(
+        "planar-rr",
+        "links",
+        (
+            "A1 = [c1, -s1, 0, a1 c1; s1, c1, 0, a1 s1; 0, 0, 1, 0; 0, 0, 0, 1] ↵ A2 = [c12, -s12, "
+            "0, a1 c1 + a2 c12; s12, c12, 0, a1 s1 + a2 s12; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"A1.3/2": "1"},
+)
 def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     """The product of all links up to this one was handed in."""
-    finding = Finding(
-        "pose_for_link",
+    finding = says(
         "This is the product of all link transforms up to this one. A link transform leads from "
         "one frame to the next only.",
     )
@@ -81,10 +108,18 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
         yield Written(as_entries(compound(link.links)), finding)
 
 
+@misconception(
+    of=LinkAmongOthers,
+    rank=30,
+    code="translation_not_turned",
+    means="the rotation of a link transform with a and d written beside it, as if nothing turned "
+    "them",
+    example=("spatial-rrr", "links", {"A1.1/4": "R", "A1.2/4": "0"}),
+    unlike={"A1.2/4": "R*s2"},
+)
 def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
     """The translations were written beside the rotation, as if nothing turned them."""
-    finding = Finding(
-        "translation_not_turned",
+    finding = says(
         "The rotation is right, but the last column is not turned with it. Check the order of the "
         "four factors of a link transform.",
     )
@@ -95,25 +130,44 @@ def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
     yield Written(as_entries(beside), finding)
 
 
-MISCONCEPTIONS = (absolute_angle, pose_for_link, translation_not_turned)
+class RotationAmongOthers:
+    """The rotation of a link transform."""
+
+
+class PositionAmongOthers:
+    """The position of a link transform."""
+
+
+@misconception(of=RotationAmongOthers, rank=10)
+def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
+    """The rotation alone holds the angles of the joints before it."""
+    return _in_block(link, ROTATION_BLOCK)
+
+
+@misconception(
+    of=PositionAmongOthers,
+    rank=10,
+    example=("planar-rr", "links", {"A2.1/4": "a2 c12", "A2.2/4": "a2 s12"}),
+)
+def angle_in_position(link: LinkAmongOthers) -> Hypotheses:
+    """The position alone holds the angles of the joints before it."""
+    return _in_block(link, POSITION_BLOCK)
+
+
+def _in_block(link: LinkAmongOthers, block: Block) -> Hypotheses:
+    for hypothesis in hypotheses_of(link):
+        if hypothesis.record and hypothesis.record.function is absolute_angle:
+            yield replace(hypothesis, answer=hypothesis.answer[block], entries=block)
 
 
 def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
     """What explains a wrong link transform, or its rotation or position, by the links before it."""
-    whole = as_explanations(case, explanation(case, MISCONCEPTIONS, link))
-    return whole or [
+    return as_explanations(case, explanation(case, link)) or [
         found
-        for block in (ROTATION_BLOCK, POSITION_BLOCK)
+        for block, kind in (
+            (ROTATION_BLOCK, RotationAmongOthers),
+            (POSITION_BLOCK, PositionAmongOthers),
+        )
         if case.wrong[block].any()
-        for found in as_explanations(case, explanation(case, (_in_block(block),), link))
+        for found in as_explanations(case, explanation(case, link, kind))
     ]
-
-
-def _in_block(block: Block) -> Callable[[LinkAmongOthers], Hypotheses]:
-    """The first misconception, in one block of the matrix alone."""
-
-    def of_link(link: LinkAmongOthers) -> Hypotheses:
-        for hypothesis in absolute_angle(link):
-            yield replace(hypothesis, answer=hypothesis.answer[block], entries=block)
-
-    return of_link

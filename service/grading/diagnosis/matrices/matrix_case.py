@@ -6,12 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from service.grading.diagnosis.motions.given_motion import GivenMotion
-from service.grading.diagnosis.motions.link_products import Chain, LinkPose, other_poses
+from service.grading.diagnosis.motions.link_products import Chain, other_poses
 from service.grading.diagnosis.upstream.slip_search import SlipSearch
 from service.grading.diagnosis.wrong_value import Mask, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
-from service.grading.misconception import Hypothesis, Index
+from service.grading.misconception import Explained, Index
 from service.kinematics.transforms import Numbers
 
 Block = tuple[slice, slice]
@@ -46,7 +46,7 @@ class MatrixCase(WrongNumbers):
         return self.rigid and self.expected.shape[:2] == (4, 4)
 
     @cached_property
-    def other_poses(self) -> tuple[list[LinkPose], Numbers]:
+    def other_poses(self) -> tuple[list[Explained], Numbers]:
         """The poses that slips in the product of the links lead to, and their entries.
 
         The entries are ``(poses, rows, columns, SAMPLES)``, as many rows and columns as expected.
@@ -65,6 +65,18 @@ class MatrixCase(WrongNumbers):
         return mask
 
 
+class UpperRows:
+    """The rotation and the position of a wrong matrix."""
+
+
+class RotationBlock:
+    """The rotation of a wrong matrix."""
+
+
+class PositionBlock:
+    """The position of a wrong matrix."""
+
+
 @dataclass(frozen=True, slots=True)
 class Explanation:
     """What is wrong with many entries at once, and which entries that explains."""
@@ -73,7 +85,7 @@ class Explanation:
     entries: Mask
 
 
-def as_explanations(case: MatrixCase, found: Hypothesis[Numbers] | None) -> list[Explanation]:
+def as_explanations(case: MatrixCase, found: Explained | None) -> list[Explanation]:
     """The findings of a hypothesis with the entries that it explains; none for None."""
     if found is None:
         return []

@@ -1,6 +1,7 @@
 """Slips in a single matrix entry."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 
 from service.expressions import Symbol
 from service.expressions.parsing.degrees import in_degrees
@@ -8,13 +9,13 @@ from service.expressions.tree import Node, Number, Unit, children
 from service.grading.diagnosis.formulas import formula_rewriting as rewriting
 from service.grading.diagnosis.formulas.formula_repair import Rewritten, WrongEntry
 from service.grading.diagnosis.upstream.missing_symbol import (
+    Dependence,
     Required,
     Requirements,
-    explain_dependence,
 )
-from service.grading.diagnosis.wrong_value import differs, finding_on, undefined
+from service.grading.diagnosis.wrong_value import finding_on
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, diagnosed
+from service.grading.misconception import Written, diagnosed, misconception, says
 from service.kinematics.transforms import Numbers
 
 # A planar arm of three joints has three runs of joints whose angles add up.
@@ -33,15 +34,31 @@ ENTRY_WORK, NODE_WORK = 1.0, 0.2
 Formulas = Iterator[Rewritten]
 
 
+@misconception(
+    of=WrongEntry,
+    rank=100,
+    code="sign",
+    means="the sign of the whole entry is wrong",
+    example=("planar-rr", "pose", {"1/2": "s12"}),
+    unlike={"1/2": "c12"},
+)
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     """The size is right, the direction is not."""
-    yield Written(-case.expected, finding_on(case, "sign", "The sign is wrong."))
+    yield Written(-case.expected, finding_on(case, "The sign is wrong."))
 
 
+@misconception(
+    of=WrongEntry,
+    rank=110,
+    code="degrees_as_radians",
+    when=lambda case: case.can_be_repaired,
+    means="a number of degrees in a sine or cosine where radians are read",
+    example=("planar-rr", "pose", {"1/2": "cos(q1 + q2 + 90)"}),
+    unlike={"1/2": "s12"},
+)
 def degrees_as_radians(case: WrongEntry) -> Formulas:
     """A number in degrees was written in a sine or cosine where radians are read."""
-    finding = Finding(
-        "degrees_as_radians",
+    finding = says(
         "A number in a sine or cosine was read in radians, but it fits in degrees: write the unit "
         "behind it (deg or °).",
     )
@@ -56,32 +73,65 @@ def _has_bare_number(node: Node) -> bool:
     return not isinstance(node, Unit) and any(map(_has_bare_number, children(node)))
 
 
+@misconception(
+    of=WrongEntry,
+    rank=120,
+    code="radians_as_degrees",
+    when=lambda case: case.can_be_repaired,
+    means="a number of radians in a sine or cosine where the form is set to degrees",
+    example=(
+        "planar-rr",
+        "pose",
+        (
+            "[cos(q1 + q2), cos(q1 + q2 + 1.5708), 0, a1 c1 + a2 c12; s12, c12, 0, a1 s1 + a2 s12; "
+            "0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+        "degrees",
+    ),
+    unlike={"4/3": "1"},
+)
 def radians_as_degrees(case: WrongEntry) -> Formulas:
     """A number in radians was written in a sine or cosine where degrees are read."""
-    finding = Finding(
-        "radians_as_degrees",
+    finding = says(
         "A number in a sine or cosine was read in degrees, but it fits in radians: write the unit "
         "behind it (rad).",
     )
     yield Rewritten(rewriting.everywhere(case.tree, rewriting.without_degrees), finding)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=130,
+    code="sine_for_cosine",
+    when=lambda case: case.can_be_repaired,
+    means="sine and cosine are exchanged, throughout or in one place",
+    example=("planar-rr", "pose", {"1/4": "a1 s1 + a2 s12"}),
+    unlike={"1/2": "s12"},
+)
 def sine_for_cosine(case: WrongEntry) -> Formulas:
     """Sine was taken for cosine, or cosine for sine: throughout, or in one place."""
     count = len(case.sines_and_cosines)
     if count > 0:
-        finding = Finding("sine_for_cosine", "Sine and cosine are exchanged.")
+        finding = says("Sine and cosine are exchanged.")
         yield Rewritten(rewriting.at_sines_and_cosines(case.tree, rewriting.exchanged), finding)
     if count > 1:
-        in_one_place = Finding("sine_for_cosine", "Sine and cosine are exchanged in one place.")
+        in_one_place = says("Sine and cosine are exchanged in one place.")
         for tree, _ in rewriting.one_place(case.tree, rewriting.exchanged):
             yield Rewritten(tree, in_one_place)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=140,
+    code="sum_of_cosines",
+    when=lambda case: case.can_be_repaired,
+    means="cos(a + b) written as cos a + cos b; the sine likewise",
+    example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 (c1 + c2)"}),
+    unlike={"1/2": "s12"},
+)
 def sum_of_cosines(case: WrongEntry) -> Formulas:
     """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
-    finding = Finding(
-        "sum_of_cosines",
+    finding = says(
         "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
         "first.",
     )
@@ -89,10 +139,18 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
         yield Rewritten(rewriting.sums_merged(case.tree), finding)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=150,
+    code="product_for_sum_angle",
+    when=lambda case: case.can_be_repaired,
+    means="c12 taken for c1 c2; s12 likewise",
+    example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 c1 c2"}),
+    unlike={"1/2": "s12"},
+)
 def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
-    finding = Finding(
-        "product_for_sum_angle",
+    finding = says(
         "Check this product of sines or cosines: the direction of a link has one sine or cosine of "
         "a sum of joint angles.",
     )
@@ -102,13 +160,21 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
             yield Rewritten(rewriting.products_merged(case.tree, joints), finding)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=160,
+    code="relative_angle",
+    when=lambda case: case.can_be_repaired,
+    means="a joint's own angle where the sum of the angles up to it belongs: c2 for c12",
+    example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 c2"}),
+    unlike={"1/2": "s12"},
+)
 def relative_angle(case: WrongEntry) -> Formulas:
     """A joint angle was taken to be measured from the base, though it counts from the link before.
 
     So c2 stands where the sum of the angles belongs, c12.
     """
-    finding = Finding(
-        "relative_angle",
+    finding = says(
         "A joint angle is measured from the link before: the direction of a link is the sum of all "
         "joint angles up to it.",
     )
@@ -117,22 +183,39 @@ def relative_angle(case: WrongEntry) -> Formulas:
         yield Rewritten(rewriting.at_sines_and_cosines(case.tree, summed), finding)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=180,
+    code="joint_variable_missing",
+    when=lambda case: case.can_be_repaired,
+    means="a joint angle is missing in the sum that a sine or cosine takes",
+    example=("planar-rr", "pose", {"1/2": "-s1"}),
+    unlike={"1/2": "s12"},
+)
 def angle_left_out(case: WrongEntry) -> Formulas:
     """A joint angle is not counted in a sum of joint angles: c23 stands for c123."""
     for symbol in _joint_angles(case):
-        finding = Finding(
-            "joint_variable_missing",
+        finding = says(
             f"{case.spelling.name(symbol)} is missing in a sine or cosine: the direction of a link "
             "is the sum of all joint angles up to it.",
         )
         yield from _with_angles_changed(case, rewriting.with_angle(symbol), finding)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=190,
+    code="joint_variable_extra",
+    when=lambda case: case.can_be_repaired,
+    means="a joint angle too many in such a sum, or a joint variable where nothing may change "
+    "with it",
+    example=("planar-rr", "pose", {"1/4": "a1 c12 + a2 c12"}),
+    unlike={"1/2": "s12"},
+)
 def angle_too_many(case: WrongEntry) -> Formulas:
     """A joint angle is counted in a sum of joint angles that ends before it: c123 for c12."""
     for symbol in _joint_angles(case):
-        finding = Finding(
-            "joint_variable_extra",
+        finding = says(
             f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
             "of a link is the sum of the joint angles up to it, and of none after it.",
         )
@@ -154,29 +237,26 @@ def _with_angles_changed(
             yield Rewritten(tree, finding, signed=True)
 
 
+@misconception(
+    of=WrongEntry,
+    rank=170,
+    code="term_sign",
+    when=lambda case: case.can_be_repaired,
+    means="the sign of one term is wrong",
+    example=("planar-rr", "pose", {"1/4": "a1 c1 - a2 c12"}),
+    unlike={"1/4": "a1 c1 + 2 a2 c12"},
+)
 def term_sign(case: WrongEntry) -> Formulas:
     """One term of a sum has the wrong sign."""
-    finding = Finding("term_sign", "One term has the wrong sign.")
+    finding = says("One term has the wrong sign.")
     for change in (rewriting.other_operator, rewriting.first_term_negated):
         for tree, _ in rewriting.one_place(case.tree, change):
             yield Rewritten(tree, finding, signed=True)
 
 
-CHECKS = (undefined,)
-OF_UNIT = (degrees_as_radians, radians_as_degrees)
-OF_ANGLES = (sine_for_cosine, sum_of_cosines, product_for_sum_angle, relative_angle)
-OF_SUMS = (angle_left_out, angle_too_many)
-MISCONCEPTIONS = (sign, *OF_UNIT, *OF_ANGLES, term_sign, *OF_SUMS)
-
-
-def diagnose(
-    case: WrongEntry, *, take_apart: bool = True, required: Required | None = None
-) -> Finding:
-    """The finding on a wrong entry; its formula is rewritten only if ``take_apart`` allows.
-
-    ``required`` is what the right entry depends on, where that is known.
-    """
-    return _explained(case, take_apart=take_apart) or _unexplained(case, required)
+def diagnose(case: WrongEntry, required: Required | None = None) -> Finding:
+    """The finding on a wrong entry; ``required`` is what the right one depends on, if known."""
+    return diagnosed(case) or _unexplained(case, required)
 
 
 def diagnose_entries(
@@ -193,20 +273,14 @@ def diagnose_entries(
     for place, entry in wrong.items():
         if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
             continue
-        explained = _explained(entry, take_apart=work_budget > 0)
+        explained = diagnosed(entry if work_budget > 0 else replace(entry, stays_whole=True))
         work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
         required = requirements.of(*place) if requirements and not explained else None
         findings[place] = explained or _unexplained(entry, required)
     return findings
 
 
-def _explained(case: WrongEntry, *, take_apart: bool) -> Finding | None:
-    misconceptions = MISCONCEPTIONS if take_apart and case.can_be_repaired else (sign,)
-    return diagnosed(case, misconceptions, CHECKS)
-
-
 def _unexplained(case: WrongEntry, required: Required | None) -> Finding:
-    return (required and explain_dependence(case, required)) or differs(
-        case,
-        "This is not right. Check each term: its factor, length, angle and sign.",
-    )
+    finding = diagnosed(case, Dependence(case, required))
+    assert finding is not None
+    return finding

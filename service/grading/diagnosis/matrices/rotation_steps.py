@@ -11,7 +11,7 @@ from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
-from service.grading.misconception import Written, explanation
+from service.grading.misconception import Written, explanation, misconception, says
 from service.grading.numerics.samples import Samples
 from service.kinematics.rotations import composed
 from service.kinematics.transforms import Matrices, Numbers
@@ -39,36 +39,72 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     return Written(as_entries(rotation), finding)
 
 
+@misconception(
+    of=Step,
+    rank=10,
+    code="fixed_for_moving_axes",
+    means="a turn about a moving axis was multiplied as if the axis were fixed, or the other way",
+    example=(
+        "composite-rotations",
+        "fixed",
+        (
+            "[cφ cψ, -sφ, sψ cφ; sφ cψ cθ + sψ sθ, cφ cθ, sφ sψ cθ - sθ cψ; sφ sθ cψ - sψ cθ, sθ "
+            "cφ, sφ sψ sθ + cψ cθ]"
+        ),
+    ),
+    unlike={"2/3": "cos(theta)*cos(psi)", "3/3": "-sin(theta)"},
+)
 def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     """A turn about a moving axis was multiplied as if the axis were fixed, or the other way."""
     exchanged = [replace(step, fixed=not step.fixed) for step in steps]
     hint = f"Every turn was multiplied from the wrong side. {RULE}"
-    yield _made_of(exchanged, Finding("fixed_for_moving_axes", hint))
+    yield _made_of(exchanged, says(hint))
     for i in range(1, len(steps)):
         hint = f"Turn {i + 1} was multiplied from the wrong side. {RULE}"
         turns = [*steps[:i], exchanged[i], *steps[i + 1 :]]
-        yield _made_of(turns, Finding("fixed_for_moving_axes", hint))
+        yield _made_of(turns, says(hint))
 
 
+@misconception(
+    of=Step,
+    rank=20,
+    code="turn_sign",
+    means="a turn was made the wrong way round",
+    example=("fundamental-rotations", "about-y", {"1/3": "-sin(phi)", "3/1": "sin(phi)"}),
+    unlike={"1/1": "1"},
+)
 def turned_back(steps: Sequence[Step]) -> Hypotheses:
     """Some turns, or all of them, were made the wrong way round their axes."""
     back = [replace(step, rotation=np.swapaxes(step.rotation, 1, 2)) for step in steps]
     for some in _subsets(steps):
         axes = listed(sorted({steps[i].axis.lower() for i in some}))
-        finding = Finding(
-            "turn_sign",
+        finding = says(
             f"{_turns(some)} {'go' if len(some) > 1 else 'goes'} the wrong way: check the signs of "
             f"the sines in the rotation about {axes}.",
         )
         yield _made_of([(back if i in some else steps)[i] for i in range(len(steps))], finding)
 
 
+@misconception(
+    of=Step,
+    rank=30,
+    code="turn_axis",
+    means="a turn was made about another axis",
+    example=(
+        "composite-rotations",
+        "fixed",
+        (
+            "[-sψ sθ cφ + cφ cψ cθ, sφ sψ sθ - sφ cψ cθ, sψ cθ + sθ cψ; sφ, cφ, 0; -sψ cφ cθ - sθ "
+            "cφ cψ, sφ sψ cθ + sφ sθ cψ, -sψ sθ + cψ cθ]"
+        ),
+    ),
+    unlike={"2/1": "0"},
+)
 def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     """One turn was made about another coordinate axis."""
     for i, step in enumerate(steps):
         for axis in "XYZ".replace(step.axis, ""):
-            finding = Finding(
-                "turn_axis",
+            finding = says(
                 f"Turn {i + 1} was made about {axis.lower()}: check which axis it is about.",
                 f"It is about {step.axis.lower()}.",
             )
@@ -76,11 +112,18 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
             yield _made_of([*steps[:i], turned, *steps[i + 1 :]], finding)
 
 
+@misconception(
+    of=Step,
+    rank=40,
+    code="turn_angle",
+    means="a turn was made by the angle of another",
+    example=("rigid-motion-chain", "rotation", "[cφ, -sφ cφ, sφ sφ; sφ, cφ cφ, -cφ sφ; 0, sφ, cφ]"),
+    unlike={"3/2": "0"},
+)
 def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     """A turn was made by the angle of another, or two by each other's."""
     for i, j in permutations(range(len(steps)), 2):
-        finding = Finding(
-            "turn_angle",
+        finding = says(
             f"Turn {i + 1} was made by the angle of turn {j + 1}: check which angle belongs to "
             "which axis.",
         )
@@ -88,8 +131,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
         turned[i] = replace(steps[i], rotation=_about(steps[i].axis, steps[j]))
         yield _made_of(turned, finding)
     for i, j in combinations(range(len(steps)), 2):
-        finding = Finding(
-            "turn_angle",
+        finding = says(
             f"The angles of turns {i + 1} and {j + 1} are exchanged: check which angle belongs to "
             "which axis.",
         )
@@ -99,20 +141,48 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
         yield _made_of(turned, finding)
 
 
+@misconception(
+    of=Step,
+    rank=50,
+    code="missing_turn",
+    means="a turn was left out",
+    example=(
+        "composite-rotations",
+        "fixed",
+        "[1, 0, 0; 0, cos(theta), -sin(theta); 0, sin(theta), cos(theta)]",
+    ),
+    unlike={"3/1": "1"},
+)
 def left_out(steps: Sequence[Step]) -> Hypotheses:
     """Some turns are not in the product."""
     for some in _subsets(steps):
         if len(some) < len(steps):
             verb = "are" if len(some) > 1 else "is"
-            finding = Finding("missing_turn", f"{_turns(some)} {verb} missing from this rotation.")
+            finding = says(f"{_turns(some)} {verb} missing from this rotation.")
             yield _made_of([step for i, step in enumerate(steps) if i not in some], finding)
 
 
+@misconception(
+    of=Step,
+    rank=60,
+    code="reversed_product",
+    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
+    "or another",
+    example=(
+        "composite-rotations",
+        "mobile",
+        (
+            "[cφ cψ, cφ sψ sθ - sφ cθ, cφ sψ cθ + sφ sθ; sφ cψ, sφ sψ sθ + cφ cθ, sφ sψ cθ - cφ "
+            "sθ; -sψ, cψ sθ, cψ cθ]"
+        ),
+    ),
+    unlike={"1/1": "0"},
+)
 def another_order(steps: Sequence[Step]) -> Hypotheses:
     """The turns were multiplied in another order."""
     moving = [replace(step, fixed=False) for step in steps if not step.fixed]
     factors = [*(replace(step, fixed=False) for step in steps[::-1] if step.fixed), *moving]
-    finding = Finding("reversed_product", f"The turns were multiplied in the wrong order. {RULE}")
+    finding = says(f"The turns were multiplied in the wrong order. {RULE}")
     for order in list(permutations(factors))[1:] if len(steps) <= MAX_STEPS else ():
         yield _made_of(order, finding)
 
@@ -134,12 +204,8 @@ def _turns(places: Sequence[int]) -> str:
     return f"Turns {numbers}" if len(places) > 1 else f"Turn {numbers}"
 
 
-OF_TURNS = (turned_back, about_another_axis, by_another_angle, left_out)
-MISCONCEPTIONS = (fixed_for_moving, *OF_TURNS, another_order)
-
-
 def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
     """What explains the whole of a wrong rotation that is made of ``steps``."""
     count = case.actual.shape[-1] // 2
     subset = [replace(step, rotation=Samples.subset_of(step.rotation.T, count).T) for step in steps]
-    return as_explanations(case, explanation(case, MISCONCEPTIONS, subset)) if steps else []
+    return as_explanations(case, explanation(case, subset, Step)) if steps else []

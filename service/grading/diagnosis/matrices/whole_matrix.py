@@ -3,13 +3,12 @@
 Entries that a hypothesis explains need no finding of their own.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from itertools import chain, permutations
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
-from service.grading.diagnosis.matrices import inverse_slips
 from service.grading.diagnosis.matrices.matrix_case import (
     BOTTOM_ROW,
     POSITION_BLOCK,
@@ -18,23 +17,51 @@ from service.grading.diagnosis.matrices.matrix_case import (
     Block,
     Explanation,
     MatrixCase,
+    PositionBlock,
+    RotationBlock,
+    UpperRows,
     as_explanations,
 )
-from service.grading.diagnosis.motions import motion_slips
 from service.grading.diagnosis.motions.link_products import named
 from service.grading.diagnosis.upstream.slip_search import BEHIND_SIGNS
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
-from service.grading.misconception import Written, explanation
+from service.grading.misconception import (
+    Explained,
+    Hypothesis,
+    Written,
+    check,
+    diagnosed,
+    explanation,
+    misconception,
+    says,
+)
 from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.grading.report import Severity
 from service.kinematics.transforms import Numbers, inverse
 
-Misconceptions = tuple[Callable[[MatrixCase], Hypotheses], ...]
+
+class BottomRow:
+    """The bottom row of a wrong matrix."""
 
 
+class Lines:
+    """The columns and rows of a wrong matrix."""
+
+
+@misconception(
+    of=MatrixCase,
+    rank=10,
+    code=("transposed_matrix", "transposed_rotation"),
+    means=(
+        "the whole matrix is transposed",
+        "the rotation is transposed: it has the axes of the first frame in the last",
+    ),
+    example=("planar-rpr-poe", "home", {"1/4": "0", "4/1": "L1 + L2"}),
+    unlike={"3/3": "0", "3/4": "1"},
+)
 def transposed_matrix(case: MatrixCase) -> Hypotheses:
     """Rows were written as columns, throughout."""
     code = "transposed_rotation" if case.rigid and not case.is_transform else "transposed_matrix"
@@ -43,14 +70,25 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
         yield Written(np.swapaxes(case.expected, 0, 1), finding)
 
 
+@misconception(
+    of=UpperRows,
+    rank=50,
+    code="inverse_transform",
+    means="the inverse: the first frame seen from the last",
+    example=(
+        "homogeneous-inverse",
+        "about-z",
+        "[cos(phi), -sin(phi), 0, px; sin(phi), cos(phi), 0, py; 0, 0, 1, pz; 0, 0, 0, 1]",
+    ),
+    unlike={"1/4": "-px", "2/4": "-py"},
+)
 def inverse_transform(case: MatrixCase) -> Hypotheses:
     """The first frame was described in the last."""
     if case.is_transform:
         yield Written(_inverted(case.expected)[UPPER_ROWS], INVERTED, UPPER_ROWS)
 
 
-INVERTED = Finding(
-    "inverse_transform",
+INVERTED = says(
     "This matrix leads the other way: it is the inverse of the transform that is asked for.",
     "Its columns are the axes and the origin of the last frame, seen from the first.",
 )
@@ -68,12 +106,26 @@ def _inverted(matrix: Numbers) -> Numbers:
     return as_entries(inverse(np.moveaxis(matrix, -1, -3)))
 
 
+@misconception(of=UpperRows, rank=60)
 def other_pose(case: MatrixCase) -> Hypotheses:
     """Another pose was worked out."""
     for pose, entries in zip(*case.other_poses, strict=True):
-        yield Written(entries[UPPER_ROWS], named(pose, "This matrix is"), UPPER_ROWS)
+        found = named(pose, "This matrix is")
+        yield Written(entries[UPPER_ROWS], found, UPPER_ROWS, record=pose.record)
 
 
+@misconception(
+    of=UpperRows,
+    rank=70,
+    code=("inverse_transform",),
+    means="the inverse: the first frame seen from the last",
+    example=(
+        "scara",
+        "pose",
+        "[c12, s12, 0, -a2 - a1 c2; s12, -c12, 0, -a1 s2; 0, 0, -1, -d3; 0, 0, 0, 1]",
+    ),
+    unlike={"2/2": "90"},
+)
 def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     """Another pose was worked out, then inverted."""
     if case.is_transform:
@@ -83,10 +135,17 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
             yield Written(inverted[UPPER_ROWS], finding, UPPER_ROWS)
 
 
+@misconception(
+    of=RotationBlock,
+    rank=10,
+    code="transposed_rotation",
+    means="the rotation is transposed: it has the axes of the first frame in the last",
+    example=("planar-rrr", "pose", {"1/2": "s123", "2/1": "-s123"}),
+    unlike={"1/3": "1", "4/4": "0"},
+)
 def transposed_rotation(case: MatrixCase) -> Hypotheses:
     """The axes of the first frame were written down as seen from the last."""
-    finding = Finding(
-        "transposed_rotation",
+    finding = says(
         "The rotation is transposed: its columns, not its rows, must be the axes of the frame that "
         "is described.",
         "Write its rows as columns.",
@@ -94,11 +153,18 @@ def transposed_rotation(case: MatrixCase) -> Hypotheses:
     yield Written(np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1), finding, ROTATION_BLOCK)
 
 
+@misconception(
+    of=RotationBlock,
+    rank=50,
+    code="columns_exchanged",
+    means="the axes of the frame stand in another order",
+    example=("rigid-motion-chain", "parallel-axes", "[0, 1, 0; 0, 0, -1; 1, 0, 0]"),
+    unlike={"1/1": "0", "1/3": "1"},
+)
 def columns_exchanged(case: MatrixCase) -> Hypotheses:
     """The axes of the last frame were written down in another order."""
     for order in list(permutations(range(3)))[1:]:
-        finding = Finding(
-            "columns_exchanged",
+        finding = says(
             "The columns of the rotation are in the wrong order: check which axis belongs in which "
             "column.",
             f"Your columns are its {', '.join('xyz'[j] for j in order)} axes.",
@@ -106,11 +172,13 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
         yield Written(case.expected[:3, order], finding, ROTATION_BLOCK)
 
 
+@misconception(of=RotationBlock, rank=60)
 def other_rotation(case: MatrixCase) -> Hypotheses:
     """The rotation, but not the position, was taken from another pose."""
     return _from_other_poses(case, ROTATION_BLOCK, "The rotation comes from")
 
 
+@misconception(of=PositionBlock, rank=60)
 def other_position(case: MatrixCase) -> Hypotheses:
     """The position, but not the rotation, was taken from another pose."""
     return _from_other_poses(case, POSITION_BLOCK, "The position comes from")
@@ -121,9 +189,21 @@ def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypothese
     # A constant block, such as a position of zeros, does not show which pose it was taken from.
     varies = np.ptp(entries[:, *block], axis=-1).max(axis=(1, 2)) > EXACT_VALUE
     for i in np.flatnonzero(varies).tolist():
-        yield Written(entries[i][block], named(poses[i], subject), block)
+        found = named(poses[i], subject)
+        yield Written(entries[i][block], found, block, record=poses[i].record)
 
 
+@misconception(
+    of=Lines,
+    rank=10,
+    code=("column_sign", "row_sign"),
+    means=(
+        "a column has the wrong sign throughout: an axis of the last frame points the other way",
+        "a row has the wrong sign throughout: an axis of the first frame points the other way",
+    ),
+    example=("homogeneous-inverse", "numbers", {"3/2": "1", "3/4": "-2"}),
+    unlike={"1/4": "1"},
+)
 def line_sign(case: MatrixCase) -> Hypotheses:
     """A whole column or row has the wrong sign: an axis was taken to point the opposite way.
 
@@ -155,59 +235,111 @@ def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
     )
 
 
-# In front of the slips of tables stand misconceptions that are likelier than any of them, behind
-# them those that are less so.
-OF_UPPER_ROWS = ((), (inverse_transform, other_pose, inverse_of_other_pose))
-OF_ROTATION = ((transposed_rotation,), (columns_exchanged, other_rotation))
-OF_POSITION = ((), (other_position,))
-# The same of transforms and rotations that the exercise gives in formulas.
-GIVEN_UPPER_ROWS = (*inverse_slips.OF_UPPER_ROWS, *motion_slips.OF_UPPER_ROWS)
-GIVEN_ROTATION = (*inverse_slips.OF_ROTATION, *motion_slips.OF_ROTATION)
-GIVEN_POSITION = (*inverse_slips.OF_POSITION, *motion_slips.OF_POSITION)
-MISCONCEPTIONS = (
-    transposed_matrix,
-    *chain.from_iterable(OF_UPPER_ROWS + OF_ROTATION + OF_POSITION),
-    line_sign,
-)
+# --- slips of the table
+
+
+@check(of=UpperRows, rank=20)
+def slip_of_rows(case: MatrixCase) -> Explained | None:
+    """A slip of the table explains rotation and position."""
+    return _of_slips(case, UPPER_ROWS)
+
+
+@check(of=RotationBlock, rank=20)
+def slip_of_rotation(case: MatrixCase) -> Explained | None:
+    """A slip of the table explains the rotation."""
+    return _of_slips(case, ROTATION_BLOCK)
+
+
+@check(of=PositionBlock, rank=20)
+def slip_of_position(case: MatrixCase) -> Explained | None:
+    """A slip of the table explains the position."""
+    return _of_slips(case, POSITION_BLOCK)
+
+
+def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
+    """The slips of the table that explain a block.
+
+    A frame of which only axes have the wrong sign is left to ``line_sign``. So is a single
+    wrong entry to itself, unless the slip explains the whole matrix.
+    """
+    entries = case.mask(block)
+    if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
+        return None
+    found = case.slips.explanation(entries)
+    if found is not None and found.findings[0].code in BEHIND_SIGNS:
+        signs = explanation(case, of=Lines)
+        left = case.wrong & entries
+        if signs is not None and not (left & ~case.mask(signs.entries)).any():
+            return signs if block == UPPER_ROWS else None
+    return found
 
 
 # --- checks
 
 
-def bottom_row(case: MatrixCase) -> Finding | None:
+@check(
+    of=BottomRow,
+    rank=10,
+    code="bottom_row",
+    means="the bottom row is not 0 0 0 1",
+    example=("homogeneous-inverse", "numbers", {"4/3": "1"}),
+    unlike={"3/3": "1"},
+)
+def bottom_row(case: MatrixCase) -> Explained | None:
     """The bottom row was taken to hold anything but 0 0 0 1."""
     if not (case.is_transform and case.wrong[BOTTOM_ROW].any()):
         return None
-    return Finding(
-        "bottom_row",
-        "The bottom row of a homogeneous transform is the same for every transform.",
-        "It is 0 0 0 1.",
-    )
+    hint = "The bottom row of a homogeneous transform is the same for every transform."
+    return Hypothesis(None, says(hint, "It is 0 0 0 1."), BOTTOM_ROW)
 
 
-def left_handed_rotation(rotation: Numbers) -> Finding | None:
-    """The axes ``(SAMPLES, 3, 3)`` of a frame were taken to form a left hand: det R = −1."""
-    if _fault(rotation) is not None or not (np.linalg.det(rotation) < 0).all():
+@dataclass(frozen=True)
+class WrongAxes:
+    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix, and the codes of its entries."""
+
+    rotation: Numbers
+    codes: list[str]
+
+
+@check(
+    of=WrongAxes,
+    rank=10,
+    code="left_handed_rotation",
+    means="the columns form a left-handed frame (a warning)",
+    example=("rigid-motion-chain", "parallel-axes", {"2/3": "1"}),
+    unlike={"2/3": "0"},
+)
+def left_handed_rotation(axes: WrongAxes) -> Finding | None:
+    """The axes of a frame were taken to form a left hand: det R = −1."""
+    if _fault(axes.rotation) is not None or not (np.linalg.det(axes.rotation) < 0).all():
         return None
-    return Finding(
-        "left_handed_rotation",
+    finding = says(
         "The columns of the rotation form a left-handed frame (the determinant is negative): x × y "
         "must be z.",
-        severity=Severity.WARNING,
     )
+    return replace(finding, severity=Severity.WARNING)
 
 
-def rotation_not_orthonormal(rotation: Numbers) -> Finding | None:
-    """The columns ``(SAMPLES, 3, 3)`` are no unit vectors at right angles."""
-    fault = _fault(rotation)
+@check(
+    of=WrongAxes,
+    rank=20,
+    code="rotation_not_orthonormal",
+    when=lambda axes: UNEXPLAINED in axes.codes,
+    means="the columns are no unit vectors at right angles; told where nothing else explains an "
+    "entry (a hint)",
+    example=("rigid-motion-chain", "parallel-axes", {"2/3": "0"}),
+    unlike={"1/1": "l1"},
+)
+def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
+    """The columns are no unit vectors at right angles."""
+    fault = _fault(axes.rotation)
     if fault is None:
         return None
-    return Finding(
-        "rotation_not_orthonormal",
+    finding = says(
         "The columns of a rotation are unit vectors at right angles to each other, so you can "
         f"check yours: {fault}.",
-        severity=Severity.HINT,
     )
+    return replace(finding, severity=Severity.HINT)
 
 
 def _fault(rotation: Numbers) -> str | None:
@@ -223,72 +355,24 @@ def _fault(rotation: Numbers) -> str | None:
     return None
 
 
-CHECKS = (bottom_row, left_handed_rotation, rotation_not_orthonormal)
-
-
 def explain(case: MatrixCase) -> list[Explanation]:
     """What is wrong with the matrix as a whole, or with a large part of it."""
-    is_given = case.motion is not None
-    of_matrix = inverse_slips.OF_MATRIX if is_given else ()
-    transposed = explanation(case, (transposed_matrix, *of_matrix))
-    if transposed is not None or not case.rigid:
-        return as_explanations(case, transposed)
-    bottom = bottom_row(case)
-    explained = [Explanation(bottom, case.mask(BOTTOM_ROW))] if bottom else []
+    whole = explanation(case)
+    if whole is not None or not case.rigid:
+        return as_explanations(case, whole)
+    explained = as_explanations(case, explanation(case, of=BottomRow))
     if case.wrong[UPPER_ROWS].any():
-        given = GIVEN_UPPER_ROWS if is_given and case.is_transform else ()
-        explained += _of_block(case, UPPER_ROWS, *OF_UPPER_ROWS, given) or _of_blocks(case)
+        explained += as_explanations(case, explanation(case, of=UpperRows)) or _of_blocks(case)
     return explained
 
 
 def _of_blocks(case: MatrixCase) -> list[Explanation]:
     explained: list[Explanation] = []
-    is_given = case.motion is not None
-    of_rotation = (*OF_ROTATION, GIVEN_ROTATION if is_given else ())
-    of_position = (*OF_POSITION, GIVEN_POSITION if is_given else ())
-    for block, misconceptions in ((ROTATION_BLOCK, of_rotation), (POSITION_BLOCK, of_position)):
+    for block, kind in ((ROTATION_BLOCK, RotationBlock), (POSITION_BLOCK, PositionBlock)):
         if case.wrong[block].any():
-            explained += _of_block(case, block, *misconceptions)
+            explained += as_explanations(case, explanation(case, of=kind))
     rest = replace(case, wrong=unexplained(case, explained))
-    return explained + as_explanations(rest, explanation(rest, (line_sign,)))
-
-
-def _of_block(
-    case: MatrixCase,
-    block: Block,
-    likelier: Misconceptions,
-    less_likely: Misconceptions,
-    given: Misconceptions,
-) -> list[Explanation]:
-    """What explains a block: a likely misconception, a slip of the table, or an unlikely one."""
-    return (
-        as_explanations(case, explanation(case, likelier))
-        or _of_slips(case, block)
-        or as_explanations(case, explanation(case, (*less_likely, *given)))
-    )
-
-
-def _of_slips(case: MatrixCase, block: Block) -> list[Explanation]:
-    """The slips of the table that explain a block.
-
-    A frame of which only axes have the wrong sign is left to ``line_sign``. So is a single
-    wrong entry to itself, unless the slip explains the whole matrix.
-    """
-    entries = case.mask(block)
-    if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
-        return []
-    finding = case.slips.finding(entries)
-    if finding is not None and finding.code in BEHIND_SIGNS:
-        signs = _signs_alone(case, entries)
-        if signs:
-            return signs if block == UPPER_ROWS else []
-    return [Explanation(finding, entries)] if finding else []
-
-
-def _signs_alone(case: MatrixCase, entries: Mask) -> list[Explanation]:
-    """The wrong signs of whole lines, where they explain all that is wrong in these entries."""
-    signs = as_explanations(case, explanation(case, (line_sign,)))
-    return signs if signs and not (unexplained(case, signs) & entries).any() else []
+    return explained + as_explanations(rest, explanation(rest, of=Lines))
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
@@ -305,7 +389,4 @@ def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -
     codes = [finding.code for (i, j), finding in slips.items() if i < 3 and j < 3]
     if not (case.rigid and codes and np.isfinite(rotation).all()):
         return None
-    left_handed = left_handed_rotation(rotation)
-    if left_handed or UNEXPLAINED not in codes:
-        return left_handed
-    return rotation_not_orthonormal(rotation)
+    return diagnosed(case, WrongAxes(rotation, codes))

@@ -13,7 +13,7 @@ import numpy as np
 
 from service.catalogue import Exercise
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, hypotheses_of
+from service.grading.misconception import Explained, Written, hypotheses_of, misconception, says
 from service.grading.numerics.samples import Samples
 from service.kinematics.chain import Table, compound, links
 from service.kinematics.dh import Convention
@@ -81,11 +81,19 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     return (Chain(values, robot.convention, frames=(base, *table.labels)),)
 
 
+@misconception(
+    of=Chain,
+    rank=10,
+    code="reversed_product",
+    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
+    "or another",
+    example=("planar-rr", "position", "[a2 c2 + a1 c12, a2 s2 + a1 s12]"),
+    unlike={"1/1": "a0*c1 + a2*c12"},
+)
 def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     """The link transforms were multiplied in reverse order."""
     order = range(len(chain.links))
-    finding = Finding(
-        "reversed_product",
+    finding = says(
         f"the product of the link transforms in reverse order, {chain.product(order[::-1])}. "
         "Each link transform describes its frame in the one before.",
         f"Multiply {chain.product(order)}.",
@@ -93,11 +101,18 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     yield Written(compound(chain.links[::-1]), finding)
 
 
+@misconception(
+    of=Chain,
+    rank=20,
+    code="other_convention",
+    means="the right table, multiplied out with the link transform of the other convention",
+    example=("planar-rr", "position", "[a1 + a2 c1, a2 s1]"),
+    unlike={"2/1": "0"},
+)
 def other_convention(chain: Chain) -> Iterator[LinkPose]:
     """The table's numbers were put into the link transform of the other convention."""
     used, right = chain.convention.other.value, chain.convention.value
-    finding = Finding(
-        "other_convention",
+    finding = says(
         f"the product that the table gives with the link transform of the {used} convention. "
         "Check in which order a link transform moves about and along z and x.",
         f"The table is written in the {right} convention.",
@@ -105,12 +120,23 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     yield Written(compound(chain.misread_links), finding)
 
 
+@misconception(
+    of=Chain,
+    rank=30,
+    code="wrong_frame",
+    means="the pose of a frame before the last",
+    example=(
+        "spherical-wrist",
+        "pose",
+        "[c4, 0, -s4, d6*c4*s5; s4, 0, c4, d6*s4*s5; 0, -1, 0, d6*c5; 0, 0, 0, 1]",
+    ),
+    unlike={"3/1": "-c5*s6"},
+)
 def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     """The pose of a frame before the last was handed in."""
     last = len(chain.links)
     for k in reversed(range(1, last)):
-        finding = Finding(
-            "wrong_frame",
+        finding = says(
             f"the pose of frame {chain.frame(k)}. The pose of frame {chain.frame(last)} is asked "
             "for.",
             f"Go on with {chain.product(range(k, last))}.",
@@ -118,11 +144,18 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
         yield Written(chain.from_base[k - 1], finding)
 
 
+@misconception(
+    of=Chain,
+    rank=40,
+    code="wrong_base",
+    means="the pose seen from a frame behind the first",
+    example=("planar-rr", "position", "[a2 c2, a2 s2]"),
+    unlike={"2/1": "0"},
+)
 def wrong_base(chain: Chain) -> Iterator[LinkPose]:
     """The pose was described in a frame after the base frame."""
     for k in range(1, len(chain.links)):
-        finding = Finding(
-            "wrong_base",
+        finding = says(
             f"the pose seen from frame {chain.frame(k)}. The pose in frame {chain.frame(0)} is "
             "asked for.",
             f"Put {chain.product(range(k))} in front.",
@@ -130,13 +163,24 @@ def wrong_base(chain: Chain) -> Iterator[LinkPose]:
         yield Written(chain.to_end[k], finding)
 
 
+@misconception(
+    of=Chain,
+    rank=50,
+    code="missing_link",
+    means="a link transform was left out of the product",
+    example=(
+        "scara",
+        "pose",
+        "[c14, -s14, 0, a1 c1; s14, c14, 0, a1 s1; 0, 0, 1, d3 + d4; 0, 0, 0, 1]",
+    ),
+    unlike={"2/2": "90"},
+)
 def missing_link(chain: Chain) -> Iterator[LinkPose]:
     """One link transform between the first and the last was left out of the product."""
     last = len(chain.links)
     poses = chain.from_base[: last - 2] @ chain.to_end[2:]
     for k, pose in enumerate(poses, start=1):
-        finding = Finding(
-            "missing_link",
+        finding = says(
             f"the product without A{chain.frames[k + 1]}. Check that each row of the table takes "
             "part in the product.",
             f"Multiply {chain.product(range(last))}.",
@@ -144,6 +188,22 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
         yield Written(pose, finding)
 
 
+@misconception(
+    of=Chain,
+    rank=60,
+    code="premultiplied",
+    means="a link transform was multiplied from the left, or all turns and shifts were",
+    example=(
+        "scara",
+        "pose",
+        (
+            "[cos(theta1 + theta2 - theta4), -sin(theta1 + theta2 - theta4), 0, a1 cos(theta2 - "
+            "theta4) + a2 c4; -sin(theta1 + theta2 - theta4), -cos(theta1 + theta2 - theta4), 0, "
+            "-a1 sin(theta2 - theta4) + a2 s4; 0, 0, -1, d3 + d4; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"1/4": "-(a1*c1 + a2*c12)", "3/3": "-1/2"},
+)
 def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     """One link transform was multiplied from the left, as if it turned about the base axes.
 
@@ -157,12 +217,27 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     for k, pose in zip(order[1:], poses, strict=True):
         wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
         used = f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}."
-        yield Written(pose, Finding("premultiplied", f"{used} {advice}", correction))
+        yield Written(pose, says(f"{used} {advice}", correction))
     used = "the product of all rotations and translations, each put on the left."
-    throughout = Finding("premultiplied", f"{used} {advice}", correction)
+    throughout = says(f"{used} {advice}", correction)
     yield Written(compound(chain.misread_links[::-1]), throughout)
 
 
+@misconception(
+    of=Chain,
+    rank=70,
+    code="row_order",
+    means="a link transform was multiplied at another place in the product",
+    example=(
+        "planar-rrr-standard",
+        "pose",
+        (
+            "[c123, -s123, 0, l2 c2 + l3 c23 + l1 c123; s123, c123, 0, l2 s2 + l3 s23 + l1 s123; "
+            "0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"2/2": "2*c123"},
+)
 def row_order(chain: Chain) -> Iterator[LinkPose]:
     """One row of the table, or its link transform, stands at another place.
 
@@ -181,8 +256,7 @@ def row_order(chain: Chain) -> Iterator[LinkPose]:
         return
     poses = compound(np.swapaxes(chain.links[orders], 0, 1))
     for order, pose in zip(orders, poses, strict=True):
-        finding = Finding(
-            "row_order",
+        finding = says(
             f"the product in the order {chain.product(order)}. Check which joint each row of the "
             "table belongs to.",
             f"Multiply {chain.product(range(count))}.",
@@ -190,17 +264,14 @@ def row_order(chain: Chain) -> Iterator[LinkPose]:
         yield Written(pose, finding)
 
 
-OF_FRAMES = (wrong_frame, wrong_base)
-OF_FACTORS = (missing_link, premultiplied, row_order)
-MISCONCEPTIONS = (reversed_product, other_convention, *OF_FRAMES, *OF_FACTORS)
-
-
-def other_poses(chains: tuple[Chain, ...]) -> list[LinkPose]:
+def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
     """The poses that all misconceptions lead to."""
-    return [pose for chain in chains for pose in hypotheses_of(chain, MISCONCEPTIONS)]
+    return [pose for chain in chains for pose in hypotheses_of(chain)]
 
 
-def named(pose: LinkPose, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
+def named(pose: Explained, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
     """``others``, then the finding on the pose with the subject of its first sentence."""
-    [finding] = pose.findings
-    return lambda: (*others, replace(finding, hint=f"{subject} {finding.hint}"))
+    return lambda: (
+        *others,
+        *(replace(each, hint=f"{subject} {each.hint}") for each in pose.findings),
+    )

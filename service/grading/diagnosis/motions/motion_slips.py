@@ -1,6 +1,6 @@
 """Slips in a motion made of several, where the exercise gives the result in formulas."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, combinations, permutations
 from itertools import product as cartesian
@@ -14,20 +14,45 @@ from service.grading.diagnosis.matrices.matrix_case import (
     UPPER_ROWS,
     Block,
     MatrixCase,
+    PositionBlock,
+    RotationBlock,
+    UpperRows,
 )
 from service.grading.diagnosis.motions.given_motion import Displacement, GivenMotion, product
 from service.grading.diagnosis.wording import listed
-from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
+from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, explanation, hypotheses_of
+from service.grading.misconception import Written, hypotheses_of, misconception, says
 from service.grading.numerics.tolerances import EXACT_VALUE
 
 # More ways to leave turns out are not tried.
 MAX_WAYS = 64
 ORDINALS = ("first", "second", "third", "fourth", "fifth")
+
+
+class WholeMotion:
+    """A transform that is made of turns and displacements."""
+
+
+class TurnsOfMotion:
+    """A rotation that is made of turns."""
+
+
+class Displacements:
+    """A position that is the sum of displacements."""
+
+
 SUM = "The position is the sum of all displacements, each turned by the turns before it."
 
 
+@misconception(
+    of=Displacements,
+    rank=10,
+    code="displacement_not_turned",
+    means="a displacement was added as it stands in its own frame: d1 + d2 for d1 + R1 d2",
+    example=("rigid-motion-chain", "origin", "[l1, l2, h]"),
+    unlike="[l1, 0, h]",
+)
 def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
     """A displacement was added as it stands in its own frame: d1 + d2 for d1 + R1 d2."""
     found = motion.displacements
@@ -50,32 +75,41 @@ def _not_turned(found: Sequence[Displacement], straight: Sequence[tuple[str, ...
         for each, angles in zip(found, straight, strict=True)
         if angles
     ]
-    return Finding(
-        "displacement_not_turned",
+    return says(
         f"In this position {listed(said)}. Every turn before a displacement turns it: "
         "d = d1 + R1 d2.",
     )
 
 
+@misconception(
+    of=Displacements,
+    rank=20,
+    code="missing_displacement",
+    means="the displacement of one motion is left out of the sum, or stands alone",
+    example=("rigid-motion-chain", "origin", "[l1, 0, h]"),
+    unlike={"1/1": "0"},
+)
 def missing_displacement(motion: GivenMotion) -> Hypotheses:
     """The displacement of one motion is not in the sum."""
     found = motion.displacements
     for i in range(len(found)) if len(found) > 1 else ():
-        finding = Finding(
-            "missing_displacement",
-            f"The displacement of {_which(found, i)} is missing. {SUM}",
-        )
+        finding = says(f"The displacement of {_which(found, i)} is missing. {SUM}")
         yield Written(motion.position() - motion.part(found[i]), finding)
 
 
+@misconception(
+    of=Displacements,
+    rank=30,
+    code="missing_displacement",
+    means="the displacement of one motion is left out of the sum, or stands alone",
+    example=("rigid-motion-chain", "point", "[l1, 0, h]"),
+    unlike="[0, 0, 0]",
+)
 def lone_displacement(motion: GivenMotion) -> Hypotheses:
     """The displacement of one motion was given for the sum of all, in whatever frame."""
     found = motion.displacements
     for i, each in enumerate(found) if len(found) > 1 else ():
-        finding = Finding(
-            "missing_displacement",
-            f"This is the displacement of {_which(found, i)} alone. {SUM}",
-        )
+        finding = says(f"This is the displacement of {_which(found, i)} alone. {SUM}")
         for straight in _subsets(each.angles):
             yield Written(motion.part(each, straight), finding)
 
@@ -86,39 +120,85 @@ def _which(found: Sequence[Displacement], i: int) -> str:
     return f"the {ORDINALS[i]} motion" if is_plain else "one motion"
 
 
+@misconception(
+    of=TurnsOfMotion,
+    rank=20,
+    code="missing_turn",
+    means="a turn was left out",
+    example=(
+        "rigid-motion-chain",
+        "transform",
+        "[cφ, -sφ, 0, l1 - l2 sφ; sφ, cφ, 0, l2 cφ; 0, 0, 1, h; 0, 0, 0, 1]",
+    ),
+    unlike={"1/3": "1", "3/3": "cos(theta)/2"},
+)
 def turn_left_out(motion: GivenMotion) -> Hypotheses:
     """A turn is not in the rotation."""
     for some in _subsets(motion.angles):
         if 0 < len(some) < len(motion.angles):
             hint = f"The turn by {listed(some)} is missing from this rotation."
-            yield Written(motion.rotation(some), Finding("missing_turn", hint))
+            yield Written(motion.rotation(some), says(hint))
 
 
+@misconception(
+    of=TurnsOfMotion,
+    rank=30,
+    code="turn_sign",
+    means="a turn was made the wrong way round",
+    example=(
+        "rigid-motion-chain",
+        "transform",
+        "[cφ, -sφ cθ, -sφ sθ, l1 - l2 sφ; sφ, cφ cθ, cφ sθ, l2 cφ; 0, -sθ, cθ, h; 0, 0, 0, 1]",
+    ),
+    unlike={"2/2": "0"},
+)
 def turn_reversed(motion: GivenMotion) -> Hypotheses:
     """A turn goes the wrong way."""
     for angle in motion.angles:
         values = {**motion.values, angle: -motion.values[angle]}
         rotation = replace(motion, values=values).rotation()
-        finding = Finding(
-            "turn_sign",
-            f"The turn by {angle} goes the wrong way: check the signs of its sines.",
-        )
+        finding = says(f"The turn by {angle} goes the wrong way: check the signs of its sines.")
         yield Written(rotation, finding)
 
 
+@misconception(
+    of=TurnsOfMotion,
+    rank=10,
+    code="reversed_product",
+    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
+    "or another",
+    example=(
+        "rigid-motion-chain",
+        "transform",
+        "[cφ, -sφ, 0, l1 - l2 sφ; cθ sφ, cθ cφ, -sθ, l2 cφ; sθ sφ, sθ cφ, cθ, h; 0, 0, 0, 1]",
+    ),
+    unlike={"2/2": "0"},
+)
 def turns_in_another_order(motion: GivenMotion) -> Hypotheses:
     """The turns were multiplied in another order."""
     for order in list(permutations(motion.angles))[1:] if motion.order else ():
         yield Written(motion.turned(order), OTHER_ORDER)
 
 
-OTHER_ORDER = Finding(
-    "reversed_product",
+OTHER_ORDER = says(
     "The motions were multiplied in the wrong order. Each is described in the frame that the one "
     "before it has reached, so the first stands on the left.",
 )
 
 
+@misconception(
+    of=WholeMotion,
+    rank=10,
+    code="reversed_product",
+    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
+    "or another",
+    example=(
+        "rigid-motion-chain",
+        "transform",
+        "[cφ, -sφ, 0, l1; cθ sφ, cθ cφ, -sθ, l2 - h sθ; sθ sφ, sθ cφ, cθ, h cθ; 0, 0, 0, 1]",
+    ),
+    unlike={"2/2": "0"},
+)
 def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
     """The motions were multiplied in reverse order, the last displacement with either turn."""
     steps = motion.steps
@@ -132,33 +212,27 @@ def _subsets(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
     return chain.from_iterable(combinations(names, count) for count in range(len(names) + 1))
 
 
-OF_MOTION = (steps_in_reverse,)
-OF_TURNS = (turns_in_another_order, turn_left_out, turn_reversed)
-OF_DISPLACEMENTS = (displacement_not_turned, missing_displacement, lone_displacement)
-MISCONCEPTIONS = (*OF_MOTION, *OF_TURNS, *OF_DISPLACEMENTS)
-
-
-def _in_matrix(
-    misconceptions: Sequence[Callable[[GivenMotion], Hypotheses]], block: Block
-) -> Callable[[MatrixCase], Hypotheses]:
+def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
     """The misconceptions about one block of a matrix."""
-
-    def of_case(case: MatrixCase) -> Hypotheses:
-        motion = None if block != ROTATION_BLOCK and not case.is_transform else case.motion
-        for hypothesis in hypotheses_of(motion, misconceptions) if motion else ():
-            answer = hypothesis.answer.reshape(case.expected[block].shape)
-            yield replace(hypothesis, answer=answer, entries=block)
-
-    return of_case
+    motion = None if block != ROTATION_BLOCK and not case.is_transform else case.motion
+    for hypothesis in hypotheses_of(motion, of) if motion else ():
+        answer = hypothesis.answer.reshape(case.expected[block].shape)
+        yield replace(hypothesis, answer=answer, entries=block)
 
 
-# The same of matrices.
-OF_UPPER_ROWS = (_in_matrix(OF_MOTION, UPPER_ROWS),)
-OF_ROTATION = (_in_matrix(OF_TURNS, ROTATION_BLOCK),)
-OF_POSITION = (_in_matrix(OF_DISPLACEMENTS, POSITION_BLOCK),)
+@misconception(of=UpperRows, rank=90)
+def motion_of_rows(case: MatrixCase) -> Hypotheses:
+    """The transform is another motion than the formulas say."""
+    return _in_matrix(case, WholeMotion, UPPER_ROWS)
 
 
-def explain_displacements(case: WrongNumbers, motion: GivenMotion | None) -> Finding | None:
-    """The finding that explains a wrong position by the displacements that it is the sum of."""
-    found = explanation(case, OF_DISPLACEMENTS, motion) if motion else None
-    return found.findings[0] if found else None
+@misconception(of=RotationBlock, rank=90)
+def turns_of_rotation(case: MatrixCase) -> Hypotheses:
+    """The rotation is made of other turns."""
+    return _in_matrix(case, TurnsOfMotion, ROTATION_BLOCK)
+
+
+@misconception(of=PositionBlock, rank=90)
+def displacements_of_position(case: MatrixCase) -> Hypotheses:
+    """The position is made of other displacements."""
+    return _in_matrix(case, Displacements, POSITION_BLOCK)

@@ -13,7 +13,7 @@ from service.grading.diagnosis.screws.screw_axis import (
 )
 from service.grading.diagnosis.wrong_value import Hypotheses, Mask, WrongNumbers
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, diagnosed
+from service.grading.misconception import Written, diagnosed, misconception
 from service.kinematics.transforms import Numbers
 
 
@@ -30,6 +30,11 @@ class WrongScrews(WrongNumbers):
     frame: str
 
     @property
+    def several(self) -> bool:
+        """Whether more than one axis is wrong."""
+        return int(self.wrong.any(axis=1).sum()) > 1
+
+    @property
     def axes(self) -> list[WrongScrew]:
         """The axes one by one."""
         return [self.axis(i) for i in range(len(self.expected))]
@@ -40,16 +45,46 @@ class WrongScrews(WrongNumbers):
         return WrongScrew(self.actual[i], self.expected[i], self.scale, elsewhere, self.frame)
 
 
+@misconception(
+    of=WrongScrews,
+    rank=10,
+    code="exchanged_halves",
+    means="v in front of ω",
+    example=("simple-twist", "infinite-pitch", "1, 0, 0, 0, 0, 0"),
+    unlike={"1/2": "90"},
+)
 def exchanged_halves(case: WrongScrews) -> Hypotheses:
     """Every axis was written as (v; ω)."""
     yield Written(np.roll(case.expected, 3, axis=1), EXCHANGED_HALVES)
 
 
+@misconception(
+    of=WrongScrews,
+    rank=20,
+    code="axis_reversed",
+    when=lambda case: case.several,
+    means="the axis points the opposite way, where the exercise does not leave that open",
+    example=(
+        "planar-rpr-poe",
+        "space-screws",
+        {"1/3": "-1", "2/4": "-1", "3/3": "-1", "3/5": "L1"},
+    ),
+    unlike={"1/3": "2"},
+)
 def axes_reversed(case: WrongScrews) -> Hypotheses:
     """Every axis was taken to point the opposite way."""
     yield Written(-case.expected, AXIS_REVERSED)
 
 
+@misconception(
+    of=WrongScrews,
+    rank=30,
+    code="moment_sign",
+    when=lambda case: case.several,
+    means="v = ω × q in place of −ω × q",
+    example=("planar-rpr-poe", "body-screws", {"1/5": "-L1 - L2", "3/5": "-L2"}),
+    unlike={"2/4": "0", "2/6": "1"},
+)
 def moment_signs(case: WrongScrews) -> Hypotheses:
     """V was taken to be ω × q for every turning joint."""
     axes = [
@@ -59,13 +94,22 @@ def moment_signs(case: WrongScrews) -> Hypotheses:
     yield Written(np.array(axes), MOMENT_SIGN)
 
 
+@misconception(
+    of=WrongScrews,
+    rank=40,
+    code=("body_for_space", "space_for_body"),
+    when=lambda case: case.several,
+    means=(
+        "the body axis where the space axis is asked for",
+        "the space axis where the body axis is asked for",
+    ),
+    example=("planar-rpr-poe", "body-screws", {"1/5": "0", "3/5": "-L1"}),
+    unlike={"1/3": "0", "3/5": "0"},
+)
 def other_frame(case: WrongScrews) -> Hypotheses:
     """Every axis was seen from the tool where the base is asked for, or the other way."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
-
-
-MISCONCEPTIONS = (exchanged_halves, axes_reversed, moment_signs, other_frame)
 
 
 def explain_screws(case: WrongScrews) -> Finding | None:
@@ -75,5 +119,4 @@ def explain_screws(case: WrongScrews) -> Finding | None:
     """
     if not np.isfinite(case.actual).all():
         return None
-    several = int(case.wrong.any(axis=1).sum()) > 1
-    return diagnosed(case, MISCONCEPTIONS if several else (exchanged_halves,))
+    return diagnosed(case)

@@ -7,7 +7,7 @@ import numpy as np
 
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, diagnosed
+from service.grading.misconception import Written, diagnosed, misconception, says
 from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
@@ -54,16 +54,12 @@ class WrongScrew(WrongNumbers):
         return np.concatenate([self.direction, velocity])
 
 
-EXCHANGED_HALVES = Finding(
-    "exchanged_halves", "ω and v are exchanged: write ω first, then v.", "Exchange ω and v."
-)
-AXIS_REVERSED = Finding(
-    "axis_reversed",
+EXCHANGED_HALVES = says("ω and v are exchanged: write ω first, then v.", "Exchange ω and v.")
+AXIS_REVERSED = says(
     "The axis points the opposite way: check which way the joint counts positive.",
     "Change the sign of all six numbers.",
 )
-MOMENT_SIGN = Finding(
-    "moment_sign",
+MOMENT_SIGN = says(
     "v has the wrong sign: the turn moves the point at the origin with v = −ω × q, not ω × q.",
 )
 
@@ -79,11 +75,27 @@ def seen_from_elsewhere(frame: str) -> Finding:
     )
 
 
+@misconception(
+    of=WrongScrew,
+    rank=10,
+    code="axis_reversed",
+    means="the axis points the opposite way, where the exercise does not leave that open",
+    example=("simple-twist", "infinite-pitch", {"1/4": "-1"}),
+    unlike={"1/1": "1"},
+)
 def axis_reversed(case: WrongScrew) -> Hypotheses:
     """The axis was taken to point the opposite way."""
     yield Written(-case.expected, AXIS_REVERSED)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=20,
+    code="moment_sign",
+    means="v = ω × q in place of −ω × q",
+    example=("simple-twist", "zero-pitch", {"1/5": "2"}),
+    unlike="[1, -2, 0, 0, 0, 0]",
+)
 def moment_sign(case: WrongScrew) -> Hypotheses:
     """V was taken to be ω × q."""
     if case.turns:
@@ -91,16 +103,34 @@ def moment_sign(case: WrongScrew) -> Hypotheses:
         yield Written(case.with_velocity(velocity), MOMENT_SIGN)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=30,
+    code=("body_for_space", "space_for_body"),
+    means=(
+        "the body axis where the space axis is asked for",
+        "the space axis where the body axis is asked for",
+    ),
+    example=("planar-rpr-poe", "space-screws", {"3/5": "L2"}),
+    unlike={"1/3": "2"},
+)
 def other_frame(case: WrongScrew) -> Hypotheses:
     """The body axis was given for the space axis, or the other way."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
 
+@misconception(
+    of=WrongScrew,
+    rank=40,
+    code="infinite_pitch",
+    means="a turning joint written as one that slides, or the other way",
+    example=("simple-twist", "infinite-pitch", {"1/1": "1"}),
+    unlike={"1/5": "1"},
+)
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     """A sliding joint was written as one that turns: infinite pitch is ω = 0."""
-    finding = Finding(
-        "infinite_pitch",
+    finding = says(
         "This joint slides and does not turn: check which of ω and v holds its direction.",
         "ω is 0, and v is the unit vector of the direction.",
     )
@@ -109,10 +139,17 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
         yield Written(case.actual, finding)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=50,
+    code="infinite_pitch",
+    means="a turning joint written as one that slides, or the other way",
+    example=("planar-rpr-poe", "space-screws", {"1/3": "0", "1/6": "1"}),
+    unlike={"1/3": "0", "1/5": "1"},
+)
 def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     """The axis of a turning joint was written in v."""
-    finding = Finding(
-        "infinite_pitch",
+    finding = says(
         "This joint turns and does not slide: check which of ω and v holds its direction.",
         "ω is the unit vector along the axis, and v = −ω × q.",
     )
@@ -120,16 +157,31 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
         yield Written(np.concatenate([0 * case.direction, case.direction]), finding)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=60,
+    code="exchanged_halves",
+    means="v in front of ω",
+    example=("planar-rpr-poe", "space-screws", {"3/2": "-L1", "3/3": "0", "3/5": "0", "3/6": "1"}),
+    unlike={"1/3": "0", "1/5": "1"},
+)
 def exchanged_halves(case: WrongScrew) -> Hypotheses:
     """V was written in front of ω."""
     yield Written(np.concatenate([case.expected[3:], case.direction]), EXCHANGED_HALVES)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=70,
+    code="not_normalised",
+    means="ω, or v of a sliding joint, is no unit vector",
+    example=("simple-twist", "infinite-pitch", {"1/4": "2"}),
+    unlike={"1/4": "0"},
+)
 def not_normalised(case: WrongScrew) -> Hypotheses:
     """ω, or v of a sliding joint, is not of unit length."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
-    finding = Finding(
-        "not_normalised",
+    finding = says(
         f"The direction is right, but {letter} is not of length 1, as it must be.",
         f"Divide all six numbers by the length of {letter}.",
     )
@@ -138,12 +190,17 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
         yield Written(factor * case.expected, finding)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=80,
+    code="point_for_velocity",
+    means="a point on the axis in place of v",
+    example=("planar-rpr-poe", "space-screws", {"3/4": "L1", "3/5": "0"}),
+    unlike={"1/3": "0", "1/5": "1"},
+)
 def point_for_velocity(case: WrongScrew) -> Hypotheses:
     """A point on the axis was written in place of v."""
-    finding = Finding(
-        "point_for_velocity",
-        "v holds a point q on the axis. It must be a velocity, v = −ω × q.",
-    )
+    finding = says("v holds a point q on the axis. It must be a velocity, v = −ω × q.")
     if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
         point = case.actual[3:]
         of_point = -np.cross(case.direction, point, axis=0)
@@ -151,6 +208,14 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
             yield Written(case.with_velocity(point), finding)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=90,
+    code="pitch",
+    means="v has a part along ω that does not belong there, or lacks one",
+    example=("simple-twist", "zero-pitch", {"1/6": "1"}),
+    unlike={"1/4": "1"},
+)
 def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis was left out, added, or is another."""
     if not case.turns:
@@ -159,13 +224,20 @@ def pitch(case: WrongScrew) -> Hypotheses:
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
     if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction
-        yield Written(case.with_velocity(velocity), Finding("pitch", hint, "v = −ω × q + h ω."))
+        yield Written(case.with_velocity(velocity), says(hint, "v = −ω × q + h ω."))
 
 
+@misconception(
+    of=WrongScrew,
+    rank=100,
+    code="point_off_axis",
+    means="ω is right, but v is that of a point beside the axis",
+    example=("simple-twist", "pitch", {"1/4": "1"}),
+    unlike={"1/1": "1"},
+)
 def point_off_axis(case: WrongScrew) -> Hypotheses:
     """The point q that v was taken from does not lie on the axis."""
-    finding = Finding(
-        "point_off_axis",
+    finding = says(
         "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates of q "
         f"in the {'base' if case.frame == 'space' else 'end-effector'} frame, and the cross "
         "product.",
@@ -175,11 +247,18 @@ def point_off_axis(case: WrongScrew) -> Hypotheses:
         yield Written(case.with_velocity(case.actual[3:]), finding)
 
 
+@misconception(
+    of=WrongScrew,
+    rank=110,
+    code="other_direction",
+    means="a unit vector that does not lie along the axis",
+    example=("simple-twist", "infinite-pitch", "[0, 0, 0, 0, 0, 1]"),
+    unlike={"1/1": "1"},
+)
 def other_direction(case: WrongScrew) -> Hypotheses:
     """The unit vector lies along another line than the joint."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
-    finding = Finding(
-        "other_direction",
+    finding = says(
         f"{letter} is not along the axis of this joint: check the axis in the home position.",
     )
     length = np.sqrt((case.actual[unit] ** 2).sum(axis=0))
@@ -188,12 +267,6 @@ def other_direction(case: WrongScrew) -> Hypotheses:
         yield Written(case.actual, finding)
 
 
-OF_DIRECTION = (axis_reversed, moment_sign, other_frame)
-OF_HALVES = (sliding_as_turning, turning_as_sliding, exchanged_halves)
-OF_VELOCITY = (point_for_velocity, pitch, point_off_axis)
-MISCONCEPTIONS = (*OF_DIRECTION, *OF_HALVES, not_normalised, *OF_VELOCITY, other_direction)
-
-
 def explain_screw(case: WrongScrew) -> Finding | None:
     """The finding that explains the whole of a wrong axis; None where it is not all read."""
-    return diagnosed(case, MISCONCEPTIONS) if np.isfinite(case.actual).all() else None
+    return diagnosed(case) if np.isfinite(case.actual).all() else None

@@ -17,6 +17,7 @@ from service.grading.diagnosis.formulas.quantity import quantity_of
 from service.grading.diagnosis.tables.intended_table import IntendedTable
 from service.grading.diagnosis.wording import SYMBOLS
 from service.grading.feedback import Finding
+from service.grading.misconception import register
 from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import INTENDED_CELL
 from service.grading.part import Grading
@@ -33,6 +34,14 @@ _USUAL: Final[tuple[Order, ...]] = ((THETA, D, A, ALPHA), (ALPHA, A, D, THETA))
 _OTHER_QUANTITY: Final[Order] = (ALPHA, A, THETA, D)
 # So many orders may be judged; the first is right almost always.
 _MOST: Final = 2
+_PERMUTED = register(
+    of=StudentTable,
+    code="columns_permuted",
+    means="the columns stand in another order, such as θ, d, a, α: of a table without headers, or "
+    "of cells typed one by one",
+    example=("planar-rr", "table", "theta1, 0, a1, 0 ↵ theta2, 0, a2, 0"),
+    unlike={"1/a": "0"},
+)
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
@@ -163,8 +172,7 @@ def _finding(order: Order, *, named: bool) -> Finding:
     )
     if named:
         advice = "Write each parameter under its own header: a, α, d, θ."
-    return Finding(
-        "columns_permuted",
+    return _PERMUTED.finding(
         f"The columns stand in the order {written}. {advice}",
         "Write the columns in the order a, α, d, θ.",
     )

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
-from service.grading.misconception import Written
+from service.grading.misconception import Written, misconception, register, says
 from service.grading.numerics.tolerances import EXACT_VALUE
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import A
@@ -33,6 +33,14 @@ class WrongRow(WrongNumbers):
         return row(transform, convention)
 
 
+@misconception(
+    of=WrongRow,
+    rank=10,
+    code="exchanged_parameters",
+    means="a and d, or α and θ, stand in each other's places",
+    example=("dh-conditions", "fourth", {"a": "2", "alpha": "0", "d": "3", "theta": "pi/2"}),
+    unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
+)
 def exchanged_parameters(case: WrongRow) -> Hypotheses:
     """A and d, or α and θ, stand in each other's places."""
     for names, order in (
@@ -40,19 +48,25 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
         ("α and θ", [0, 3, 2, 1]),
         ("a and d, and α and θ", [2, 3, 0, 1]),
     ):
-        finding = Finding(
-            "exchanged_parameters",
+        finding = says(
             f"{names} are exchanged: a and α are measured along and about x, d and θ along and "
             f"about z.",
         )
         yield Written(case.expected[order], finding)
 
 
+@misconception(
+    of=WrongRow,
+    rank=20,
+    code="other_convention",
+    means="the row is that of the other convention",
+    example=("several-kinds", "turned-row", "l, 0, a, pi"),
+    unlike="l, 0, 2*a, pi",
+)
 def other_convention(case: WrongRow) -> Hypotheses:
     """The row is that of the other convention."""
     other = case.convention.other
-    finding = Finding(
-        "other_convention",
+    finding = says(
         f"This is the row of the {other.value} convention; the {case.convention.value} one is "
         f"asked for.",
     )
@@ -61,10 +75,17 @@ def other_convention(case: WrongRow) -> Hypotheses:
         yield Written(found, finding)
 
 
+@misconception(
+    of=WrongRow,
+    rank=30,
+    code="inverse_transform",
+    means="the row is that of the inverse",
+    example=("several-kinds", "turn-row", "0, 0, -a, -phi"),
+    unlike="0, 0, -a, phi",
+)
 def inverse_row(case: WrongRow) -> Hypotheses:
     """The row is that of the inverse transform."""
-    finding = Finding(
-        "inverse_transform",
+    finding = says(
         "This is the row of the inverse: the transform describes the second frame in the first.",
     )
     found = case.row_of(inverse(case.transform), case.convention)
@@ -72,10 +93,28 @@ def inverse_row(case: WrongRow) -> Hypotheses:
         yield Written(found, finding)
 
 
-MISCONCEPTIONS = (exchanged_parameters, other_convention, inverse_row)
-
-
 # --- the conditions that a transform with a row meets
+_NOT_PERPENDICULAR = register(
+    of=WrongRow,
+    code="dh_not_perpendicular",
+    means="a row for a transform that has none: x is not perpendicular to z",
+    example=("dh-conditions", "second", {"a": "l", "alpha": "0", "d": "h", "theta": "phi"}),
+    unlike="l, 0, h",
+)
+_NOT_INTERSECTING = register(
+    of=WrongRow,
+    code="dh_not_intersecting",
+    means="a row for a transform that has none: the line of x does not meet the line of z",
+    example=("dh-conditions", "third", {"a": "l", "alpha": "phi", "d": "h", "theta": "0"}),
+    unlike="l, 0, h",
+)
+_ROW_EXISTS = register(
+    of=WrongRow,
+    code="dh_row_exists",
+    means='"none" for a transform that has a row',
+    example=("dh-conditions", "fourth", {"none": True}),
+    unlike={"a": "3", "alpha": "0", "d": "2", "theta": "0"},
+)
 
 
 def axes_named(convention: Convention) -> tuple[str, str]:
@@ -87,14 +126,12 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
     """The findings on the conditions that a transform does not meet; none where it has a row."""
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
-    perpendicular = Finding(
-        "dh_not_perpendicular",
+    perpendicular = _NOT_PERPENDICULAR.finding(
         f"Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
         f"{row_of_entry}, column {column}.",
         f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
     )
-    intersecting = Finding(
-        "dh_not_intersecting",
+    intersecting = _NOT_INTERSECTING.finding(
         f"Check the second DH condition: does the line of {x} meet the line of {z}?",
         f"It passes {z} at a distance, so that there is no row.",
     )
@@ -112,8 +149,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
 def has_a_row(convention: Convention) -> Finding:
     """The finding on the answer "none" where the transform has a row."""
     x, z = axes_named(convention)
-    return Finding(
-        "dh_row_exists",
+    return _ROW_EXISTS.finding(
         f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "
         f"line of {z}?",
         "Both hold, so that there is a row.",

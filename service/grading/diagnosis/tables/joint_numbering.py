@@ -8,12 +8,35 @@ from service.expressions import Vocabulary
 from service.expressions.printing.spelling import Spelling
 from service.grading.diagnosis.tables.intended_table import IntendedTable
 from service.grading.feedback import Finding
+from service.grading.misconception import register
 from service.grading.part import Grading
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.tables.table import StudentRow, StudentTable, table_values
 
 # What a name stands for by a way of counting: the joint variable that is meant.
 Meanings = Mapping[str, str]
+_NUMBERED = register(
+    of=StudentTable,
+    code="joint_numbering",
+    means="the joints are numbered from another number: θ0, θ1, θ2 for θ1, θ2, θ3",
+    example=("planar-rr", "table", {"1/theta": "theta0"}),
+    unlike={"1/a": "0", "1/d": "a1"},
+)
+_NUMBERED_BY_KIND = register(
+    of=StudentTable,
+    code="joint_numbering_by_kind",
+    means="turning and sliding joints are numbered separately: θ1, θ2, d3, θ3 for θ1, θ2, d3, θ4",
+    example=(
+        "stanford-arm",
+        "table",
+        (
+            "a, alpha, d, theta ↵ 0, -90deg, 0, theta1 ↵ 0, 90deg, d2, theta2 ↵ 0, 0, d3, 0 ↵ 0, "
+            "-90deg, 0, theta3 ↵ 0, 90deg, 0, theta4 ↵ 0, 0, d6, theta5"
+        ),
+    ),
+    unlike="0, -90, 0, theta1 ↵ 0, 90, d2, theta2 ↵ 0, 0, d3, 0 ↵ 0, -90, 0, theta4 ↵ 0, 90, 0, "
+    "theta5 ↵ 0, 0, d6, theta6",
+)
 
 
 def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:
@@ -108,8 +131,7 @@ def _name(index: int, joints: Mapping[int, Joint], slides: bool) -> str:
 
 def _numbered_from(start: int, first: Joint, spelling: Spelling) -> Finding:
     variable = spelling.names.get(first.variable, first.variable)
-    return Finding(
-        "joint_numbering",
+    return _NUMBERED.finding(
         f"The joint variables are numbered from {start}. This robot's joints are numbered from "
         f"{first.index}: the variable of its first joint is {variable}.",
         f"Add {first.index - start} to the index of each joint variable.",
@@ -118,8 +140,7 @@ def _numbered_from(start: int, first: Joint, spelling: Spelling) -> Finding:
 
 def _numbered_by_kind(joint: Joint, spelling: Spelling) -> Finding:
     variable = spelling.names.get(joint.variable, joint.variable)
-    return Finding(
-        "joint_numbering_by_kind",
+    return _NUMBERED_BY_KIND.finding(
         f"Turning and sliding joints are numbered separately. Number all joints together, from the "
         f"base to the end effector: the variable of joint {joint.index} is {variable}.",
         "Number turning and sliding joints together.",

@@ -7,12 +7,18 @@ is right.
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Final
 
 import numpy as np
 
 from service.catalogue import Joint
 from service.grading.diagnosis.upstream.slip import CellChange, Slip
+from service.grading.diagnosis.upstream.slip_kinds import (
+    COLUMNS_SWAPPED,
+    MISSING_LINK,
+    OTHER_CONVENTION,
+    PARAMETER_SIGN,
+    ROW_ORDER,
+)
 from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
 from service.grading.numerics.tolerances import CONSTANT
 from service.grading.reading.tables.table import IS_ANGLE
@@ -20,8 +26,6 @@ from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
-ROW_ORDER: Final = "row_order"
-MISSING_LINK: Final = "missing_link"
 PLURALS = ("lengths a", "twists α", "offsets d", "angles θ")
 CHECK_ROWS = "check which joint each row of the table belongs to."
 ONE_CONVENTION = "use the same convention for both."
@@ -66,7 +70,7 @@ def exchanged_in_row(
     ways = [False] if abs(constants[A] - constants[D]) > CONSTANT else []
     for moving in [*ways, True] if slides else ways:
         yield Slip(
-            "columns_swapped",
+            COLUMNS_SWAPPED,
             f"the length a and the offset d are exchanged in row {label}",
             f"a is measured {MEASURED[A]}, d {MEASURED[D]}.",
             f"Exchange a and d in row {label}.",
@@ -77,7 +81,7 @@ def exchanged_in_row(
 def exchanged_throughout(rows: TableRows) -> Iterator[Slip]:
     """Exchange a and d in all rows."""
     yield Slip(
-        "columns_swapped",
+        COLUMNS_SWAPPED,
         "the lengths a and the offsets d are exchanged throughout",
         f"a is measured {MEASURED[A]}, d {MEASURED[D]}.",
         "Exchange a and d in every row.",
@@ -108,7 +112,7 @@ def negated_columns(rows: TableRows) -> Iterator[Slip]:
 
 def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
     return Slip(
-        "parameter_sign",
+        PARAMETER_SIGN,
         f"all {PLURALS[column]} have the wrong sign",
         f"they are measured {MEASURED[column]}, positive {POSITIVE[column]}.",
         f"Change the sign of every {SYMBOLS[column]}.",
@@ -144,7 +148,7 @@ def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
 
 def _other_table(convention: Convention, cells: tuple[CellChange, ...]) -> Slip:
     return Slip(
-        "other_convention",
+        OTHER_CONVENTION,
         f"a table of the {convention.other} convention is multiplied with the link transform of "
         f"the {convention} one",
         ONE_CONVENTION,
@@ -162,7 +166,7 @@ def other_formula(rows: TableRows) -> Iterator[Slip]:
     if rows.convention is Convention.STANDARD and not has_twists:
         return
     yield Slip(
-        "other_convention",
+        OTHER_CONVENTION,
         f"the link transform of the {rows.convention.other} convention is used with a table of the "
         f"{rows.convention} one",
         ONE_CONVENTION,

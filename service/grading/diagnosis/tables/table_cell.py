@@ -1,205 +1,92 @@
 """Slips in a single table cell."""
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
-from service.grading.diagnosis.formulas.quantity import quantity_of
-from service.grading.diagnosis.wording import POSITIVE, axes_of_row, listed
+from service.grading.diagnosis.wording import POSITIVE, axes_of_row
 from service.grading.diagnosis.wrong_value import (
+    UNEXPLAINED,
     Hypotheses,
     WrongCell,
     differs,
     finding_on,
-    undefined,
 )
 from service.grading.feedback import Finding
 from service.grading.formula_text import sum_formula
 from service.grading.judging.table import Judgement, column_scales
-from service.grading.misconception import Repaired, Written, diagnosed
+from service.grading.misconception import Repaired, Written, check, diagnosed, misconception
 from service.grading.numerics.comparison import Match
 from service.grading.numerics.joint_motion import coefficients
 from service.grading.numerics.tolerances import ROUNDED_VALUE
 from service.grading.part import Grading
-from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import THETA, D
 from service.kinematics.factors import CellIndex
-from service.kinematics.transforms import Numbers
 
 SUM_COUNTS = (
     "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
 )
 
-CONVERTED = (
-    "The joint variable was converted between degrees and radians. Leave out the factor: a joint "
-    "variable is already an angle."
-)
-
 # The turn that an angle is off by may itself have been rounded.
 ROUNDED_TURN = ROUNDED_VALUE * np.pi
-
-# --- checks of the joint variables in the cell
-
-
-def joint_variable_absent(case: WrongCell) -> Finding | None:
-    """The cell contains a joint variable that the robot does not have, or a length like d1."""
-    absent = sorted(absent_names([case.expression], case.samples))
-    if not absent:
-        return None
-    known = {joint.index: joint for joint in case.joints}
-    joint = known.get(joint_counted(absent[0]))
-    if joint is not None and not joint.prismatic:
-        lengths = [name for name in case.samples.values if re.fullmatch(r"d_?\d+", name)]
-        has = f" It has {', '.join(lengths)}." if lengths else ""
-        return finding_on(case, "unknown_symbol", f"This exercise has no {absent[0]}.{has}")
-    why = f"its joints are {min(known)} to {max(known)}"
-    if joint is not None:
-        why = f"joint {joint.index} {_motion(joint)}, and its variable is {case.name(joint)}"
-    return finding_on(case, "joint_variable_absent", f"This robot has no {absent[0]}: {why}.")
-
-
-def joint_variable_missing(case: WrongCell) -> Finding | None:
-    """The table was taken to describe the drawn pose, so the joint variable was left out."""
-    if case.joint is None or not case.required or case.contained != {}:
-        return None
-    return finding_on(
-        case,
-        "joint_variable_missing",
-        f"Joint {case.joint.index} {_motion(case.joint)}, so this cell must contain its variable.",
-    )
-
-
-def _motion(joint: Joint) -> str:
-    return "slides along z" if joint.prismatic else "turns about z"
-
-
-def joint_variable_sign(case: WrongCell) -> Finding | None:
-    """The joint was taken to move in the negative sense of its axis."""
-    opposite = {joint: -count for joint, count in case.required.items()}
-    if case.joint is None or not opposite or case.contained != opposite:
-        return None
-    return finding_on(
-        case,
-        "joint_variable_sign",
-        f"The sign of the joint variable is wrong: check which way z points along this joint's "
-        f"axis, and in which sense the joint {_motion(case.joint)}.",
-    )
-
-
-def joint_variable_index(case: WrongCell) -> Finding | None:
-    """The variable of a neighbouring joint was taken."""
-    other, count = case.contained_alone
-    if not (case.joint and other and case.required) or other == case.joint or abs(count) != 1:
-        return None
-    return finding_on(
-        case,
-        "joint_variable_index",
-        f"This is the row of joint {case.joint.index}, but the cell contains {case.name(other)}, "
-        f"the variable of joint {other.index}.",
-    )
-
-
-def joint_variable_doubled(case: WrongCell) -> Finding | None:
-    """The joint variable was counted more than once."""
-    joint, count = case.contained_alone
-    if joint is None or joint != case.joint or joint not in case.required or abs(count) < 2:
-        return None
-    return finding_on(
-        case,
-        "joint_variable_doubled",
-        f"The joint variable has a wrong factor: check how far the joint "
-        f"{'slides' if joint.prismatic else 'turns'} when the variable grows by 1.",
-    )
-
-
-def joint_variable_converted(case: WrongCell) -> Finding | None:
-    """The joint variable, or the whole cell, was multiplied by π/180 or 180/π."""
-    if not case.angle or not case.required or case.contained is not None:
-        return None
-    constant = case.constants[1]
-    moved, motion = case.actual - constant, case.expected - constant
-
-    def is_converted(convert: Callable[[Numbers], Numbers]) -> bool:
-        return case.equal(moved, convert(motion)) or case.equal(case.actual, convert(case.expected))
-
-    if is_converted(np.degrees):
-        return finding_on(case, "degrees_as_radians", CONVERTED)
-    return finding_on(case, "radians_as_degrees", CONVERTED) if is_converted(np.radians) else None
-
-
-def joint_variable_column(case: WrongCell) -> Finding | None:
-    """The joint variable was put in the column that stays constant for this kind of joint."""
-    joint, _ = case.contained_alone
-    if joint is None or joint != case.joint or case.required:
-        return None
-    moves, column = ("slides", "d") if joint.prismatic else ("turns", "θ")
-    return finding_on(
-        case,
-        "joint_variable_column",
-        f"Joint {joint.index} {moves}, so its variable belongs in {column}; {case.symbol} is "
-        f"constant here.",
-    )
-
-
-def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """A joint variable was added that has nothing to do with this cell."""
-    extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
-    if not extra:
-        return None
-    return finding_on(
-        case,
-        "joint_variable_extra",
-        f"The cell contains {listed(extra)}: check whether {case.symbol} changes with "
-        f"{'it' if len(extra) == 1 else 'them'}.",
-    )
-
-
-def wrong_quantity(case: WrongCell) -> Finding | None:
-    """An angle where a length is asked for, or a length where an angle is."""
-    found = quantity_of(case.expression.tree)
-    if found not in ("angle", "length") or (found == "angle") == case.angle:
-        return None
-    asked, written = ("an angle", "a length") if case.angle else ("a length", "an angle")
-    return finding_on(
-        case, "wrong_quantity", f"{case.symbol} is {asked}, but {written} is written here."
-    )
-
 
 # --- misconceptions about the constant, where the joint variables are right
 
 
+@misconception(
+    of=WrongCell,
+    rank=100,
+    code="sign",
+    means="the wrong sign of a length or an angle",
+    example=("stanford-arm", "table", {"1/alpha": "pi/2"}),
+    unlike={"1/alpha": "0"},
+)
 def sign(case: WrongCell) -> Hypotheses:
     """The size is right, the direction is not."""
     finding = finding_on(
         case,
-        "sign",
         f"The sign of {case.symbol} is wrong: it must be measured {case.measured}, positive "
         f"{POSITIVE[case.column]}.",
     )
     yield Written(-case.constants[1], finding)
 
 
+@misconception(
+    of=WrongCell,
+    rank=110,
+    code="distance_left_out",
+    when=lambda case: not case.angle,
+    means="a distance between two frames is overlooked",
+    example=("stanford-arm", "table", {"6/d": "0"}),
+    unlike={"2/d": "d6"},
+)
 def distance_left_out(case: WrongCell) -> Hypotheses:
     """A distance between the frames was overlooked."""
     finding = finding_on(
         case,
-        "distance_left_out",
         f"A distance is left out of {case.symbol}{_beside(case)}: the two frames are apart "
         f"{case.measured}.",
     )
     yield Written(0 * case.actual, finding)
 
 
+@misconception(
+    of=WrongCell,
+    rank=120,
+    code="distance_extra",
+    when=lambda case: not case.angle,
+    means="a distance where there is none, or one more beside the joint variable",
+    example=("stanford-arm", "table", {"1/a": "d2"}),
+    unlike={"2/d": "d6"},
+)
 def distance_extra(case: WrongCell) -> Hypotheses:
     """A distance was put where there is none: into the wrong cell, or counted twice."""
     finding = finding_on(
         case,
-        "distance_extra",
         f"Check whether the distance in {case.symbol}{_beside(case)} belongs there: it may lie "
         "along another axis, or stand in another cell already.",
     )
@@ -210,6 +97,15 @@ def _beside(case: WrongCell) -> str:
     return " beside the joint variable" if case.required else ""
 
 
+@misconception(
+    of=WrongCell,
+    rank=130,
+    code="degrees_as_radians",
+    when=lambda case: case.angle,
+    means="a number of degrees where radians are read, or a variable times 180/π",
+    example=("stanford-arm", "table", {"1/alpha": "-90"}),
+    unlike={"1/alpha": "-91"},
+)
 def degrees_as_radians(case: WrongCell) -> Hypotheses:
     """A number in degrees was handed in where radians are read."""
     hint = (
@@ -218,24 +114,48 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
     )
     in_degrees = np.radians(case.constants[0])
     for value, also in ((in_degrees, ""), (-in_degrees, " The sign is wrong, too.")):
-        yield Repaired(value, finding_on(case, "degrees_as_radians", hint + also))
+        yield Repaired(value, finding_on(case, hint + also))
 
 
+@misconception(
+    of=WrongCell,
+    rank=140,
+    code="radians_as_degrees",
+    when=lambda case: case.angle,
+    means="a number of radians where the form is set to degrees, or a variable times π/180",
+    example=(
+        "stanford-arm",
+        "table",
+        (
+            "0, -1.5708, 0, theta1 ↵ 0, 90, d2, theta2 ↵ 0, 0, d3, 0 ↵ 0, -90, 0, theta4 ↵ 0, 90, "
+            "0, theta5 ↵ 0, 0, d6, theta6"
+        ),
+        "degrees",
+    ),
+    unlike={"6/d": "-d6"},
+)
 def radians_as_degrees(case: WrongCell) -> Hypotheses:
     """A number in radians was handed in where degrees are read."""
     finding = finding_on(
         case,
-        "radians_as_degrees",
         "This number was read in degrees, but it fits in radians: write the unit behind it (rad).",
     )
     yield Repaired(np.degrees(case.constants[0]), finding)
 
 
+@misconception(
+    of=WrongCell,
+    rank=150,
+    code="quarter_turn",
+    when=lambda case: case.angle,
+    means="an angle is off by 90°",
+    example=("stanford-arm", "table", {"2/theta": "theta2 + pi/2"}),
+    unlike={"2/theta": "theta2 + pi"},
+)
 def quarter_turn(case: WrongCell) -> Hypotheses:
     """A turn by 90° was left out, added, or made the wrong way from a quarter to three quarters."""
     finding = finding_on(
         case,
-        "quarter_turn",
         _compare_axes(case),
         otherwise="It is off by a quarter turn (90°).",
     )
@@ -252,46 +172,52 @@ def _compare_axes(case: WrongCell) -> str:
     return f"{case.symbol} is not right: compare {axes}{where}."
 
 
+@misconception(
+    of=WrongCell,
+    rank=160,
+    code="half_turn",
+    when=lambda case: case.angle,
+    means="an angle is off by 180°: an axis was taken to point the other way",
+    example=("stanford-arm", "table", {"3/alpha": "180°"}),
+    unlike={"6/d": "0"},
+)
 def half_turn(case: WrongCell) -> Hypotheses:
     """An axis was taken to point the opposite way."""
     finding = finding_on(
         case,
-        "half_turn",
         _compare_axes(case),
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
 
-CHECKS = (
-    joint_variable_absent,
-    undefined,
-    joint_variable_missing,
-    joint_variable_sign,
-    joint_variable_index,
-    joint_variable_doubled,
-    joint_variable_converted,
-    joint_variable_column,
-    joint_variable_extra,
-    wrong_quantity,
-)
 # The codes of a joint variable in the column that stays constant.
-MISPLACED = (joint_variable_absent.__name__, joint_variable_column.__name__)
+MISPLACED = ("joint_variable_absent", "joint_variable_column")
 # The work of one wrong cell, as the budget counts it.
 CELL_WORK = 1.2
-OF_DISTANCE = (distance_left_out, distance_extra)
-OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
-MISCONCEPTIONS = (sign, *OF_DISTANCE, *OF_ANGLE)
 
 
-def diagnose(case: WrongCell) -> Finding:
-    """The finding on a wrong cell."""
-    misconceptions = (sign, *(OF_ANGLE if case.angle else OF_DISTANCE))
-    finding = diagnosed(case, misconceptions, CHECKS) or differs(
+@check(
+    of=WrongCell,
+    rank=300,
+    code=UNEXPLAINED,
+    means="wrong, and none of the above: another length, another angle",
+    example=("stanford-arm", "table", {"2/d": "d6"}),
+    unlike={"6/d": "0"},
+)
+def unexplained(case: WrongCell) -> Finding:
+    """No misconception explains the cell."""
+    return differs(
         case,
         f"{case.symbol} is not right: check the {'angle' if case.angle else 'distance'} "
         f"{case.measured}.{_too_large(case)}{_in_symbols(case)}",
     )
+
+
+def diagnose(case: WrongCell) -> Finding:
+    """The finding on a wrong cell."""
+    finding = diagnosed(case)
+    assert finding is not None
     if case.column == D and case.shared and case.same_motion:
         return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
     return finding
@@ -392,7 +318,7 @@ def _of_misplaced_variables(
     told = dict(slips)
     for (i, column), finding in slips.items():
         joint = judgement.rows[i].joint
-        if finding.code != joint_variable_missing.__name__ or joint is None:
+        if finding.code != "joint_variable_missing" or joint is None:
             continue
         other = slips.get((i, THETA if column == D else D))
         if other is not None and other.code in MISPLACED:

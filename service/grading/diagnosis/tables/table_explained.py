@@ -18,11 +18,11 @@ from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import Role, freedom_of
 from service.grading.judging.own_frames.validity import valid_tables
 from service.grading.judging.own_frames.written_table import (
-    RepairedTable,
     WrittenTable,
     written_table,
 )
 from service.grading.judging.table import Judgement, departures_of, judged_by_intended
+from service.grading.misconception import Explained
 from service.grading.numerics.comparison import Match, difference
 from service.grading.numerics.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.grading.part import Grading
@@ -152,7 +152,7 @@ def _is_length(symbol: Symbol | None) -> bool:
 
 
 def _intended(
-    repaired: RepairedTable, written: WrittenTable, roles: tuple[Role, ...], grading: Grading
+    repaired: Explained, written: WrittenTable, roles: tuple[Role, ...], grading: Grading
 ) -> _Intended:
     table = in_convention(repaired.answer, written.convention)
     if table is None:

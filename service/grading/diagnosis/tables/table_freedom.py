@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from service.catalogue import Exercise, Joint
 from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding
+from service.grading.misconception import register
 from service.grading.numerics.joint_motion import changes
 from service.grading.numerics.samples import Samples
+from service.grading.reading.tables.table import StudentTable
 from service.kinematics.chain import THETA, D, Table
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
@@ -25,6 +27,14 @@ from service.kinematics.tolerances import SAME_SCREW
 POSTURES = 2
 # Beside lengths so many times the typical one, what the others do counts as nothing.
 TOO_LONG = 300.0
+_LOST = register(
+    of=StudentTable,
+    code="lost_freedom",
+    means="joints share one axis, or lie so that the arm can move in fewer ways than the robot; "
+    "the cells cost the points, not this",
+    example=("planar-rrr-drawn", "table", {"2/a": "0"}),
+    unlike={"1/theta": "q2"},
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +113,7 @@ def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[F
         involved = np.ones_like(involved)
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
     first, *_, last = np.flatnonzero(involved).tolist()
-    finding = Finding(
-        "lost_freedom",
+    finding = _LOST.finding(
         f"The axes of joints {listed(names)} leave the arm fewer degrees of freedom than the robot "
         f"has: check a and α of {_rows_between(first, last, written, convention)}.",
     )
@@ -124,8 +133,7 @@ def _one_axis(
         parallel, right = _lie(intended.directions(first), intended.directions(last))
         lost, columns = "a degree", "a" if parallel else "α"
         correction = f"The axes of these joints are {right}."
-    return Finding(
-        "lost_freedom",
+    return _LOST.finding(
         f"Joints {named} {motion}, so the arm has lost {lost} of freedom: check {columns} of "
         f"{_rows_between(first, last, written, convention)}.",
         correction,

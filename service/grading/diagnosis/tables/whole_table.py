@@ -14,16 +14,22 @@ from numpy.typing import NDArray
 
 from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
 from service.grading.feedback import Finding
-from service.grading.judging.own_frames import written_table
-from service.grading.judging.own_frames.written_table import RepairedTable, WrittenTable
-from service.grading.misconception import AnyHypothesis, Repaired, hypotheses_of
+from service.grading.judging.own_frames.written_table import RepairedTable, Rereadable, WrittenTable
+from service.grading.misconception import (
+    AnyHypothesis,
+    Explained,
+    Record,
+    Repaired,
+    each_hypothesis,
+    misconception,
+    records_of,
+    says,
+)
 from service.grading.numerics.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
 _OF_LINK = slice(A, ALPHA + 1)
-
-Misconception = Callable[[WrittenTable], Iterator[RepairedTable]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +58,14 @@ class WrongTable:
         return [tried[i] for i in np.flatnonzero(explains)]
 
 
+@misconception(
+    of=WrittenTable,
+    rank=50,
+    code="link_columns_shifted",
+    means="a and α, or one of them, stand one row too early or too late",
+    example=("three-link-cylindrical", "table", {"1/alpha": "-90deg", "2/alpha": "0"}),
+    unlike={"2/a": "d3", "3/d": "0"},
+)
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     """The link's own columns, a and α or one of them, stand one row too early or too late.
 
@@ -78,14 +92,21 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
 def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     """``other`` is the convention in which they stand there, if it is so in one."""
     in_other = f" In the {other} convention they stand there." if other else ""
-    return Finding(
-        "link_columns_shifted",
+    return says(
         f"{named} stand one row too {'late' if late else 'early'}: check which link each of them "
         f"describes.{in_other}",
         f"Move {named} {'up' if late else 'down'} by one row.",
     )
 
 
+@misconception(
+    of=WrittenTable,
+    rank=60,
+    code="column_sign",
+    means="one of a, α, d, θ has the wrong sign in every row",
+    example=("rrrp", "table", "-l2, 0, l1, q1 ↵ -l3, 180°, 0, q2 ↵ 0, 0, l4, q3 ↵ 0, 0, q4, 0"),
+    unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
+)
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
     """One kind of parameter was measured in the wrong sense throughout."""
     for column in range(len(COLUMNS)):
@@ -96,14 +117,21 @@ def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
 
 
 def _turned_sign(column: int) -> Finding:
-    return Finding(
-        "column_sign",
+    return says(
         f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {MEASURED[column]}, "
         f"positive {POSITIVE[column]}.",
         f"Change the sign of every {SYMBOLS[column]}.",
     )
 
 
+@misconception(
+    of=WrittenTable,
+    rank=70,
+    code="columns_swapped",
+    means="a and d, or α and θ, are exchanged, throughout or in one row",
+    example=("planar-rr", "table", {"1/a": "0", "1/d": "a1"}),
+    unlike={"2/d": "90°"},
+)
 def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
     """A parameter on x was taken for the one on z: a for d, or α for θ.
 
@@ -140,6 +168,18 @@ def exchanged_columns(one: int, other: int) -> Finding:
     )
 
 
+@misconception(
+    of=WrittenTable,
+    rank=80,
+    code="row_order",
+    means="two rows stand in each other's places, or all rows in the opposite order",
+    example=(
+        "planar-rr",
+        "table",
+        {"1/a": "a2", "1/theta": "theta2", "2/a": "a1", "2/theta": "theta1"},
+    ),
+    unlike={"2/d": "90°"},
+)
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
     """Two rows, or all of them, stand in the wrong order."""
     rows = range(len(table.constants))
@@ -152,13 +192,20 @@ def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
 
 def _reordered(order: list[int]) -> Finding:
     moved = [str(i + 1) for i, row in enumerate(order) if row != i]
-    return Finding(
-        "row_order",
+    return says(
         f"Rows {' and '.join(moved) if len(moved) == 2 else ', '.join(moved)} stand in the wrong "
         f"order: row i belongs to joint i, counted from the base.",
     )
 
 
+@misconception(
+    of=WrittenTable,
+    rank=40,
+    code="lengths_exchanged",
+    means="two lengths stand in each other's places, as a1 for a2 and a2 for a1",
+    example=("spatial-rrr", "table", {"1/a": "L2", "3/a": "R"}),
+    unlike={"3/a": "0", "3/d": "L2"},
+)
 def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
     """Two lengths were taken for each other."""
     for one, other, change in table.exchanges:
@@ -167,58 +214,48 @@ def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
 
 
 def _exchanged_lengths(one: str, other: str) -> Finding:
-    return Finding(
-        "lengths_exchanged",
+    return says(
         f"{one} and {other} are exchanged: check which length each of them is.",
         f"Exchange {one} and {other}.",
     )
 
 
-BASIC = written_table.MISCONCEPTIONS
-MISCONCEPTIONS = (
-    *BASIC,
-    lengths_exchanged,
-    link_columns_shifted,
-    column_sign,
-    columns_swapped,
-    row_order,
-)
-
-
 def _with_another(
-    basic: Misconception, others: Sequence[Misconception], table: WrittenTable
-) -> Iterator[RepairedTable]:
+    basic: Record, others: Sequence[Record], table: WrittenTable
+) -> Iterator[Explained]:
     """A basic misconception and another one were held at once."""
-    for first in basic(table):
-        for second in hypotheses_of(first.answer, others):
-            yield Repaired(second.answer, partial(_both, first, second))
+    for first in each_hypothesis((basic,), table):
+        for second in each_hypothesis(others, first.answer):
+            yield Repaired(second.answer, partial(_both, first, second), record=second.record)
 
 
-def _both(first: RepairedTable, second: RepairedTable) -> tuple[Finding, ...]:
+def _both(first: Explained, second: Explained) -> tuple[Finding, ...]:
     return (*first.findings, *second.findings)
 
 
-PAIRS = tuple(
-    partial(_with_another, basic, MISCONCEPTIONS[i + 1 :]) for i, basic in enumerate(BASIC)
-)
-
-
-def explaining(case: WrongTable, *, combine: bool) -> list[RepairedTable]:
+def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
     """All hypotheses that explain the whole table; else the first pair, if ``combine`` allows."""
-    found = list(_explaining(case, MISCONCEPTIONS))
-    return found or (list(islice(_explaining(case, PAIRS), 1)) if combine else [])
+    records = records_of(WrittenTable)
+    found = list(_explaining(case, [partial(each_hypothesis, (each,)) for each in records]))
+    if found or not combine:
+        return found
+    pairs = [
+        partial(_with_another, each, records[i + 1 :])
+        for i, each in enumerate(records_of(Rereadable))
+    ]
+    return list(islice(_explaining(case, pairs), 1))
 
 
 def _explaining(
-    case: WrongTable, misconceptions: Sequence[Misconception]
-) -> Iterator[RepairedTable]:
+    case: WrongTable, ways: Sequence[Callable[[WrittenTable], Iterator[Explained]]]
+) -> Iterator[Explained]:
     """The hypotheses that explain the table at the subset, built again at all samples."""
-    tried = [(misconception, list(misconception(case.subset))) for misconception in misconceptions]
+    tried = [(build, list(build(case.subset))) for build in ways]
     every = chain.from_iterable(hypotheses for _, hypotheses in tried)
     explains = set(map(id, case.explained_by(every)))
-    for misconception, hypotheses in tried:
+    for build, hypotheses in tried:
         if not explains.isdisjoint(map(id, hypotheses)):
             # At all samples a misconception may yield nothing where a value jumps in between.
-            for at_subset, complete in zip(hypotheses, misconception(case.written), strict=False):
+            for at_subset, complete in zip(hypotheses, build(case.written), strict=False):
                 if id(at_subset) in explains:
                     yield complete

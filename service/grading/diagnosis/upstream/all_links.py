@@ -80,7 +80,8 @@ def _explained(
         name=grading.symbol_names(entries),
         unwritten=grading.unwritten(entries),
     )
-    return search.finding(np.ones_like(wrong))
+    found = search.explanation(np.ones_like(wrong))
+    return None if found is None else found.findings[0]
 
 
 def _wrong(written: Matrices, right: Matrices, scale: Numbers) -> Mask:

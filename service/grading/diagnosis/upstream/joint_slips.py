@@ -3,12 +3,25 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from itertools import combinations
-from typing import Final
 
 import numpy as np
 
 from service.catalogue import Exercise, Joint
 from service.grading.diagnosis.upstream.slip import CellChange, Slip, SymbolChange
+from service.grading.diagnosis.upstream.slip_kinds import (
+    DISTANCE_LEFT_OUT,
+    HALF_TURN,
+    HOME_POSITION,
+    JOINT_VARIABLE_DOUBLED,
+    JOINT_VARIABLE_INDEX,
+    JOINT_VARIABLE_MISSING,
+    JOINT_VARIABLE_SIGN,
+    LENGTHS_EXCHANGED,
+    OTHER_LENGTH,
+    QUARTER_TURN,
+    SIGN,
+)
+from service.grading.misconception import Record
 from service.grading.numerics.samples import Samples
 from service.grading.numerics.tolerances import SAME_MOTION
 from service.kinematics.transforms import Numbers
@@ -16,7 +29,6 @@ from service.kinematics.transforms import Numbers
 Axis = Callable[[Joint], str]
 # The longest robots have a handful of lengths; the pairs of more are not tried.
 MAX_LENGTHS = 12
-HOME_POSITION: Final = "home_position"
 
 
 def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> Iterator[Slip]:
@@ -40,7 +52,7 @@ def counts_the_wrong_way(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
     """The joint was taken to move in the negative sense of its axis."""
     verb = "slides" if joint.prismatic else "counts"
     return Slip(
-        "joint_variable_sign",
+        JOINT_VARIABLE_SIGN,
         f"joint {joint.index} {verb} the wrong way",
         f"check the sign of its variable. {axis(joint)}",
         f"Change the sign of {{{joint.variable}}} throughout.",
@@ -53,7 +65,7 @@ def stands_still(joint: Joint, *cells: CellChange) -> Slip:
     """The joint's variable was left out, as if the joint could not move."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
-        "joint_variable_missing",
+        JOINT_VARIABLE_MISSING,
         f"joint {joint.index} stands still",
         f"check what must change with {{{joint.variable}:its variable}}.",
         f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
@@ -66,7 +78,7 @@ def _moves_by_another(joint: Joint, other: Joint) -> Slip:
     """The variable of another joint was taken."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
-        "joint_variable_index",
+        JOINT_VARIABLE_INDEX,
         f"joint {joint.index} {verb} with {{{other.variable}:another variable}}",
         f"that is the variable of joint {other.index}.",
         f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
@@ -78,7 +90,7 @@ def _moves_twice(joint: Joint) -> Slip:
     """The joint variable was counted twice."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
-        "joint_variable_doubled",
+        JOINT_VARIABLE_DOUBLED,
         f"joint {joint.index} {verb} twice as far as {{{joint.variable}:its variable}}",
         "count each joint variable once.",
         f"Joint {joint.index} {verb} by {{{joint.variable}}}.",
@@ -88,14 +100,14 @@ def _moves_twice(joint: Joint) -> Slip:
 
 def _starts_elsewhere(joint: Joint) -> Iterator[Slip]:
     """The joint's angle was measured from another zero position."""
-    yield _turned_joint(joint, "quarter_turn", np.pi / 2, "a quarter turn (90°)")
-    yield _turned_joint(joint, "quarter_turn", -np.pi / 2, "a quarter turn (90°)")
-    yield _turned_joint(joint, "half_turn", np.pi, "half a turn (180°)")
+    yield _turned_joint(joint, QUARTER_TURN, np.pi / 2, "a quarter turn (90°)")
+    yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2, "a quarter turn (90°)")
+    yield _turned_joint(joint, HALF_TURN, np.pi, "half a turn (180°)")
 
 
-def _turned_joint(joint: Joint, code: str, turn: float, error: str) -> Slip:
+def _turned_joint(joint: Joint, kind: Record, turn: float, error: str) -> Slip:
     return Slip(
-        code,
+        kind,
         f"joint {joint.index} starts from another position",
         f"check how the link lies when {{{joint.variable}:its variable}} is 0.",
         f"{{{joint.variable}}} is off by {error}.",
@@ -130,7 +142,7 @@ def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[
 
 def _length_sign(length: str) -> Slip:
     return Slip(
-        "sign",
+        SIGN,
         f"the length {{{length}:of one link}} has the wrong sign",
         "check along which axis it is measured, and which way.",
         f"Change the sign of {{{length}}} throughout.",
@@ -140,7 +152,7 @@ def _length_sign(length: str) -> Slip:
 
 def _length_left_out(length: str) -> Slip:
     return Slip(
-        "distance_left_out",
+        DISTANCE_LEFT_OUT,
         f"the length {{{length}:of one link}} is left out",
         "check which frames it lies between.",
         symbols=(SymbolChange(length, length, 0.0),),
@@ -149,7 +161,7 @@ def _length_left_out(length: str) -> Slip:
 
 def _exchanged(one: str, other: str) -> Slip:
     return Slip(
-        "lengths_exchanged",
+        LENGTHS_EXCHANGED,
         f"the lengths {{{one}:of one link}} and {{{other}:of another}} are exchanged",
         "check which link each of them belongs to.",
         f"Write {{{one}}} for {{{other}}}, and {{{other}}} for {{{one}}}.",
@@ -159,7 +171,7 @@ def _exchanged(one: str, other: str) -> Slip:
 
 def _other_length(right: str, written: str) -> Slip:
     return Slip(
-        "other_length",
+        OTHER_LENGTH,
         f"the length {{{written}:of one link}} stands where another length belongs",
         "check which link it belongs to.",
         f"It is {{{right}}}.",

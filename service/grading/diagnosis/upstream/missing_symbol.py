@@ -12,8 +12,9 @@ from service.grading.diagnosis.formulas.formula_repair import WrongEntry
 from service.grading.diagnosis.upstream.slip import Change, SymbolChange
 from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wording import listed
-from service.grading.diagnosis.wrong_value import Mask, differs, finding_on
+from service.grading.diagnosis.wrong_value import UNEXPLAINED, Mask, differs, finding_on
 from service.grading.feedback import Finding
+from service.grading.misconception import check
 from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.samples import Samples
 from service.kinematics.transforms import Numbers
@@ -85,34 +86,75 @@ class Requirements:
         return np.array(depends), np.array(grows)
 
 
-def explain_dependence(case: WrongEntry, required: Required) -> Finding | None:
-    """What a wrong entry lacks, or what it has too much."""
-    written = case.expression.symbols
-    joints = [name for name in required.joints if name in required.symbols - written]
-    if not written and joints:
-        return _constant(case)
-    if required.grows == 1 and required.lengths and _same(case, case.actual, 0 * case.actual):
-        return differs(case, NOT_ZERO)
-    if not written:
+@dataclass(frozen=True)
+class Dependence:
+    """A wrong entry, and what the right one depends on; None where that is not known."""
+
+    case: WrongEntry
+    required: Required | None
+
+    @property
+    def written(self) -> frozenset[str]:
+        """The symbols that the student wrote."""
+        return frozenset(self.case.expression.symbols)
+
+    @property
+    def joints(self) -> list[str]:
+        """The variables of the joints that move the right entry, and not the student's."""
+        known = self.required
+        return (
+            [name for name in known.joints if name in known.symbols - self.written] if known else []
+        )
+
+
+def _is_formula(entry: Dependence) -> bool:
+    return entry.required is not None and bool(entry.written)
+
+
+@check(
+    of=Dependence,
+    rank=10,
+    code="independent_of",
+    means="a joint variable or a length that the entry must change with does not stand in it",
+    example=("planar-rpr-poe", "position", "[0, 0]"),
+    unlike={"1/1": "theta1"},
+)
+def constant(entry: Dependence) -> Finding | None:
+    """A number was written for what moves with a joint."""
+    if entry.written or not entry.joints:
         return None
-    lengths = sorted(required.symbols & required.lengths - written - set(required.joints))
-    return (
-        _wrong_quantity(case, required)
-        or _missing_joints(case, joints)
-        or _extra(case, [name for name in required.joints if name in written - required.symbols])
-        or (_missing_length(case) if lengths else None)
-    )
+    return finding_on(entry.case, "This is a constant, but it must change with the joints.")
 
 
-def _constant(case: WrongEntry) -> Finding:
-    return finding_on(
-        case, "independent_of", "This is a constant, but it must change with the joints."
-    )
+@check(
+    of=Dependence,
+    rank=20,
+    code=UNEXPLAINED,
+    means="wrong, and none of the above",
+    example=("rigid-motion-chain", "point", "[0, 0, 0]"),
+    unlike={"3/1": "h"},
+)
+def zero(entry: Dependence) -> Finding | None:
+    """A 0 was written for a length."""
+    case, required = entry.case, entry.required
+    if required is None or required.grows != 1 or not required.lengths:
+        return None
+    return differs(case, NOT_ZERO) if _same(case, case.actual, 0 * case.actual) else None
 
 
-def _wrong_quantity(case: WrongEntry, required: Required) -> Finding | None:
+@check(
+    of=Dependence,
+    rank=30,
+    code="quantity",
+    when=_is_formula,
+    means="no length where a length is asked for, or a length where a plain number is",
+    example=("planar-rr", "pose", {"1/4": "c1 + c12"}),
+    unlike={"1/4": "a1 c1"},
+)
+def quantity(entry: Dependence) -> Finding | None:
     """A length without a length in it, or a number with one."""
-    if required.grows is None or not required.lengths:
+    case, required = entry.case, entry.required
+    if required is None or required.grows is None or not required.lengths:
         return None
     few = case.samples.subset(1)
     larger = {
@@ -125,42 +167,89 @@ def _wrong_quantity(case: WrongEntry, required: Required) -> Finding | None:
     if _same(case, twice, (1 + required.grows) * once):
         return None
     if required.grows == 0:
-        hint = "A plain number is asked for, but this contains a length."
-        return finding_on(case, "quantity", hint)
+        return finding_on(case, "A plain number is asked for, but this contains a length.")
     if _same(case, twice, once):
-        return finding_on(case, "quantity", "A length is asked for, but this contains none.")
-    hint = "A length is asked for, but not every term here is a length."
-    return finding_on(case, "quantity", hint)
+        return finding_on(case, "A length is asked for, but this contains none.")
+    return finding_on(case, "A length is asked for, but not every term here is a length.")
 
 
-def _missing_joints(case: WrongEntry, names: list[str]) -> Finding | None:
+@check(
+    of=Dependence,
+    rank=40,
+    code="independent_of",
+    when=_is_formula,
+    means="a joint variable or a length that the entry must change with does not stand in it",
+    example=("planar-rr", "pose", {"1/4": "a1 c1"}),
+    unlike={"1/4": "c1 + c12"},
+)
+def missing_joints(entry: Dependence) -> Finding | None:
+    """The variables of joints that move the entry do not stand in it."""
+    case, names = entry.case, entry.joints
     if not names or any(_is_whole(case, name) for name in names):
         return None
     advice = "Check what this joint moves." if len(names) == 1 else "Check what these joints move."
-    return finding_on(
-        case, "independent_of", f"Nothing here depends on {_named(case, names)}. {advice}"
-    )
+    return finding_on(case, f"Nothing here depends on {_named(case, names)}. {advice}")
 
 
-def _missing_length(case: WrongEntry) -> Finding:
-    """Its name is not told: it may be all that is missing."""
-    hint = "A length is missing here: check which lengths have a part in this."
-    return finding_on(case, "independent_of", hint)
-
-
-def _extra(case: WrongEntry, names: Iterable[str]) -> Finding | None:
+@check(
+    of=Dependence,
+    rank=50,
+    code="joint_variable_extra",
+    when=_is_formula,
+    means="a joint angle too many in such a sum, or a joint variable where nothing may change "
+    "with it",
+    example=("planar-rrr-drawn", "links", {"A3.1/3": "c12"}),
+    unlike={"A2.3/4": "1"},
+)
+def extra_joints(entry: Dependence) -> Finding | None:
     """Joint variables in an entry that their joints do not change."""
+    case, required = entry.case, entry.required
+    assert required is not None
     few = case.samples.subset(1)
     now = _value(case, few.values)
     moving = [
         name
-        for name in names
-        if not _same(case, _value(case, {**few.values, name: few.values[name] + PROBE}), now)
+        for name in required.joints
+        if name in entry.written - required.symbols
+        and not _same(case, _value(case, {**few.values, name: few.values[name] + PROBE}), now)
     ]
     if not moving:
         return None
     hint = f"This must not change with {_named(case, moving)}: check which joints move it."
-    return finding_on(case, "joint_variable_extra", hint)
+    return finding_on(case, hint)
+
+
+@check(
+    of=Dependence,
+    rank=60,
+    code="independent_of",
+    when=_is_formula,
+    means="a joint variable or a length that the entry must change with does not stand in it",
+    example=("rigid-motion-chain", "point", {"3/1": "h"}),
+    unlike={"3/1": "-pi/2"},
+)
+def missing_length(entry: Dependence) -> Finding | None:
+    """A length has no part in the entry. Its name is not told: it may be all that is missing."""
+    required = entry.required
+    assert required is not None
+    if not required.symbols & required.lengths - entry.written - set(required.joints):
+        return None
+    hint = "A length is missing here: check which lengths have a part in this."
+    return finding_on(entry.case, hint)
+
+
+@check(
+    of=Dependence,
+    rank=90,
+    code=UNEXPLAINED,
+    means="wrong, and none of the above",
+    example=("planar-rr", "pose", {"1/4": "a1 c1 + 2 a2 c12"}),
+    unlike={"1/2": "s12"},
+)
+def unexplained(entry: Dependence) -> Finding:
+    """No misconception explains the entry."""
+    hint = "This is not right. Check each term: its factor, length, angle and sign."
+    return differs(entry.case, hint)
 
 
 def _is_whole(case: WrongEntry, name: str) -> bool:

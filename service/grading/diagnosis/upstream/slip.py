@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from service.expressions.evaluation.samples import SymbolValues
+from service.grading.misconception import Record
 from service.kinematics.chain import Table
 from service.kinematics.transforms import Numbers
 
@@ -55,7 +56,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Slip(Change):
-    """A slip by its code, with what it changes.
+    """A slip of some kind (``slip_kinds``), with what it changes.
 
     ``clause`` says what is wrong, as a clause that can stand in a list of several, and ``advice``
     what to look at; the ``correction`` is told apart. Symbols stand in braces in them, since the
@@ -63,10 +64,15 @@ class Slip(Change):
     moves with {d3:its variable}".
     """
 
-    code: str
+    kind: Record
     clause: str
     advice: str
     correction: str = ""
+
+    @property
+    def code(self) -> str:
+        """The code of its kind, or the name of a kind that is told beside others only."""
+        return self.kind.name
 
 
 def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:

@@ -7,36 +7,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from service.grading.diagnosis.tables.rows_and_columns import MISSING_LINK, ROW_ORDER
-from service.grading.diagnosis.upstream.joint_slips import HOME_POSITION
 from service.grading.diagnosis.upstream.slip import Slip
+from service.grading.diagnosis.upstream.slip_kinds import HOME_POSITION
 from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
+from service.grading.misconception import Explained, Hypothesis, says
 from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.samples import HALF, Samples
 from service.kinematics.transforms import Numbers
 
-# Of slips that lead to the same answer, the likelier first.
-LIKELIEST = (
-    "joint_variable_sign",
-    HOME_POSITION,
-    "joint_variable_missing",
-    "sign",
-    "distance_left_out",
-    "quarter_turn",
-    "columns_swapped",
-    "parameter_sign",
-    "other_convention",
-    "lengths_exchanged",
-    "other_length",
-    "joint_variable_index",
-    "angle_left_out",
-    "half_turn",
-    "joint_variable_doubled",
-    ROW_ORDER,
-    MISSING_LINK,
-)
 # An axis that is turned moves several entries, and so do wrong signs throughout a table; of one
 # entry alone, the sign is wrong or a term.
 OF_SEVERAL_ENTRIES = {"quarter_turn", "half_turn", "parameter_sign"}
@@ -46,7 +26,7 @@ BEHIND_SIGNS = {"half_turn", "parameter_sign"}
 PARTS_OF = {
     "columns_swapped": {"distance_left_out"},
     "parameter_sign": {"sign"},
-    ROW_ORDER: {"lengths_exchanged"},
+    "row_order": {"lengths_exchanged"},
 }
 # More slips that lead to the same answer are not told one by one.
 MOST_TOLD = 4
@@ -72,9 +52,11 @@ class SlipSearch:
     name: Callable[[str], str] = str
     unwritten: Set[str] = frozenset()
 
-    def finding(self, entries: Mask) -> Finding | None:
-        """The finding on the slips that explain these entries; None where none does."""
-        return _finding(self.explaining(entries), self.name, self._gives_away)
+    def explanation(self, entries: Mask) -> Explained | None:
+        """What the slips say that explain these entries; None where none does."""
+        slips = self.explaining(entries)
+        finding = _finding(slips, self.name, self._gives_away)
+        return None if finding is None else Hypothesis(None, finding, entries, record=slips[0].kind)
 
     def _gives_away(self, symbol: str) -> bool:
         """Whether to name a symbol would answer what is asked.
@@ -104,9 +86,9 @@ class SlipSearch:
             return []
         fits, changes = self._compared(slips, self.actual.shape[-1] // 2)
         sure = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))
-        found_slips = sorted((slips[k] for k in sure), key=lambda slip: LIKELIEST.index(slip.code))
+        found_slips = sorted((slips[k] for k in sure), key=lambda slip: slip.kind.rank)
         # Where all joints stand still, no single one of them is to blame.
-        at_home = [slip for slip in found_slips if slip.code == HOME_POSITION]
+        at_home = [slip for slip in found_slips if slip.kind is HOME_POSITION]
         return at_home or _sure(found_slips)
 
     @cached_property
@@ -133,8 +115,8 @@ def _sure(slips: list[Slip]) -> list[Slip]:
     """
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}
-    if codes != {ROW_ORDER, MISSING_LINK}:
-        covered.add(MISSING_LINK)
+    if codes != {"row_order", "missing_link"}:
+        covered.add("missing_link")
     return [slip for slip in slips if slip.code not in covered]
 
 
@@ -152,7 +134,7 @@ def _finding(
         hint = f"{clauses[0]}: {likeliest.advice}"
         correction = likeliest.correction.format_map(_Names(name, lambda _: False))
     hint = hint.format_map(_Names(name, gives_away))
-    return Finding(likeliest.code, f"{hint[0].upper()}{hint[1:]}", correction)
+    return says(f"{hint[0].upper()}{hint[1:]}", correction)
 
 
 class _Names(dict[str, "_Name"]):

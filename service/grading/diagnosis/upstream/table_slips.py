@@ -23,7 +23,15 @@ from service.grading.diagnosis.upstream.joint_slips import (
     stands_still,
 )
 from service.grading.diagnosis.upstream.slip import CellChange, Slip
+from service.grading.diagnosis.upstream.slip_kinds import (
+    ANGLE_LEFT_OUT,
+    DISTANCE_LEFT_OUT,
+    HALF_TURN,
+    QUARTER_TURN,
+    SIGN,
+)
 from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS, axes_of_row
+from service.grading.misconception import Record
 from service.grading.numerics.tolerances import CONSTANT
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
@@ -101,7 +109,7 @@ def row_slips(
             yield from _angle_slips(cell, constant, moves=moves)
         elif abs(constant) > CONSTANT:
             yield _sign(cell)
-            yield _left_out(cell, "distance_left_out")
+            yield _left_out(cell, DISTANCE_LEFT_OUT)
         if moves and joint is not None and abs(constant) > CONSTANT:
             yield counts_the_wrong_way(joint, axis, CellChange(row, column, -1.0))
             yield stands_still(joint, CellChange(row, column, 0.0))
@@ -116,19 +124,19 @@ def _angle_slips(cell: Cell, constant: float, *, moves: bool) -> Iterator[Slip]:
     if is_quarter or not is_multiple:
         yield _sign(cell)
     if not is_multiple:
-        yield _left_out(cell, "angle_left_out")
+        yield _left_out(cell, ANGLE_LEFT_OUT)
     # Those of a joint's angle are slips of the joint.
     if not moves:
-        yield _turned(cell, "quarter_turn", QUARTER, "a quarter turn (90°)")
-        yield _turned(cell, "quarter_turn", -QUARTER, "a quarter turn (90°)")
+        yield _turned(cell, QUARTER_TURN, QUARTER, "a quarter turn (90°)")
+        yield _turned(cell, QUARTER_TURN, -QUARTER, "a quarter turn (90°)")
         if not is_quarter:
-            yield _turned(cell, "half_turn", np.pi, "half a turn (180°)")
+            yield _turned(cell, HALF_TURN, np.pi, "half a turn (180°)")
 
 
 def _sign(cell: Cell) -> Slip:
     column = cell.column
     return Slip(
-        "sign",
+        SIGN,
         f"{cell.parameter} has the wrong sign",
         f"it is measured {MEASURED[column]}, positive {POSITIVE[column]}.",
         cell.correction,
@@ -136,9 +144,9 @@ def _sign(cell: Cell) -> Slip:
     )
 
 
-def _left_out(cell: Cell, code: str) -> Slip:
+def _left_out(cell: Cell, kind: Record) -> Slip:
     return Slip(
-        code,
+        kind,
         f"{cell.parameter} is left out",
         f"check {cell.link}.",
         cell.correction,
@@ -146,9 +154,9 @@ def _left_out(cell: Cell, code: str) -> Slip:
     )
 
 
-def _turned(cell: Cell, code: str, turn: float, error: str) -> Slip:
+def _turned(cell: Cell, kind: Record, turn: float, error: str) -> Slip:
     return Slip(
-        code,
+        kind,
         f"{cell.parameter} is not right",
         f"compare {cell.axes} in the home position.",
         f"{cell.correction} It is off by {error}.".strip(),

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from service.catalogue import Joint
-from service.grading.feedback import Finding
-from service.grading.misconception import Repaired
+from service.grading.misconception import Repaired, misconception, says
 from service.grading.numerics.joint_motion import joint_counts
 from service.grading.numerics.samples import Samples
 from service.grading.reading.tables.table import IS_ANGLE
@@ -15,8 +14,15 @@ from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 
 
+class Rereadable:
+    """A table that may be meant otherwise as a whole: by the rules or the unit of the other kind.
+
+    A student may hold one of these misconceptions and make another slip, or hold two at once.
+    """
+
+
 @dataclass(frozen=True, slots=True)
-class WrittenTable:
+class WrittenTable(Rereadable):
     """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
 
     Its values are the sum of ``constants`` and ``motion``, the part of the joint variables.
@@ -72,12 +78,19 @@ def written_table(
     return WrittenTable(values - motion, motion, convention, reference if same_size else None)
 
 
+@misconception(
+    of=Rereadable,
+    rank=10,
+    code="other_convention",
+    means="the table is right in the other convention, standard for modified or the other way",
+    example=("three-link-cartesian", "table", {"1/alpha": "0", "3/alpha": "-90deg"}, "degrees"),
+    unlike={"3/d": "0", "3/theta": "d3"},
+)
 def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     """The table was set up by the rules of the other convention."""
     names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
     used, asked = names[table.convention.other], names[table.convention]
-    finding = Finding(
-        "other_convention",
+    finding = says(
         f"The table is right in the {used} convention, but not in the {asked} one, which "
         f"counts here: check which link's a and α belong in row i.",
         f"In the {asked} convention a and α move by one row.",
@@ -85,10 +98,25 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     yield Repaired(replace(table, convention=table.convention.other), finding)
 
 
+@misconception(
+    of=Rereadable,
+    rank=20,
+    code="degrees_as_radians",
+    means="all angles are in degrees, and radians were read",
+    example=(
+        "stanford-arm",
+        "table",
+        (
+            "0, -90, 0, theta1 ↵ 0, 90, d2, theta2 ↵ 0, 0, d3, 0 ↵ 0, -90, 0, theta4 ↵ 0, 90, 0, "
+            "theta5 ↵ 0, 0, d6, theta6"
+        ),
+    ),
+    unlike="0, -pi/2, 0, 0 ↵ 0, pi/2, d2, 0 ↵ 0, 0, d3, 0 ↵ 0, -pi/2, 0, theta4 ↵ 0, pi/2, 0, "
+    "theta5 ↵ 0, 0, d6, theta6",
+)
 def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     """All angles were written in degrees, where radians are read."""
-    finding = Finding(
-        "degrees_as_radians",
+    finding = says(
         "The angles were read in radians, but they fit in degrees: write the unit behind each (deg "
         "or °), or hand the table in with the angle unit degrees.",
     )
@@ -96,10 +124,25 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
         yield Repaired(_rescaled(table, np.pi / 180), finding)
 
 
+@misconception(
+    of=Rereadable,
+    rank=30,
+    code="radians_as_degrees",
+    means="all angles are in radians, and degrees were read",
+    example=(
+        "stanford-arm",
+        "table",
+        (
+            "0, -1.5708, 0, theta1 ↵ 0, 1.5708, d2, theta2 ↵ 0, 0, d3, 0 ↵ 0, -1.5708, 0, theta4 ↵ "
+            "0, 1.5708, 0, theta5 ↵ 0, 0, d6, theta6"
+        ),
+        "degrees",
+    ),
+    unlike={"3/theta": "d6", "6/d": "0"},
+)
 def radians_as_degrees(table: WrittenTable) -> Iterator[RepairedTable]:
     """All angles were written in radians, where degrees are read."""
-    finding = Finding(
-        "radians_as_degrees",
+    finding = says(
         "The angles were read in degrees, but they fit in radians: write the unit behind each "
         "(rad), or hand the table in with the angle unit radians.",
     )
@@ -111,7 +154,3 @@ def _rescaled(table: WrittenTable, factor: float) -> WrittenTable:
     constants = table.constants.copy()
     constants[:, IS_ANGLE] *= factor
     return table.changed(constants)
-
-
-# A student may hold one of these and make another slip, or hold two of them at once.
-MISCONCEPTIONS = (other_convention, degrees_as_radians, radians_as_degrees)

@@ -42,4 +42,4 @@ def test_a_misconception(pair: Pair) -> None:
 
 
 def test_a_right_position_is_left_alone() -> None:
-    assert diagnosed(case(TIP), position.MISCONCEPTIONS) is None
+    assert diagnosed(case(TIP)) is None

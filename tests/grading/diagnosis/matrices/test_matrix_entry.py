@@ -10,10 +10,10 @@ from service.expressions import AngleUnit, Symbol, Vocabulary, read
 from service.grading.diagnosis.formulas.formula_repair import WrongEntry
 from service.grading.diagnosis.matrices import matrix_entry
 from service.grading.diagnosis.wrong_value import undefined
-from service.grading.misconception import Hypothesis, explanation
+from service.grading.misconception import Hypothesis, records_of
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.report import Correction
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair, explained
 from tests.together import together
 
 Misconception = Callable[[WrongEntry], Iterator[Hypothesis[Any]]]
@@ -132,7 +132,7 @@ def test_a_misconception_explains_its_entry(
     misconception: Misconception, written: str, expected: str, correction: str
 ) -> None:
     case = wrong(written, expected)
-    found = explanation(case, (misconception,))
+    found = explained(case, misconception)
     assert found is not None
     [finding] = found.findings
     assert finding.code == misconception.__name__
@@ -166,16 +166,19 @@ LEFT_ALONE: list[tuple[Misconception, str, str]] = [
 def test_a_misconception_leaves_other_entries_alone(
     misconception: Misconception, written: str, expected: str
 ) -> None:
-    assert explanation(wrong(written, expected), (misconception,)) is None
+    assert explained(wrong(written, expected), misconception) is None
 
 
-@pytest.mark.parametrize("misconception", matrix_entry.MISCONCEPTIONS)
+@pytest.mark.parametrize(
+    "misconception",
+    [each.function for each in records_of(WrongEntry) if not each.is_check],
+)
 def test_a_misconception_that_changes_nothing_explains_nothing(
     misconception: Misconception,
 ) -> None:
     """An answer within rounding of the right one, but not allowed to be."""
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
-    assert explanation(case, (misconception,)) is None
+    assert explained(case, misconception) is None
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,6 @@ def test_a_misconception(pair: Pair) -> None:
     ],
 )
 def test_several_turns(factors: tuple[Numbers, ...], said: str) -> None:
-    found = explanation(wrong(*factors), rotation_steps.MISCONCEPTIONS, STEPS)
+    found = explanation(wrong(*factors), STEPS, Step)
     assert found is not None
     assert found.findings[0].hint.startswith(said)

@@ -7,7 +7,7 @@ import pytest
 
 from service.grading.diagnosis.matrices import whole_matrix
 from service.grading.diagnosis.matrices.matrix_case import MatrixCase
-from service.grading.diagnosis.matrices.whole_matrix import explain
+from service.grading.diagnosis.matrices.whole_matrix import WrongAxes, explain
 from service.grading.diagnosis.motions.link_products import Chain
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers, inverse
@@ -78,8 +78,8 @@ PAIRS = [
         wrong_pose(np.array([[1], [1], [1], [2]]) * POSE),
         wrong_pose(np.array([[1], [1], [2], [1]]) * POSE),
     ),
-    Pair(whole_matrix.left_handed_rotation, -R, R),
-    Pair(whole_matrix.rotation_not_orthonormal, 2 * R, -R),
+    Pair(whole_matrix.left_handed_rotation, WrongAxes(-R, []), WrongAxes(R, [])),
+    Pair(whole_matrix.rotation_not_orthonormal, WrongAxes(2 * R, []), WrongAxes(-R, [])),
 ]
 
 

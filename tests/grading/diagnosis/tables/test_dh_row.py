@@ -64,7 +64,7 @@ def test_a_misconception(pair: Pair) -> None:
 
 
 def test_a_right_row_is_left_alone() -> None:
-    assert diagnosed(case(list(ROW), FULL), dh_row.MISCONCEPTIONS) is None
+    assert diagnosed(case(list(ROW), FULL)) is None
 
 
 @pytest.mark.parametrize(

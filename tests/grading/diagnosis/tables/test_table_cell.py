@@ -5,7 +5,7 @@ import pytest
 
 from service.catalogue import Joint
 from service.expressions import Symbol, Vocabulary, read
-from service.grading.diagnosis.tables import table_cell
+from service.grading.diagnosis.tables import cell_variables, table_cell
 from service.grading.diagnosis.tables.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import WrongCell, undefined
 from service.grading.numerics.joint_motion import coefficients
@@ -57,40 +57,44 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
 
 
 # The codes of those that have another name.
-CODES = {"joint_variable_converted": "degrees_as_radians"}
+CODES = {"cell_in_degrees": "degrees_as_radians"}
 PAIRS = [
     Pair(function, wrong(*explained), wrong(*left_alone), CODES.get(function.__name__, ""))
     for function, explained, left_alone in (
-        (table_cell.joint_variable_absent, ("theta", 3, "theta3", "0"), ("theta", 3, "q2", "0")),
+        (
+            cell_variables.joint_variable_absent,
+            ("theta", 3, "theta3", "0"),
+            ("theta", 3, "q2", "0"),
+        ),
         (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
         (
-            table_cell.joint_variable_missing,
+            cell_variables.joint_variable_missing,
             ("theta", 1, "pi/2", "q1 + pi/2"),
             ("theta", 1, "q2", "q1"),
         ),
-        (table_cell.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
+        (cell_variables.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
         (
-            table_cell.joint_variable_index,
+            cell_variables.joint_variable_index,
             ("theta", 1, "q2", "q1"),
             ("theta", 1, "q1 + q2", "q1"),
         ),
         (
-            table_cell.joint_variable_doubled,
+            cell_variables.joint_variable_doubled,
             ("theta", 2, "2*q2", "q2"),
             ("theta", 2, "-q2", "q2"),
         ),
         (
-            table_cell.joint_variable_converted,
+            cell_variables.cell_in_degrees,
             ("theta", 2, "180*q2/pi + 90deg", "q2 + 90deg"),
             ("theta", 2, "90*q2/pi + 90deg", "q2 + 90deg"),
         ),
-        (table_cell.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
+        (cell_variables.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
         (
-            table_cell.joint_variable_extra,
+            cell_variables.joint_variable_extra,
             ("theta", 1, "q1 + q2", "q1"),
             ("theta", 1, "-q1", "q1"),
         ),
-        (table_cell.wrong_quantity, ("d", 1, "90deg", "a1"), ("d", 1, "90", "a1")),
+        (cell_variables.wrong_quantity, ("d", 1, "90deg", "a1"), ("d", 1, "90", "a1")),
         (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
         (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
         (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from service.catalogue import Joint
 from service.grading.diagnosis.tables import whole_table
-from service.grading.diagnosis.tables.whole_table import MISCONCEPTIONS, WrongTable, explaining
+from service.grading.diagnosis.tables.whole_table import WrongTable, explaining
 from service.grading.judging.own_frames import written_table
 from service.grading.judging.own_frames.written_table import WrittenTable
+from service.grading.misconception import hypotheses_of, records_of
 from service.grading.numerics.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
@@ -171,7 +172,9 @@ def test_its_finding_is_told(pair: Pair) -> None:
 
 
 def test_the_order_of_the_misconceptions() -> None:
-    assert [pair.function for pair in PAIRS] == list(MISCONCEPTIONS)
+    assert [pair.function for pair in PAIRS] == [
+        record.function for record in records_of(WrittenTable)
+    ]
 
 
 def test_two_misconceptions_at_once() -> None:
@@ -189,5 +192,4 @@ def codes(case: WrongTable, *, combine: bool) -> list[str]:
 
 def test_a_table_of_one_row() -> None:
     one = WrittenTable(right()[:1], 0 * right()[:1], Convention.STANDARD, right()[:1])
-    for misconception in MISCONCEPTIONS:
-        assert all(each.answer.values.shape == (1, 4, SAMPLES) for each in misconception(one))
+    assert all(each.answer.values.shape == (1, 4, SAMPLES) for each in hypotheses_of(one))

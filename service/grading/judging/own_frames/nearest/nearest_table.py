@@ -30,7 +30,7 @@ from service.grading.judging.own_frames.row_roles import (
 )
 from service.grading.judging.own_frames.validity import targets_of, valid_tables
 from service.grading.judging.own_frames.written_table import (
-    MISCONCEPTIONS,
+    Rereadable,
     WrittenTable,
     written_table,
 )
@@ -85,7 +85,7 @@ def _as_intended(
         return None
     exercise, samples = grading.exercise, grading.samples
     handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
-    for repaired in hypotheses_of(handed_in, MISCONCEPTIONS):
+    for repaired in hypotheses_of(handed_in, Rereadable):
         table = repaired.answer
         [valid] = valid_tables(
             table.values[None], roles, table.convention, freedom, exercise, samples, INTENDED_POSE

@@ -1,0 +1,146 @@
+"""The kinds of slips that are made before an answer is written down, likeliest first."""
+
+from service.grading.diagnosis.upstream.slip import Slip
+from service.grading.misconception import register
+
+JOINT_VARIABLE_SIGN = register(
+    of=Slip,
+    rank=10,
+    code="joint_variable_sign",
+    means="a joint counts the wrong way round or along its axis",
+    example=("planar-rr", "position", "[a1 c1 + a2 cos(q1 - q2), a1 s1 + a2 sin(q1 - q2)]"),
+    unlike="[a1 c1 - a2 c12, a1 s1 - a2 s12]",
+)
+HOME_POSITION = register(
+    of=Slip,
+    rank=20,
+    code="home_position",
+    means="all joints stand still",
+    example=("planar-rr", "position", "[a1 + a2, 0]"),
+    unlike={"2/1": "0"},
+)
+JOINT_VARIABLE_MISSING = register(
+    of=Slip,
+    rank=30,
+    code="joint_variable_missing",
+    means="a joint stands still: its variable is left out",
+    example=("planar-rr", "position", "[(a1 + a2) c1, (a1 + a2) s1]"),
+    unlike="[a1 c1, a1 s1]",
+)
+SIGN = register(
+    of=Slip,
+    rank=40,
+    code="sign",
+    means="the wrong sign of a length or an angle of the table",
+    example=("planar-rr", "position", "[a1 c1 - a2 c12, a1 s1 - a2 s12]"),
+    unlike="[a1 c1, a1 s1]",
+)
+DISTANCE_LEFT_OUT = register(
+    of=Slip,
+    rank=50,
+    code="distance_left_out",
+    means="a length of the table is left out",
+    example=("planar-rr", "position", "[a1 c1, a1 s1]"),
+    unlike="[a1 c1 - a2 c12, a1 s1 - a2 s12]",
+)
+QUARTER_TURN = register(
+    of=Slip,
+    rank=60,
+    code="quarter_turn",
+    means="an angle of the table, or the zero position of a joint, is off by 90°",
+    example=("planar-rr", "position", "[a1 c1 - a2 s12, a1 s1 + a2 c12]"),
+    unlike={"1/1": "a1*c1 - a2*c12"},
+)
+COLUMNS_SWAPPED = register(
+    of=Slip,
+    rank=70,
+    code="columns_swapped",
+    means="a and d are exchanged, throughout or in one row",
+    example=("planar-rr", "position", "[0, 0]"),
+    unlike={"2/1": "0"},
+)
+PARAMETER_SIGN = register(
+    of=Slip,
+    rank=80,
+    code="parameter_sign",
+    means="one of a, α, d, θ has the wrong sign in every row",
+    example=("three-link-cartesian", "position", "[-d3, -d2, d1]"),
+    unlike="[d1, d2, d3]",
+)
+OTHER_CONVENTION = register(
+    of=Slip,
+    rank=90,
+    code="other_convention",
+    means="a table of one convention was multiplied with the link transform of the other",
+    example=(
+        "spatial-rrr",
+        "links",
+        (
+            "[c1, -s1, 0, R; 0, 0, -1, 0; s1, c1, 0, 0; 0, 0, 0, 1] ↵ [c2, -s2, 0, L1; s2, c2, 0, "
+            "0; 0, 0, 1, 0; 0, 0, 0, 1] ↵ [c3, -s3, 0, L2; s3, c3, 0, 0; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"A1.2/4": "R*s2"},
+)
+LENGTHS_EXCHANGED = register(
+    of=Slip,
+    rank=100,
+    code="lengths_exchanged",
+    means="two lengths stand in each other's places",
+    example=("planar-rr", "position", "[a2 c1 + a1 c12, a2 s1 + a1 s12]"),
+    unlike={"1/1": "a1*c1 - a2*c12"},
+)
+OTHER_LENGTH = register(
+    of=Slip,
+    rank=110,
+    code="other_length",
+    means="one length stands in the place of another, too",
+    example=("planar-rr", "position", "[a1 c1 + a1 c12, a1 s1 + a1 s12]"),
+    unlike={"1/1": "a1*c1 - a2*c12"},
+)
+JOINT_VARIABLE_INDEX = register(
+    of=Slip,
+    rank=120,
+    code="joint_variable_index",
+    means="a joint moves by the variable of another joint",
+    example=("planar-rr", "position", "[a1 c1 + a2 cos(2 q1), a1 s1 + a2 sin(2 q1)]"),
+    unlike="[(a1 + a2) c1, (a1 + a2) s1]",
+)
+ANGLE_LEFT_OUT = register(
+    of=Slip,
+    rank=130,
+    code="angle_left_out",
+    means="an angle of the table that is no multiple of 90° is left out",
+    example=("arm", "position", "[a3 c1 c3 + b3 s1, a3 s1 c3 - b3 c1, a3 s3 + d2]"),
+    unlike="[a3 c1 c3, a3 s1 c3, a3 s3 + d2]",
+)
+HALF_TURN = register(
+    of=Slip,
+    rank=140,
+    code="half_turn",
+    means="an angle of the table, or the zero position of a joint, is off by 180°",
+    example=(
+        "planar-rr",
+        "pose",
+        "[-c12, s12, 0, a1*c1 - a2*c12; -s12, -c12, 0, a1*s1 - a2*s12; 0, 0, 1, 0; 0, 0, 0, 1]",
+    ),
+    unlike={"3/2": "1", "3/3": "0"},
+)
+JOINT_VARIABLE_DOUBLED = register(
+    of=Slip,
+    rank=150,
+    code="joint_variable_doubled",
+    means="a joint moves twice as far as its variable",
+    example=("planar-rr", "position", "[a1 c1 + a2 cos(q1 + 2 q2), a1 s1 + a2 sin(q1 + 2 q2)]"),
+    unlike="[a1 c1 + a2 cos(2 q1), a1 s1 + a2 sin(2 q1)]",
+)
+ROW_ORDER = register(
+    of=Slip,
+    rank=160,
+    code="row_order",
+    means="two rows, or their link transforms, are exchanged",
+    example=("turret", "position", "[a3 c1 c3, a3 s1 c3, a3 s3]"),
+    unlike="[a3 c1 c2, a3 s1 c2, a3 s2]",
+)
+# It is told beside rows in another order only; by itself as such a product (``link_products``).
+MISSING_LINK = register(of=Slip, rank=170, name="missing_link")

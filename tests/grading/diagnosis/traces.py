@@ -1,0 +1,120 @@
+"""Which records are asked about an answer, and which of them explain it."""
+
+import json
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, cast
+from unittest.mock import patch
+
+from service.catalogue import Exercise, load_catalogue
+from service.expressions import AngleUnit
+from service.grading import FeedbackLevel, Submission, grade
+from service.grading.misconception import Hypothesis, Record
+from service.solutions import solve
+from tests.grading.support.exercise_texts import all_codes
+from tests.shipped import shipped_exercises
+
+END = " ↵ "
+MADE = Path(__file__).parents[2] / "docs" / "sentence_examples.toml"
+
+
+@dataclass
+class Trace:
+    """The records that were asked, those that explained something, and the codes of the report."""
+
+    asked: set[Record] = field(default_factory=set)
+    told: set[Record] = field(default_factory=set)
+    codes: set[str] = field(default_factory=set)
+    is_right: bool = False
+
+
+@contextmanager
+def traced() -> Iterator[Trace]:
+    """A trace that is filled in while answers are graded."""
+    trace = Trace()
+    findings = Hypothesis.findings.fget  # type: ignore[attr-defined]
+    hypotheses, verdict = Record.hypotheses, Record.verdict
+
+    def told(self: Hypothesis[Any]) -> Any:
+        if self.record is not None:
+            trace.told.add(self.record)
+        return findings(self)
+
+    def asked(self: Record, source: object) -> Any:
+        trace.asked.add(self)
+        return hypotheses(self, source)
+
+    def checked(self: Record, source: object) -> Any:
+        trace.asked.add(self)
+        return verdict(self, source)
+
+    with (
+        patch.object(Hypothesis, "findings", property(told)),
+        patch.object(Record, "hypotheses", asked),
+        patch.object(Record, "verdict", checked),
+    ):
+        yield trace
+
+
+@cache
+def model_answers(exercise_id: str) -> Mapping[str, Any]:
+    """The model answer of each part of an exercise."""
+    return {part.part: part.answer for part in solve(exercises()[exercise_id]).parts}
+
+
+@cache
+def exercises() -> Mapping[str, Exercise]:
+    """The exercises that come with the program, and those that are made for some examples."""
+    made = tomllib.loads(MADE.read_text(encoding="utf-8"))["made"]
+    with TemporaryDirectory() as folder:
+        for name, text in made.items():
+            head = f'title = "{name}"\nsource = "made"\nstatement = "Made for an example."\n'
+            (Path(folder) / f"{name}.toml").write_text(head + text, encoding="utf-8")
+        return {**shipped_exercises(), **load_catalogue(Path(folder))}
+
+
+def answered(exercise_id: str, part_id: str, answer: Any) -> Any:
+    """Return an answer of a record as a student would send it."""
+    if isinstance(answer, str):
+        return answer.replace(END, "\n")
+    if not (isinstance(answer, dict) and any("/" in place for place in answer)):
+        return answer
+    rows = json.loads(json.dumps(model_answers(exercise_id)[part_id]))
+    for place, written in answer.items():
+        row, _, cell = place.partition("/")
+        _write(rows, row, cell, written)
+    return rows
+
+
+def _write(rows: Any, row: str, cell: str, written: str) -> None:
+    if isinstance(rows, dict):
+        rows = rows["rows"]
+    if row.startswith("A"):
+        matrix, _, row = row[1:].partition(".")
+        rows = rows[int(matrix) - 1]
+    target = rows[int(row) - 1]
+    if isinstance(target, dict):
+        assert cell in target
+        target[cell] = written
+    elif isinstance(target, list):
+        target[int(cell) - 1] = written
+    else:
+        assert cell == "1"
+        rows[int(row) - 1] = written
+
+
+def trace_of(exercise_id: str, part_id: str, answer: Any, unit: str = "radians") -> Trace:
+    """Grade an answer of a record; return its trace."""
+    exercise = exercises()[exercise_id]
+    sent = {part_id: answered(exercise_id, part_id, answer)}
+    with traced() as trace:
+        report = grade(exercise, Submission(sent, cast("AngleUnit", unit), FeedbackLevel.FULL))
+    [part] = (part for part in report.parts if part.part == part_id)
+    trace.codes = all_codes(part)
+    trace.is_right = part.points == part.max_points
+    return trace
