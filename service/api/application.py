@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
@@ -24,7 +24,8 @@ from service.api.http.lookup import Catalogue
 from service.api.http.request_context import HEADER
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
-from service.api.permissions.authentication import DoorMiddleware, RequestRates
+from service.api.permissions.authentication import AuthenticationMiddleware, RequestRates
+from service.api.permissions.rights import require_entries
 from service.api.recording import listing as recorded
 from service.api.recording import managing as tutoring
 from service.api.recording import new_attempts as attempts
@@ -123,7 +124,7 @@ class _Api(FastAPI):
         if self._turns is not None:
             app = self._turns(app)
         if self._access.keys is not None or self._rates is not None:
-            app = DoorMiddleware(app, self._access, self._rates)
+            app = AuthenticationMiddleware(app, self._access, self._rates)
         app = BoundaryMiddleware(app)
         if self._cors_origins:
             app = CORSMiddleware(
@@ -167,6 +168,7 @@ def application(
     """
     access = access or Access()
     app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
+    permitted = [Depends(access.permit)]
     problems.install(app, None if pages is None else pages.of_problem)
     for router in (
         exercises.routes(catalogue, feedback),
@@ -179,12 +181,13 @@ def application(
         figures.routes(catalogue),
         frames.routes(catalogue, access),
         health.routes(catalogue, store),
-        model_solutions.routes(catalogue, access),
+        model_solutions.routes(catalogue),
         tokens.routes(catalogue, access),
     ):
-        app.include_router(router, responses=other_failures())
+        app.include_router(router, responses=other_failures(), dependencies=permitted)
         app.interface += (route for route in router.routes if isinstance(route, APIRoute))
-    app.include_router(reference.routes())
+    app.include_router(reference.routes(), dependencies=permitted)
     if pages is not None:
-        app.include_router(pages.routes)
+        app.include_router(pages.routes, dependencies=permitted)
+    require_entries(app.router)
     return app

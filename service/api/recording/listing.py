@@ -14,7 +14,7 @@ from service.api.document.openapi import MAY_NEED_KEY, refusals
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import invalid
 from service.api.permissions.access import Access
-from service.api.permissions.access_problems import other_learner
+from service.api.permissions.access_problems import access_problem
 from service.api.recording.store import ask, private, private_json, unknown_attempt
 from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
 from service.attempts.errors import BadCursorError
@@ -98,7 +98,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
 
         To a learner with a token only the learner's own.
         """
-        caller = access.require_reading(request, exercise)
+        caller = access.caller(request)
         wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
         try:
             shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
@@ -124,7 +124,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
 
         To the learner with a token only answers and report.
         """
-        caller = access.require_reading_one(request)
+        caller = access.caller(request)
         found = await ask(store, lambda it: it.history(attempt_id))
         if found is None or not _may_read(caller, found):
             raise unknown_attempt()
@@ -140,10 +140,9 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         openapi_extra=MAY_NEED_KEY,
     )
     async def show_statistics(
-        request: Request, exercise_id: ExerciseId, since: Since = None, until: Until = None
+        exercise_id: ExerciseId, since: Since = None, until: Until = None
     ) -> Response:
         """Count recorded attempts for tutors: who is right where, which mistakes are common."""
-        access.require_tutor(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
         figures = await ask(store, lambda it: it.statistics(wanted))
@@ -155,7 +154,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
 def _readable(caller: Caller, learner: str | None) -> str | None:
     """Whose attempts are listed, where those of ``learner`` are asked for. Raises ProblemError."""
     if caller.learner is not None and learner not in (None, caller.learner):
-        raise other_learner()
+        raise access_problem("other-learner")
     return caller.learner or learner
 
 

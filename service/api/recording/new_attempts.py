@@ -16,7 +16,7 @@ from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, requ
 from service.api.http.problems import ProblemError, store_down
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
-from service.api.permissions.access_problems import other_learner
+from service.api.permissions.access_problems import access_problem
 from service.api.turns import giving_way
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.errors import StoreDownError
@@ -80,13 +80,14 @@ def routes(
         Attempts are counted and limited as the exercise says; one in which nothing could be read
         does not count. What is answered with 201 is not lost, whatever happens to the service.
         """
-        caller = access.require_recording(request, exercise_id, origins)
+        access.require_allowed_origin(request, origins)
         if store is None:
             raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(AttemptRequest, request)
+        caller = access.caller(request)
         if caller.learner not in (None, body.learner):
-            raise other_learner()
+            raise access_problem("other-learner")
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
         attempting = _Attempting(
             exercise, body, feedback, store, caller.owner, idempotency_key, monitor

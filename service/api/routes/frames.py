@@ -8,7 +8,6 @@ from typing import Any, Final
 import numpy as np
 from fastapi import APIRouter, Request, Response
 
-from service.access.caller import Scope
 from service.api.document.openapi import posting
 from service.api.http.bodies import body_as
 from service.api.http.lookup import Catalogue, Location, require_exercise
@@ -83,9 +82,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         A table may be wrong, or half written: its frames go as far as it can be read. Nothing of a
         mechanism answers the exercise: no frames, no parameters, only what a picture shows.
         """
-        caller = access.require(request, Scope.GRADE)
         body = await body_as(FramesRequest, request)
-        require_reach(caller, body.exercise)
+        require_reach(access.caller(request), body.exercise)
         answer = await giving_way(request, partial(_answered, catalogue, body, mechanisms))
         content = answer.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")

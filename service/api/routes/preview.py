@@ -5,7 +5,6 @@ from typing import Final
 
 from fastapi import APIRouter, Request, Response
 
-from service.access.caller import Scope
 from service.api.document.openapi import posting
 from service.api.http.bodies import body_as
 from service.api.http.lookup import Catalogue, require_exercise, require_parts
@@ -113,9 +112,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
 
         With `exercise` and `part` the text may also be a whole pasted table or matrix.
         """
-        caller = access.require(request, Scope.GRADE)
         body = await body_as(PreviewRequest, request)
-        require_reach(caller, body.exercise)
+        require_reach(access.caller(request), body.exercise)
         exercise = _exercise(catalogue, body)
         content = await giving_way(request, partial(_shown, body, exercise))
         return Response(content, media_type="application/json")
@@ -133,9 +131,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         They are read as a grading reads them: a star marks a joint's variable in a table. Entries
         beyond the work that one submission may cost are shown as text only.
         """
-        caller = access.require(request, Scope.GRADE)
         body = await body_as(PreviewManyRequest, request)
-        require_reach(caller, body.exercise)
+        require_reach(access.caller(request), body.exercise)
         exercise = require_exercise(catalogue, body.exercise)
         require_parts(exercise, [(body.part, ("part",))])
         shown = await giving_way(request, partial(preview_many, body, exercise))

@@ -18,7 +18,7 @@ _HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(frame_sr
 
 def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> APIRouter:
     """The page to choose files on, the frame of the reports, and the grading."""
-    router = APIRouter()
+    router = APIRouter(prefix="/tutor")
 
     @router.get("/class")
     async def class_form() -> Response:

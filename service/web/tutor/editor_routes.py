@@ -30,7 +30,7 @@ def editor_routes(
     checking: Checking,
 ) -> APIRouter:
     """The editor, the check of its text, and the writing of its file."""
-    router = APIRouter()
+    router = APIRouter(prefix="/tutor")
 
     @router.get("/editor")
     async def editor(request: Request, exercise: str | None = None) -> Response:
