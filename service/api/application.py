@@ -10,7 +10,7 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api.document.openapi import HEADING, completed, other_failures, work_out_schemas
+from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, work_out_schemas
 from service.api.http import problems
 from service.api.http.boundary import (
     EXPOSED_HEADERS,
@@ -184,7 +184,7 @@ def application(
         model_solutions.routes(catalogue),
         tokens.routes(catalogue, access),
     ):
-        app.include_router(router, responses=other_failures(), dependencies=permitted)
+        app.include_router(router, responses=OTHER_FAILURES, dependencies=permitted)
         app.interface += (route for route in router.routes if isinstance(route, APIRoute))
     app.include_router(reference.routes(), dependencies=permitted)
     if pages is not None:

@@ -5,7 +5,6 @@ The examples are files, not computed at the start; a test holds them against the
 
 import json
 from collections.abc import Mapping
-from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any, Final
@@ -26,6 +25,11 @@ _REFUSALS = {
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
     HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached, or did not confirm.",
+}
+# The responses of every operation for the statuses that it does not name.
+OTHER_FAILURES: Final[dict[int | str, dict[str, Any]]] = {
+    "4XX": {"description": "Any other refusal of the request."},
+    "5XX": {"description": "The service has failed, or has no room for the request now."},
 }
 _REFUSED_BODIES: Final = (
     HTTPStatus.BAD_REQUEST,
@@ -126,41 +130,27 @@ def answers(
 
 
 def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI responses for the ways in which a request may be refused."""
-    return {int(status): _problem(_REFUSALS[status]) for status in statuses}
-
-
-def other_failures() -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI responses for every status that a route does not name."""
-    return {
-        "4XX": _problem("Any other refusal of the request."),
-        "5XX": _problem("The service has failed, or has no room for the request now."),
-    }
-
-
-def _problem(description: str) -> dict[str, Any]:
-    return {"description": description, "content": {MEDIA_TYPE: {"schema": _problem_schema()}}}
-
-
-@cache
-def _problem_schema() -> dict[str, Any]:
-    # Worked out for each response, it took a quarter of the application's start.
-    return ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
-
-
-def work_out_schemas() -> None:
-    """Fill in the schemas of all bodies, which no start of the service waits for."""
-    for body, schema in _BODY_SCHEMAS.items():
-        schema.update(body.model_json_schema(ref_template=_REF_TEMPLATE))
+    """Return the OpenAPI responses for the ways in which a request may be refused."""
+    return {int(status): {"description": _REFUSALS[status]} for status in statuses}
 
 
 def completed(document: dict[str, Any]) -> dict[str, Any]:
-    """FastAPI's document with what generators of clients and linters ask for besides."""
-    tidy_schemas(document)
-    document["components"]["securitySchemes"] = _SCHEMES
-    # Unless an operation says otherwise, whoever can reach the service may use it.
-    document["security"] = []
+    """Return FastAPI's document with the content of problems, tidy schemas and the use of keys."""
+    problem = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     for path in document["paths"].values():
         for operation in path.values():
+            for status, response in operation["responses"].items():
+                if not status.startswith("2"):
+                    response["content"] = {MEDIA_TYPE: {"schema": problem}}
             operation["responses"] = dict(sorted(operation["responses"].items()))
+    tidy_schemas(document)
+    document["components"]["securitySchemes"] = _SCHEMES
+    # Operations need no key unless they say so themselves.
+    document["security"] = []
     return document
+
+
+def work_out_schemas() -> None:
+    """Fill in the schemas of all bodies; done for the document, so that no start waits for it."""
+    for body, schema in _BODY_SCHEMAS.items():
+        schema.update(body.model_json_schema(ref_template=_REF_TEMPLATE))
