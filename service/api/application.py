@@ -1,4 +1,4 @@
-"""The application: routes, limits and headers put together."""
+"""The application: all routes, limits and headers."""
 
 import gc
 from collections.abc import AsyncIterator, Callable
@@ -10,16 +10,16 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, work_out_schemas
+from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, fill_body_schemas
 from service.api.http import problems
 from service.api.http.boundary import (
     EXPOSED_HEADERS,
     BoundaryMiddleware,
-    NamingMiddleware,
-    RefusalNoting,
-    RouteNoting,
+    RefusedRouteMiddleware,
+    RequestIdMiddleware,
+    RouteMiddleware,
 )
-from service.api.http.compression import PackedGets
+from service.api.http.compression import CompressedGets
 from service.api.http.lookup import Catalogue
 from service.api.http.request_context import HEADER
 from service.api.monitor import Monitor
@@ -48,16 +48,16 @@ from service.version import VERSION
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
-# What stands around an application.
+# Puts a layer around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
 
 
 def _freeze_gc() -> None:
-    """Exempt the program's own objects from the garbage collector's rounds.
+    """Exempt all objects that exist now from garbage collection.
 
-    A body of many small lists sets off full rounds; over the program itself, too, they took twice
-    as long as reading the body. A process that starts without the collector has it from here on,
-    and no first round, which takes as long as the ones it was spared.
+    A body of many small lists triggers full collections. If these also visit the objects of the
+    program, they take twice as long as reading the body. If the process started with the
+    collector off, it is turned on here, without a first collection.
     """
     if gc.isenabled():
         gc.collect()
@@ -66,7 +66,7 @@ def _freeze_gc() -> None:
 
 
 class _Api(FastAPI):
-    """FastAPI with its outermost layers outside the framework's own error pages and limit."""
+    """FastAPI with layers around its own error pages and its own limit of bodies."""
 
     def __init__(
         self,
@@ -85,7 +85,7 @@ class _Api(FastAPI):
         self._rates = rates
         self._monitor = monitor
         self._pages = pages
-        # The routes for programs, by which refusals are counted.
+        # The routes for programs, to which refusals are counted.
         self.interface: list[APIRoute] = []
         super().__init__(
             **HEADING,
@@ -112,15 +112,17 @@ class _Api(FastAPI):
             self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, packed answers, turns between clients, the door, the boundary.
+        """Return the application with its layers.
 
-        Then CORS: a page may read problems, too. Outermost, so that whatever is answered has one,
-        the id of the request.
+        From the inside: FastAPI's own layers, compression, turns between clients,
+        authentication, and the boundary. CORS comes around these, so that pages of other
+        origins may read problems, too. The request id comes last, so that every answer has
+        one.
         """
         app = super().build_middleware_stack()
         if self._monitor is not None:
-            app = RouteNoting(app)
-        app = PackedGets(app)
+            app = RouteMiddleware(app)
+        app = CompressedGets(app)
         if self._turns is not None:
             app = self._turns(app)
         if self._access.keys is not None or self._rates is not None:
@@ -135,13 +137,13 @@ class _Api(FastAPI):
                 expose_headers=EXPOSED_HEADERS,
             )
         if self._monitor is not None:
-            app = self._monitor.watched(RefusalNoting(app, self.interface))
-        return NamingMiddleware(app)
+            app = self._monitor.watched(RefusedRouteMiddleware(app, self.interface))
+        return RequestIdMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
-        """The description of the interface, made at the first call."""
+        """Return the OpenAPI document; the first call makes it."""
         if self.openapi_schema is None:
-            work_out_schemas()
+            fill_body_schemas()
             self.openapi_schema = completed(super().openapi())
         return self.openapi_schema
 
@@ -158,13 +160,13 @@ def application(
     pages: WebPages | None = None,
     monitor: Monitor | None = None,
 ) -> FastAPI:
-    """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
+    """Return the HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    ``access`` says who may do what; without it anybody may grade and record, and nobody see what
-    tutors see. ``rates`` count requests. Reports tell no more than ``feedback``, nor than their
-    exercise allows. ``turns`` decides who comes next, ``pages`` are the web pages of the service
-    itself. Attempts are recorded in ``store``; without one none are. ``monitor`` counts what
-    happens.
+    ``access`` checks callers; without it everybody may grade and record, and nobody sees what
+    tutors see. ``rates`` limits the number of requests. Reports have at most the level
+    ``feedback``, and at most that of their exercise. ``turns`` is a layer that orders requests,
+    and ``pages`` are the service's web pages. Attempts are recorded in ``store``, if there is
+    one. ``monitor`` counts requests and reports.
     """
     access = access or Access()
     app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
@@ -174,7 +176,7 @@ def application(
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback, access, monitor),
         attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
-        # Before the next one, to which /v1/attempts/export would be the id of an attempt.
+        # Before the next router, for which the "export" of /v1/attempts/export is an attempt's id.
         tutoring.routes(catalogue, feedback, store, access),
         recorded.routes(catalogue, store, access),
         preview.routes(catalogue, access),

@@ -30,7 +30,7 @@ class AccessProblem(NamedTuple):
     challenges: Sequence[str] = ()
 
 
-# By the end of their type.
+# The problems by the ends of their types.
 ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
     "key-needed": AccessProblem(
         HTTPStatus.UNAUTHORIZED,

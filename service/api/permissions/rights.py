@@ -60,7 +60,7 @@ _solutions = partial(Right, Scope.TUTOR, WithoutKeys.SOLUTIONS)
 _attempts = partial(Right, Scope.TUTOR, WithoutKeys.ATTEMPTS)
 _change = partial(Right, Scope.TUTOR, WithoutKeys.THIS_MACHINE)
 
-# By method and path, as in the log and in the metrics.
+# The right of each route, by its method and the pattern of its path.
 RIGHTS: Final[Mapping[str, Right]] = {
     "GET /": _EVERYBODY,
     "GET /play": _EVERYBODY,

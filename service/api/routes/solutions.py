@@ -9,7 +9,7 @@ from pydantic import TypeAdapter
 
 from service.api.document.openapi import MAY_NEED_KEY, answers
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.http.memoized import Kept
+from service.api.http.memoized import MemoizedResults
 from service.catalogue import Exercise
 from service.solutions import ModelSolution, solve
 
@@ -21,9 +21,9 @@ def _solved(exercise: Exercise) -> bytes:
 
 
 def routes(catalogue: Catalogue) -> APIRouter:
-    """The route that shows model solutions, or says how to have them shown."""
+    """Return the route that shows model solutions."""
     router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
-    solutions = Kept()
+    solutions = MemoizedResults()
 
     @router.get(
         "/{exercise_id}/solution",

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
-from service.api.http.lookup import Catalogue, exercise_or_404, reached
+from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
 from service.api.permissions.access import require_reach
 from service.web.assets import Assets
 from service.web.page_headers import PRIVATE_HEADERS
@@ -30,7 +30,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
         """The list of attempts; with a key for certain exercises, of one of them."""
         caller = access.caller(request)
         require_reach(caller, exercise or None)
-        shown = reached(catalogue, caller)
+        shown = reachable_exercises(catalogue, caller)
         return answer(attempts_page(shown, assets, of_all=caller.exercises is None), "../")
 
     @router.get("/attempts/{attempt_id}")

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
 from service.api.http.bounded_work import BoundedWork
-from service.api.http.chunked_response import PiecewiseResponse
+from service.api.http.chunked_response import ChunkedResponse
 from service.api.http.lookup import Catalogue
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
@@ -45,6 +45,6 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
         """The folder of a class as a ZIP archive; nothing of it is kept."""
         packed = await request.body()
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue))
-        return PiecewiseResponse(content, headers=NO_STORE, media_type="application/zip")
+        return ChunkedResponse(content, headers=NO_STORE, media_type="application/zip")
 
     return router

@@ -10,9 +10,9 @@ from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
 from service.api.http.bounded_work import BoundedWork
-from service.api.http.chunked_response import PiecewiseResponse
-from service.api.http.lookup import Catalogue, exercise_or_404, reached
-from service.api.http.memoized import Kept
+from service.api.http.chunked_response import ChunkedResponse
+from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
+from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
@@ -57,7 +57,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
     async def home(request: Request) -> Response:
         """What there is for tutors; with a key for certain exercises, for tutors of these."""
         caller = access.caller(request)
-        shown = reached(catalogue, caller)
+        shown = reachable_exercises(catalogue, caller)
         content = tutor_page(shown, assets, of_all=caller.exercises is None)
         return HTMLResponse(content, headers=PRIVATE_HEADERS)
 
@@ -66,7 +66,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
 def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> APIRouter:
     router = APIRouter(prefix="/tutor")
-    solutions, figures = Kept(), Kept()
+    solutions, figures = MemoizedResults(), MemoizedResults()
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
@@ -76,7 +76,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         key = (exercise.id, exercise.version, exercise.title, of_all)
         drawn = partial(solution_page, exercise, assets, of_all=of_all)
         content = await solutions.of(key, drawn)
-        return PiecewiseResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+        return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:

@@ -14,7 +14,7 @@ import pytest
 from fastapi import FastAPI
 
 from service.api.application import application
-from service.api.http.memoized import Kept
+from service.api.http.memoized import MemoizedResults
 from service.api.permissions.access import Access
 from service.api.routes.solutions import _solved
 from service.catalogue import Exercise
@@ -102,7 +102,7 @@ def test_the_loop_goes_on_while_one_is_worked_out(
     async def watched() -> tuple[float, float, int]:
         start = last = time.perf_counter()
         longest, turns = 0.0, 0
-        task = asyncio.create_task(Kept().of("arm", partial(_solved, arm)))
+        task = asyncio.create_task(MemoizedResults().of("arm", partial(_solved, arm)))
         while not task.done():
             await asyncio.sleep(0)
             now = time.perf_counter()
