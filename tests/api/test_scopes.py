@@ -47,7 +47,7 @@ ANSWERS = {"answers": {"table": "a1 0 0 θ1\na2 0 0 θ2"}}
 ADA = {"learner": "ada", **ANSWERS}
 FILE = {"id": EXERCISE, "text": (shipped_folder() / f"{EXERCISE}.toml").read_text("utf-8")}
 CLASS = {"exercise": EXERCISE, "files": [{"path": "ada.json", "text": json.dumps(ANSWERS)}]}
-# What each route is sent, where it is sent anything.
+# The body of each route that has one.
 BODIES: Mapping[str, Any] = {
     "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
@@ -67,7 +67,7 @@ BODIES: Mapping[str, Any] = {
 
 @dataclass(frozen=True)
 class Guarded:
-    """A service with keys: those of each column of the statuses, by the column's heading.
+    """A service with keys: for each column of the statuses, the credentials of its callers.
 
     ``open_app`` is the same service without keys.
     """
@@ -81,7 +81,7 @@ class Guarded:
     names: dict[str, str]
 
     def filled(self, route: str) -> str:
-        """A route with names for what its path leaves open."""
+        """Return a route with real names in place of its parameters."""
         for place, name in self.names.items():
             route = name if place == route else route.replace(f"{{{place}}}", name)
         return route
@@ -260,7 +260,7 @@ def test_a_learner_reads_what_is_the_learner_s_own(guarded: Guarded) -> None:
     assert reason not in read.text
 
 
-def test_idempotency_keys_belong_to_who_sends_them(guarded: Guarded) -> None:
+def test_idempotency_keys_belong_to_their_sender(guarded: Guarded) -> None:
     path, body = f"/v1/exercises/{EXERCISE}/attempts", {"learner": "ada", **ANSWERS}
     [record], [token] = guarded.credentials["record"], guarded.credentials["token"]
 
@@ -272,7 +272,7 @@ def test_idempotency_keys_belong_to_who_sends_them(guarded: Guarded) -> None:
     assert recorded(record) == recorded(record) != recorded(token) == recorded(token)
 
 
-def test_a_token_has_no_right_that_its_key_has_not(guarded: Guarded) -> None:
+def test_a_token_has_no_right_that_its_key_does_not_have(guarded: Guarded) -> None:
     def made(credential: str, **more: Any) -> httpx.Response:
         return guarded.ask("POST", "/v1/tokens", credential, json={"learner": "ada", **more})
 
@@ -294,13 +294,13 @@ def test_a_token_has_no_right_that_its_key_has_not(guarded: Guarded) -> None:
     assert [made(record, **each).status_code for each in wrong] == [422] * len(wrong)
 
 
-def test_each_of_many_submissions_is_held_to_the_exercises_of_the_key(guarded: Guarded) -> None:
+def test_each_of_many_submissions_must_be_to_an_exercise_of_the_key(guarded: Guarded) -> None:
     [elsewhere] = guarded.credentials["other exercise"]
     many = [{"exercise": exercise, "answers": {}} for exercise in (EXERCISE, OTHER)]
     answer = guarded.ask("POST", "/v1/grade", elsewhere, json={"submissions": many}).json()
     assert [next(iter(each)) for each in answer["results"]] == ["problem", "report"]
     assert answer["results"][0]["problem"]["type"].endswith("other-exercise")
-    # Its attempts are listed where it names its exercise.
+    # A restricted key lists the attempts at the exercise that it names.
     assert guarded.ask("GET", f"/v1/attempts?exercise={OTHER}", elsewhere).status_code == 200
     assert guarded.ask("GET", f"/v1/attempts?exercise={EXERCISE}", elsewhere).status_code == 403
 
@@ -317,13 +317,13 @@ def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None
     pages = links("/tutor", elsewhere) | links(f"/tutor/solutions/{OTHER}", elsewhere)
     assert {f"/tutor/{each}/{OTHER}" for each in ("solutions", "statistics")} <= pages
     assert "/tutor/attempts" in pages
-    # Whatever they lead to is open to the key.
+    # The key may open all pages that they link to.
     assert {path: guarded.ask("GET", path, elsewhere).status_code for path in pages} == (
         dict.fromkeys(pages, 200)
     )
     assert {"/tutor/editor", "/tutor/class"} <= links("/tutor", tutor)
     assert "/tutor/editor" in links(f"/tutor/solutions/{OTHER}", tutor)
-    # The list is of its exercise, and deletes nobody in all of them.
+    # The page lists only its exercise, and offers no deletion in all exercises.
     attempts = guarded.ask("GET", "/tutor/attempts", elsewhere).text
     everything = guarded.ask("GET", "/tutor/attempts", tutor).text
     for text in ("All exercises", EXERCISE, "Forget a learner"):
@@ -332,7 +332,7 @@ def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None
     assert 'href="tutor"' in guarded.ask("GET", "/", elsewhere).text
 
 
-def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Guarded) -> None:
+def test_a_refused_browser_gets_a_page_that_says_what_to_do(guarded: Guarded) -> None:
     reader = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
     [record], [elsewhere] = guarded.credentials["record"], guarded.credentials["other exercise"]
     [tutor], expired = guarded.credentials["tutor"], guarded.credentials["not valid"][0]
@@ -353,7 +353,7 @@ def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Gu
         assert "script-src 'self'" in page.headers["Content-Security-Policy"]
         assert said in page.text.partition("<main")[2].partition("</main")[0]
         assert "<b>" not in page.text
-        # Its style is found from wherever it stands.
+        # The relative address of its style is right.
         [style] = re.findall(r'href="([^"]*static/page-[^"]*css)', page.text)
         assert guarded.ask("GET", urljoin(path, style)).status_code == 200
         program = guarded.ask("GET", path, key)
@@ -368,17 +368,17 @@ def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Gu
 def test_a_browser_sends_the_key_as_a_password(guarded: Guarded) -> None:
     [tutor] = guarded.credentials["tutor"]
     asked = guarded.ask("GET", "/tutor")
-    # A line for each: of several in one line a browser may know none.
+    # Each challenge has a header of its own: some browsers cannot read several in one.
     password, bearer = asked.headers.get_list("WWW-Authenticate")
     assert (password[:12], "Bearer" in password, bearer) == ("Basic realm=", False, "Bearer")
     graded = guarded.ask("POST", f"/v1/exercises/{EXERCISE}/grade", json=ANSWERS)
     assert graded.headers["WWW-Authenticate"] == "Bearer"
     assert guarded.ask("GET", "/tutor", auth=("anybody", tutor)).status_code == 200
-    # It would send it for a page of another origin, too; a program that shows it, does so itself.
+    # A browser would also send it for a page of another origin, but a program decides itself.
     path, headers = f"/v1/exercises/{EXERCISE}/solution", {"Origin": "https://evil.example"}
     assert guarded.ask("GET", path, auth=("", tutor), headers=headers).status_code == 403
     assert guarded.ask("GET", path, tutor, headers=headers).status_code == 200
-    # The password of a proxy in front is no key, and no mistake.
+    # The password of a proxy is ignored, and is not an error.
     for password in ("secret", "dhg_"):
         refused = guarded.ask("GET", "/v1/attempts", auth=("proxy", password))
         kind = "key-needed" if password == "secret" else "key-not-valid"
@@ -428,7 +428,7 @@ def test_a_page_of_an_allowed_origin_may_send_a_token(guarded: Guarded) -> None:
         ("none", False, False, False), ("none", True, False, False),
     ],
 )  # fmt: skip
-def test_what_needs_no_key_is_said_by_the_setting(
+def test_the_setting_says_which_routes_need_no_key(
     guarded: Guarded, catalogue: Mapping[str, Exercise],
     says: str | None, needed: bool, grades: bool, records: bool,
 ) -> None:  # fmt: skip
@@ -454,11 +454,11 @@ def test_what_needs_no_key_is_said_by_the_setting(
         return tuple(status < 300 for status in statuses)  # type: ignore[return-value]
 
     assert asked() == (grades, records, not needed)
-    # Reached from another machine, by an address that is not this machine's alone.
+    # Asked at an address that other machines can reach.
     far = says is not None
     assert asked("192.0.2.1") == (grades and far, records and far, False)
     [record] = guarded.credentials["record"]
-    # Where there are no keys, what a proxy in front may have asked for is not looked at.
+    # Without keys the header is ignored: it may be for a proxy.
     assert asked("192.0.2.1", record) == (
         (True, True, False) if needed else (grades and far, records and far, False)
     )
@@ -471,7 +471,7 @@ def test_without_keys_nobody_makes_tokens(client: httpx.Client) -> None:
     assert made.json()["type"].endswith("tokens-not-made")
 
 
-def test_who_asks_too_often_is_told_when_to_come_again(
+def test_too_many_requests_get_429_with_retry_after(
     guarded: Guarded, catalogue: Mapping[str, Exercise]
 ) -> None:
     rates = Rates("2/hour", "1/hour")

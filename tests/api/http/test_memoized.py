@@ -3,7 +3,7 @@ import asyncio
 from service.api.http.memoized import MOST_RESULTS, MemoizedResults
 
 
-def test_the_latest_results_are_kept_and_worked_out_once() -> None:
+def test_results_are_computed_once_and_the_last_ones_are_kept() -> None:
     worked: list[object] = []
 
     def work(key: object) -> bytes:
