@@ -26,7 +26,7 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request that cannot be answered. ``name`` ends the type of the problem.
+    """A request that cannot be answered. ``name`` is the end of its type.
 
     A problem without a name has the type ``about:blank``. Each of ``challenges`` is sent as a
     header ``WWW-Authenticate`` of its own.
@@ -106,7 +106,7 @@ def failed() -> ProblemError:
 
 
 def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) -> ProblemError:
-    """Return the problem for pydantic's findings in a body that may have these ``fields``."""
+    """Return the problem of a body with errors that pydantic found; it may have ``fields``."""
     errors = [
         {"pointer": _pointer(detail["loc"]), "detail": _message(detail, fields)}
         for detail in details[:MAX_ERRORS]

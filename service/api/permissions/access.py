@@ -216,7 +216,7 @@ def is_at_the_machine(request: Request) -> bool:
     """Return whether a program or browser on this machine made the request, for itself.
 
     Both ends of the connection are on this machine, no proxy is between them, and the header Host
-    has one of its local names: a page of another name that resolves to it has that name there.
+    has a local name. The last condition refuses pages whose own name resolves to this machine.
     """
     server = request.scope.get("server") or ("",)
     client = request.scope.get("client") or ("",)

@@ -21,7 +21,7 @@ _ALLOWS: Final = {
 
 
 class AccessProblem(NamedTuple):
-    """A problem but for the values that a request puts into its texts."""
+    """The constant parts of a problem. Braces in its texts are places for values."""
 
     status: HTTPStatus
     title: str

@@ -165,7 +165,7 @@ def test_no_cell_fails_the_request_or_the_rest(
     "literal",
     ["NaN", "-Infinity", "1e999", "9" * 400, "9" * 5000, "-" + "9" * 5000, '"\\ud800"'],
 )
-def test_a_number_too_large_for_a_float_affects_only_its_cell(
+def test_a_literal_that_is_no_finite_number_affects_only_its_cell(
     client: httpx.Client, literal: str
 ) -> None:
     body = json.dumps({"answers": RIGHT}).replace('"l2"', literal, 1)
