@@ -1,30 +1,31 @@
-"""The application: routes, limits and headers put together."""
+"""The application: all routes, limits and headers."""
 
 import gc
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api.document.openapi import HEADING, completed, other_failures, work_out_schemas
+from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, fill_body_schemas
 from service.api.http import problems
 from service.api.http.boundary import (
     EXPOSED_HEADERS,
     BoundaryMiddleware,
-    NamingMiddleware,
-    RefusalNoting,
-    RouteNoting,
+    RefusedRouteMiddleware,
+    RequestIdMiddleware,
+    RouteMiddleware,
 )
-from service.api.http.compression import PackedGets
+from service.api.http.compression import CompressedGets
 from service.api.http.lookup import Catalogue
 from service.api.http.request_context import HEADER
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
-from service.api.permissions.authentication import DoorMiddleware, RequestRates
+from service.api.permissions.authentication import AuthenticationMiddleware, RequestRates
+from service.api.permissions.rights import require_entries
 from service.api.recording import listing as recorded
 from service.api.recording import managing as tutoring
 from service.api.recording import new_attempts as attempts
@@ -47,16 +48,16 @@ from service.version import VERSION
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
-# What stands around an application.
+# Puts a layer around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
 
 
 def _freeze_gc() -> None:
-    """Exempt the program's own objects from the garbage collector's rounds.
+    """Exempt all objects that exist now from garbage collection.
 
-    A body of many small lists sets off full rounds; over the program itself, too, they took twice
-    as long as reading the body. A process that starts without the collector has it from here on,
-    and no first round, which takes as long as the ones it was spared.
+    A body of many small lists triggers full collections. If these also visit the objects of the
+    program, they take twice as long as reading the body. If the process started with the
+    collector off, it is turned on here, without a first collection.
     """
     if gc.isenabled():
         gc.collect()
@@ -65,7 +66,7 @@ def _freeze_gc() -> None:
 
 
 class _Api(FastAPI):
-    """FastAPI with its outermost layers outside the framework's own error pages and limit."""
+    """FastAPI with layers around its own error pages and its own limit of bodies."""
 
     def __init__(
         self,
@@ -84,7 +85,7 @@ class _Api(FastAPI):
         self._rates = rates
         self._monitor = monitor
         self._pages = pages
-        # The routes for programs, by which refusals are counted.
+        # The routes for programs, to which refusals are counted.
         self.interface: list[APIRoute] = []
         super().__init__(
             **HEADING,
@@ -111,19 +112,21 @@ class _Api(FastAPI):
             self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, packed answers, turns between clients, the door, the boundary.
+        """Return the application with its layers.
 
-        Then CORS: a page may read problems, too. Outermost, so that whatever is answered has one,
-        the id of the request.
+        From the inside: FastAPI's own layers, compression, turns between clients,
+        authentication, and the boundary. CORS comes around these, so that pages of other
+        origins may read problems, too. The request id comes last, so that every answer has
+        one.
         """
         app = super().build_middleware_stack()
         if self._monitor is not None:
-            app = RouteNoting(app)
-        app = PackedGets(app)
+            app = RouteMiddleware(app)
+        app = CompressedGets(app)
         if self._turns is not None:
             app = self._turns(app)
         if self._access.keys is not None or self._rates is not None:
-            app = DoorMiddleware(app, self._access, self._rates)
+            app = AuthenticationMiddleware(app, self._access, self._rates)
         app = BoundaryMiddleware(app)
         if self._cors_origins:
             app = CORSMiddleware(
@@ -134,13 +137,13 @@ class _Api(FastAPI):
                 expose_headers=EXPOSED_HEADERS,
             )
         if self._monitor is not None:
-            app = self._monitor.watched(RefusalNoting(app, self.interface))
-        return NamingMiddleware(app)
+            app = self._monitor.watched(RefusedRouteMiddleware(app, self.interface))
+        return RequestIdMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
-        """The description of the interface, made at the first call."""
+        """Return the OpenAPI document; the first call makes it."""
         if self.openapi_schema is None:
-            work_out_schemas()
+            fill_body_schemas()
             self.openapi_schema = completed(super().openapi())
         return self.openapi_schema
 
@@ -157,34 +160,36 @@ def application(
     pages: WebPages | None = None,
     monitor: Monitor | None = None,
 ) -> FastAPI:
-    """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
+    """Return the HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    ``access`` says who may do what; without it anybody may grade and record, and nobody see what
-    tutors see. ``rates`` count requests. Reports tell no more than ``feedback``, nor than their
-    exercise allows. ``turns`` decides who comes next, ``pages`` are the web pages of the service
-    itself. Attempts are recorded in ``store``; without one none are. ``monitor`` counts what
-    happens.
+    ``access`` checks callers; without it everybody may grade and record, and nobody sees what
+    tutors see. ``rates`` limits the number of requests. Reports have at most the level
+    ``feedback``, and at most that of their exercise. ``turns`` is a layer that orders requests,
+    and ``pages`` are the service's web pages. Attempts are recorded in ``store``, if there is
+    one. ``monitor`` counts requests and reports.
     """
     access = access or Access()
     app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
+    permitted = [Depends(access.permit)]
     problems.install(app, None if pages is None else pages.of_problem)
     for router in (
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback, access, monitor),
         attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
-        # Before the next one, to which /v1/attempts/export would be the id of an attempt.
+        # Before the next router, for which the "export" of /v1/attempts/export is an attempt's id.
         tutoring.routes(catalogue, feedback, store, access),
         recorded.routes(catalogue, store, access),
         preview.routes(catalogue, access),
         figures.routes(catalogue),
         frames.routes(catalogue, access),
         health.routes(catalogue, store),
-        model_solutions.routes(catalogue, access),
+        model_solutions.routes(catalogue),
         tokens.routes(catalogue, access),
     ):
-        app.include_router(router, responses=other_failures())
+        app.include_router(router, responses=OTHER_FAILURES, dependencies=permitted)
         app.interface += (route for route in router.routes if isinstance(route, APIRoute))
-    app.include_router(reference.routes())
+    app.include_router(reference.routes(), dependencies=permitted)
     if pages is not None:
-        app.include_router(pages.routes)
+        app.include_router(pages.routes, dependencies=permitted)
+    require_entries(app.router)
     return app

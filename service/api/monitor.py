@@ -1,4 +1,4 @@
-"""What looks on while requests are answered, where the service is watched."""
+"""What the application reports to the metrics."""
 
 from typing import Protocol
 
@@ -8,13 +8,13 @@ from service.grading import Report
 
 
 class Monitor(Protocol):
-    """Counts what happens; what it is told changes no answer."""
+    """Counts requests and reports. It changes no answer."""
 
     def watched(self, app: ASGIApp) -> ASGIApp:
-        """The application with a layer around it that sees every request and its answer."""
+        """Return the application in a layer that sees every request and its answer."""
 
     def graded(self, report: Report, seconds: float) -> None:
-        """Count a report that took so long."""
+        """Count a report, and the seconds that its grading took."""
 
     def refused(self, answer: str) -> None:
-        """Count what is refused before the application sees it: with a status, or "none"."""
+        """Count a refusal before the application saw the request: its status, or "none"."""

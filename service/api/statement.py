@@ -1,8 +1,8 @@
-r"""Statements as HTML: Markdown, with LaTeX between dollars as MathML.
+r"""Statements as HTML, from Markdown with LaTeX between dollar signs, which becomes MathML.
 
-Whoever writes an exercise file writes text, never HTML: tags and scripts in it are shown as they
-stand. Formulas are turned to MathML by a library that lets tags through (``\text{<b>}``,
-``\href``), so its result is taken apart, and of it only plain MathML is kept.
+Authors of exercise files write text, never HTML: tags and scripts in it are shown as text. The
+library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so only the
+plain MathML of its result is kept.
 """
 
 import re
@@ -29,18 +29,18 @@ _ATTRIBUTES: Final = frozenset({
     "rowspacing", "columnspacing",
 })  # fmt: skip
 _LONGEST: Final = 2_000
-# Of a model solution, which no stranger writes.
+# For model solutions, which are not written by strangers.
 _LONGEST_SOLVED: Final = 20_000
 _LINKS: Final = re.compile(r"(?:https?://|mailto:|#)", re.IGNORECASE)
-# Marks that turn the direction of what follows, so that a text reads as another one.
+# Characters that change the direction of text, so that it could be read as another text.
 _TURNING: Final = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 @lru_cache(maxsize=256)
 def statement_html(statement: str) -> str:
-    """The statement as HTML that may stand in any page: no scripts, no styles, no pictures.
+    """Return the statement as HTML that is safe in any page: no scripts, styles or pictures.
 
-    A formula that cannot be turned to MathML is shown as it is written.
+    A formula that cannot be converted to MathML is shown as it is written.
     """
     shown = _TURNING.sub(lambda mark: f"[U+{ord(mark[0]):04X}]", statement)
     html: str = _markdown().render(shown)
@@ -48,19 +48,19 @@ def statement_html(statement: str) -> str:
 
 
 def formula_html(latex: str, *, display: bool = False) -> str:
-    """A formula of a model solution as MathML, or as it is written."""
+    """Return a formula of a model solution as MathML, or else as it is written."""
     return _formula(latex, {"display_mode": display, "longest": _LONGEST_SOLVED})
 
 
 @cache
 def _markdown() -> "MarkdownIt":
-    # Loaded with the first statement, not with the program.
+    # Imported with the first statement, so that startup does not wait for it.
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
     markdown = MarkdownIt("commonmark", {"html": False}).enable("table").disable("image")
     markdown.validateLink = lambda url: _LINKS.match(url) is not None  # type: ignore[method-assign]
-    # The page that shows a table aligns it: no style stands in the HTML.
+    # The page aligns the cells of tables: the HTML must not contain styles.
     markdown.add_render_rule("th_open", lambda *_: "<th>")
     markdown.add_render_rule("td_open", lambda *_: "<td>")
     markdown.use(
@@ -70,7 +70,7 @@ def _markdown() -> "MarkdownIt":
         double_inline=True,
         renderer=_formula,
     )
-    # In the midst of a paragraph no block may stand.
+    # A paragraph must not contain a block.
     markdown.add_render_rule("math_inline_double", _displayed)
     return markdown
 
@@ -81,7 +81,7 @@ def _displayed(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object)
 
 
 def _formula(latex: str, options: Mapping[str, Any]) -> str:
-    """A formula as MathML, or as it is written."""
+    """Return a formula as MathML, or else as it is written."""
     from latex2mathml.converter import convert
 
     mode = "block" if options.get("display_mode") else "inline"
@@ -96,12 +96,12 @@ def _formula(latex: str, options: Mapping[str, Any]) -> str:
 
 
 def _plain(root: ET.Element) -> bool:
-    """Whether all elements are plain MathML; attributes that are not are taken away."""
+    """True if all elements are plain MathML. Other attributes are removed."""
     for element in root.iter():
         name = element.tag.removeprefix(f"{{{_MATHML}}}")
         if name not in _ELEMENTS:
             return False
-        # In no namespace, so that it is written without a prefix.
+        # Without a namespace, so that it is written without a prefix.
         element.tag = name
         for attribute in set(element.attrib) - _ATTRIBUTES:
             del element.attrib[attribute]

@@ -1,4 +1,4 @@
-"""Turns between clients, as the routes and the layers around them see it."""
+"""Turns between clients, for the routes and the layers around them."""
 
 import asyncio
 import math
@@ -12,17 +12,18 @@ from service.time_slices import in_slices
 
 R = TypeVar("R")
 
-# Where a layer around the application leaves, in the scope of a request, what waits for its turn.
+# The key of a request's ASGI scope under which a layer leaves the function that awaits a turn.
 TURN: Final = "dh_grader.turn"
-# Where a layer before it leaves the client of a request, if it is not known by the address alone.
+# The key under which an earlier layer leaves the client, unless that is just the address.
 CLIENT: Final = "dh_grader.client"
 
 
 class Client(NamedTuple):
     """The client that a request belongs to.
 
-    It has a share of the processor for each request that it has here, ``most_shares`` at most: the
-    server of a course, or the address of a university, speaks for many students.
+    It gets a share of the processor for each of its requests that are here, but at most
+    ``most_shares``: a course's server, or the address of a university, sends the requests of
+    many students.
     """
 
     name: str
@@ -30,23 +31,23 @@ class Client(NamedTuple):
 
     @property
     def is_trusted(self) -> bool:
-        """Whether there is no bound for this client alone."""
+        """True if the number of this client's shares is not limited."""
         return self.most_shares == math.inf
 
 
-# A student; an address, which may be a class or somebody who wants to keep it out; a course site.
+# The shares of a student, of an address (a class, or an attacker), and of a course site.
 ONE_STUDENT, ONE_ADDRESS, COURSE_SITE = 1.0, 8.0, math.inf
 
 
 async def give_way(request: Request) -> None:
-    """Let others come first whose turn it is. Raises ClientDisconnect if the client has gone."""
+    """Wait for the request's next turn. Raises ClientDisconnect if the client has gone."""
     turn: Callable[[], Awaitable[None]] | None = request.scope.get(TURN)
-    # Without such a layer, as in tests of the routes alone: each that is ready, once.
+    # Without such a layer, as in tests of routes: let every other ready task run once.
     await (asyncio.sleep(0) if turn is None else turn())
 
 
-async def giving_way(request: Request, work: Callable[[], R]) -> R:
-    """Return the result of ``work``, which gives way to other requests between its steps.
+async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
+    """Return the result of ``work``, and let other requests have their turns between its steps.
 
     Raises ClientDisconnect if the client has gone meanwhile, and what ``work`` raises.
     """

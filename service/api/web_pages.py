@@ -1,4 +1,4 @@
-"""The web pages of the service, as the interface knows them."""
+"""The web pages of the service, as the application includes them."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,9 +9,9 @@ from service.api.http.problems import ProblemPage
 
 
 class WebPages(NamedTuple):
-    """The routes of the pages, and the page of a problem for whoever reads in a browser.
+    """The routes of the pages, and the function that makes the page of a problem for browsers.
 
-    ``close`` ends what the pages have begun.
+    ``close`` stops the work that the pages have started.
     """
 
     routes: APIRouter

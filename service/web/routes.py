@@ -6,7 +6,7 @@ from typing import Final
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
-from service.api.http.chunked_response import PiecewiseResponse
+from service.api.http.chunked_response import ChunkedResponse
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
@@ -83,4 +83,4 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
 def _file(asset: Asset, content: bytes, caching: str) -> Response:
     headers = {**_FILE_HEADERS, "Cache-Control": caching}
-    return PiecewiseResponse(content, headers=headers, media_type=asset.media_type)
+    return ChunkedResponse(content, headers=headers, media_type=asset.media_type)

@@ -11,7 +11,7 @@ from service.catalogue import Exercise
 
 
 class InProcess(httpx.BaseTransport):
-    """Lets a plain httpx.Client call an app; a failure inside is a 500, as behind a server."""
+    """Let a plain httpx.Client call an app. An exception in it is a 500, as with a server."""
 
     def __init__(self, app: FastAPI) -> None:
         self._inner = httpx.ASGITransport(app, raise_app_exceptions=False)
@@ -23,7 +23,7 @@ class InProcess(httpx.BaseTransport):
     async def _answer(self, request: httpx.Request) -> httpx.Response:
         response = await self._inner.handle_async_request(request)
         content = await response.aread()
-        # The content is unpacked by now.
+        # The content is already decompressed.
         headers = [each for each in response.headers.multi_items() if each[0] != "content-encoding"]
         return httpx.Response(response.status_code, headers=headers, content=content)
 
@@ -41,5 +41,5 @@ def client(app: FastAPI) -> Iterator[httpx.Client]:
 
 @pytest.fixture
 def client_of() -> Any:
-    """Makes a client of any app."""
+    """Return a function that makes a client of an app."""
     return lambda app: httpx.Client(transport=InProcess(app), base_url="http://service")

@@ -1,4 +1,4 @@
-"""Helpers of the tests that start the real process."""
+"""Helpers of tests that start the real process."""
 
 import os
 import re
@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
-    """Waits until the server says where it listens; the test's own timeout bounds that."""
+    """Wait until the server prints its port; only the test's own timeout limits that."""
     while True:
         text = log.read_text(encoding="utf-8")
         if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
@@ -42,7 +42,7 @@ class Served:
 
 @contextmanager
 def served(folder: Path, **environment: str) -> Iterator[Served]:
-    """A real process, `python -m service serve`, that logs into a folder; at last it is ended."""
+    """Start a real process, `python -m service serve`, that logs into a folder; end it at last."""
     log = folder / "log"
     command = [sys.executable, "-m", "service", "serve"]
     usual = {"NO_COLOR": "1", "DH_GRADER_PORT": "0"}

@@ -1,4 +1,4 @@
-"""The clock jumps by hours, forwards and backwards: nothing is lost, doubled or locked for long."""
+"""The clock jumps by hours in both directions: nothing is lost, doubled or blocked for long."""
 
 import asyncio
 import csv
@@ -36,7 +36,7 @@ ATTEMPTS = "/v1/exercises/scara/attempts"
 
 
 class Clock:
-    """What the whole program takes for the time: the time, and ``ahead``."""
+    """The clock of the whole program: the real time plus ``ahead``."""
 
     def __init__(self) -> None:
         self.ahead = timedelta()
@@ -44,9 +44,9 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """The clock of each module of the service, and of what it is built on."""
+    """Replace the clock of each module of the service and of its libraries."""
     clock, real_time = Clock(), time.time
-    # It is loaded with the first token.
+    # The module is imported with the first token.
     importlib.import_module("service.access.tokens")
 
     class Told(datetime):
@@ -63,7 +63,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Term:
-    """A course with a key over some hours of changing clocks."""
+    """A course with a key during some hours in which the clock changes."""
 
     def __init__(self, store: AttemptStore, clock: Clock, scara: Exercise, **rules: Any) -> None:
         now = datetime.now(UTC)
@@ -129,13 +129,13 @@ def test_attempts_keep_their_order_and_their_keys(
     term.at(-5)
     third = term.post(RIGHT, "third")
     assert [each.json()["attempt"]["ordinal"] for each in (first, second, third)] == [1, 2, 3]
-    # What was counted is no more and no less, and a key is known whatever the clock says.
+    # No attempt is lost or doubled, and the key is known whatever the time is.
     assert problem(term.post(RIGHT, "fourth")) == (403, "no-attempts-left")
     assert term.post(LAZY, "first").content == first.content
     while page.get("next"):
         page = term.ask("GET", f"/v1/attempts?limit=1&cursor={page['next']}").json()
         seen += [each["ordinal"] for each in page["attempts"]]
-    # By their moments, also the one that came while the pages were turned, and each once.
+    # Each attempt once, ordered by time, also the one recorded between two pages.
     assert seen == [2, 1, 3]
     lines = term.ask("GET", "/v1/attempts/export?format=csv").content.decode("utf-8-sig")
     counting = {row["ordinal"]: row["counts"] for row in csv.DictReader(lines.splitlines())}
@@ -175,7 +175,7 @@ def test_deadlines_and_tokens_follow_the_clock_and_come_back_with_it(
 
 
 @pytest.mark.parametrize("jump", [-48, -3, -0.01, 0.01, 3, 48])
-def test_a_limit_locks_nobody_out_for_longer_than_its_time(clock: Clock, jump: float) -> None:
+def test_a_rate_limit_blocks_nobody_for_longer_than_its_period(clock: Clock, jump: float) -> None:
     rates = Rates(per_address="5/minute")
     caller = Caller(frozenset())
 
@@ -187,6 +187,6 @@ def test_a_limit_locks_nobody_out_for_longer_than_its_time(clock: Clock, jump: f
     clock.ahead = timedelta(hours=jump)
     after = asyncio.run(waits(20))
     rates.close()
-    # The jump itself may have to be waited for, where it lies within the minute.
+    # A jump of less than a minute may delay a request by that jump.
     assert max(after) <= 60 + 36
     assert sum(wait == 0 for wait in after) <= 5

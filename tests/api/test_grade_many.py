@@ -1,4 +1,4 @@
-"""POST /v1/grade: many submissions in one request, each graded as if it came alone."""
+"""POST /v1/grade: many submissions in one request, each graded as if it were sent alone."""
 
 import asyncio
 import json
@@ -17,7 +17,7 @@ from service.submissions.body import MAX_SUBMISSIONS
 from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS
 
 URL = "/v1/grade"
-# From the exercise's source: Spong's planar arm with two links.
+# From the source of the exercise: Spong's planar arm with two links.
 POSITION = ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]
 RIGHT: dict[str, Any] = {"exercise": "planar-rr", "answers": {"position": POSITION}}
 WRONG: dict[str, Any] = {"exercise": "planar-rr", "answers": {"position": ["a1 c1", "a1 s1 +"]}}
@@ -69,7 +69,7 @@ def test_no_submissions_get_no_results(client: httpx.Client) -> None:
         ([], 422, "invalid-request", ["#/submissions/1"]),
     ],
 )  # fmt: skip
-def test_a_fault_is_a_problem_in_its_place_and_costs_no_other(
+def test_a_faulty_submission_gets_a_problem_and_the_others_are_graded(
     client: httpx.Client, submission: object, status: int, name: str, pointers: list[str] | None
 ) -> None:
     first, faulty, last = results(client, RIGHT, submission, WRONG)
@@ -90,7 +90,7 @@ def test_the_problem_is_the_one_that_the_submission_gets_alone(client: httpx.Cli
     submission = {"exercise": "planar-r", "answers": {}}
     [result] = results(client, submission)
     refused = alone(client, submission).json()
-    # The whole answer has one id.
+    # The request id belongs to the whole answer.
     del refused["request_id"]
     assert result["problem"] == {**refused, "instance": "/v1/grade#/submissions/0"}
 
@@ -110,9 +110,7 @@ def test_an_unknown_field_is_answered_with_the_known_ones(client: httpx.Client) 
         ({"submissions": [RIGHT] * (MAX_SUBMISSIONS + 1)}, "#/submissions"),
     ],
 )
-def test_another_shape_of_the_whole_is_a_422(
-    client: httpx.Client, body: object, pointer: str
-) -> None:
+def test_a_body_of_another_shape_gets_422(client: httpx.Client, body: object, pointer: str) -> None:
     response = client.post(URL, json=body)
     assert response.status_code == 422
     assert response.headers["content-type"] == "application/problem+json"
@@ -127,7 +125,7 @@ def test_too_many_submissions_are_told_how_many_there_may_be(client: httpx.Clien
 
 
 def test_the_bound_lets_a_full_request_through(client: httpx.Client) -> None:
-    """All answers to the exercise with seven joints, as often as the bound allows."""
+    """The request has all answers to the exercise with seven joints, as often as is allowed."""
     rows = [dict.fromkeys(("a", "alpha", "d", "theta"), "2*L1 + 90deg")] * 8
     matrix = [["cos(theta1)*sin(theta2)"] * 4] * 4
     answers = {"table": {"rows": rows}, "home": matrix, "pose": matrix, "wrist": ["L1"] * 3}

@@ -1,4 +1,4 @@
-"""The pages on HTTP and on frame choice print what the service answers."""
+"""The pages on HTTP and on frame choice print the service's real answers."""
 
 import json
 import re
@@ -26,7 +26,7 @@ def json_blocks(page: str) -> list[dict[str, Any]]:
 def test_the_curl_of_the_page_gets_the_answer_that_it_prints(client: httpx.Client) -> None:
     (url, file), _ = CURL.findall(HTTP.read_text(encoding="utf-8"))
     (printed,) = json_blocks("docs/http.md")
-    # As curl sends it where nobody says what it is: with a form's content type.
+    # By default, curl sends the content type of a form.
     for content_type in ("application/json", "application/x-www-form-urlencoded"):
         answered = client.post(
             url, content=(ROOT / file).read_bytes(), headers={"Content-Type": content_type}

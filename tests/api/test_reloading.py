@@ -1,4 +1,4 @@
-"""A real server that is told to follow its exercise files."""
+"""A real server reloads exercise files that change."""
 
 import time
 from collections.abc import Iterator
@@ -46,7 +46,7 @@ def title(client: httpx.Client) -> str:
 
 
 def until(client: httpx.Client, expected: str) -> None:
-    """Asks until the title is this; the test's own timeout bounds that."""
+    """Ask until the title is this one; only the test's own timeout limits that."""
     while title(client) != expected:
         time.sleep(0.05)
 

@@ -1,4 +1,4 @@
-"""Every route, asked with each kind of key and token, answers as docs/keys.md says."""
+"""Every route answers each kind of caller as tests/api/permissions/statuses.txt says."""
 
 import asyncio
 import gzip
@@ -17,6 +17,7 @@ import pytest
 from fastapi import FastAPI, Request
 from fastapi.routing import iter_route_contexts
 from sqlalchemy import Connection
+from starlette.routing import Route
 
 from service.access.caller import Caller, Scope
 from service.access.key_ring import KeyRing
@@ -29,13 +30,15 @@ from service.api.application import application
 from service.api.document.openapi import example
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
+from service.api.permissions.rights import RIGHTS
 from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.attempts.tutoring import override
 from service.catalogue import Exercise, shipped_folder
 from service.web import Tutoring, web_routes
 
-DOCS = Path(__file__).parents[2] / "docs" / "keys.md"
+STATUSES = Path(__file__).parent / "permissions" / "statuses.txt"
+HERE, ELSEWHERE = "http://127.0.0.1:8000", "http://192.0.2.1:8000"
 EXERCISE, OTHER = "planar-rr", "scara"
 SECRET = Secret("0123456789abcdef" * 4)
 NOW = datetime.now(UTC)
@@ -44,7 +47,7 @@ ANSWERS = {"answers": {"table": "a1 0 0 θ1\na2 0 0 θ2"}}
 ADA = {"learner": "ada", **ANSWERS}
 FILE = {"id": EXERCISE, "text": (shipped_folder() / f"{EXERCISE}.toml").read_text("utf-8")}
 CLASS = {"exercise": EXERCISE, "files": [{"path": "ada.json", "text": json.dumps(ANSWERS)}]}
-# What each route is sent, where it is sent anything.
+# The body of each route that has one.
 BODIES: Mapping[str, Any] = {
     "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
@@ -64,9 +67,13 @@ BODIES: Mapping[str, Any] = {
 
 @dataclass(frozen=True)
 class Guarded:
-    """A service with keys, one for each column of the table, by the column's heading."""
+    """A service with keys: for each column of the statuses, the credentials of its callers.
+
+    ``open_app`` is the same service without keys.
+    """
 
     app: FastAPI
+    open_app: FastAPI
     ring: KeyRing
     store: AttemptStore
     credentials: Mapping[str, list[str]]
@@ -74,16 +81,17 @@ class Guarded:
     names: dict[str, str]
 
     def filled(self, route: str) -> str:
-        """A route with names for what its path leaves open."""
+        """Return a route with real names in place of its parameters."""
         for place, name in self.names.items():
             route = name if place == route else route.replace(f"{{{place}}}", name)
         return route
 
     @asynccontextmanager
-    async def client(self, credential: str = "") -> AsyncIterator[httpx.AsyncClient]:
+    async def client(
+        self, credential: str = "", address: str = HERE
+    ) -> AsyncIterator[httpx.AsyncClient]:
         headers = {"authorization": f"Bearer {credential}"} if credential else {}
         transport = httpx.ASGITransport(self.app)
-        address = "http://127.0.0.1:8000"
         async with httpx.AsyncClient(
             transport=transport, base_url=address, headers=headers
         ) as client:
@@ -129,9 +137,9 @@ def guarded(
     elsewhere, _ = key(*everything, exercises=[OTHER])
     credentials = {
         "no key": [""],
-        "`grade`": [key(Scope.GRADE)[0], key(Scope.GRADE, exercises=[EXERCISE])[0]],
-        "`record`": [record],
-        "`tutor`": [key(Scope.TUTOR)[0]],
+        "grade": [key(Scope.GRADE)[0], key(Scope.GRADE, exercises=[EXERCISE])[0]],
+        "record": [record],
+        "tutor": [key(Scope.TUTOR)[0]],
         "token": [token(record_id)],
         "not valid": [
             expired, revoked, misspelt, new_key_text(), "dhg_", "nonsense", "a.b.c",
@@ -144,13 +152,21 @@ def guarded(
     access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
     editor_dir = folder / "exercises"
     editor_dir.mkdir()
-    tutoring = Tutoring(access, (shipped_folder(),), editor_dir, records=True)
-    pages = web_routes(catalogue, tutoring)
-    app = application(
-        catalogue, ("https://course.example.edu",), access=access, store=store, pages=pages
+    open_access = Access(OPEN_HERE, solutions=None, read_attempts=None)
+    app, open_app = (
+        application(
+            catalogue,
+            ("https://course.example.edu",),
+            access=each,
+            store=store,
+            pages=web_routes(
+                catalogue, Tutoring(each, (shipped_folder(),), editor_dir, records=True)
+            ),
+        )
+        for each in (access, open_access)
     )
     store.start()
-    service = Guarded(app, ring, store, credentials, editor_dir, {})
+    service = Guarded(app, open_app, ring, store, credentials, editor_dir, {})
     path = f"/v1/exercises/{EXERCISE}/attempts"
     recorded = service.ask("POST", path, record, json={"learner": "ada", **ANSWERS})
     file = service.ask("GET", "/").text.partition("static/")[2].partition('"')[0]
@@ -175,22 +191,17 @@ def routes_of(app: FastAPI) -> set[str]:
     }
 
 
-def table() -> dict[str, dict[str, int]]:
-    """The rows of the page's table by their routes, each with its columns by their headings."""
-    lines = [line for line in DOCS.read_text(encoding="utf-8").splitlines() if line[:1] == "|"]
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-    start = next(i for i, row in enumerate(rows) if row[0] == "route")
-    headings = rows[start][1:]
-    return {
-        row[0].strip("`"): dict(zip(headings, map(int, row[1:]), strict=True))
-        for row in rows[start + 2 :]
-        if len(row) == len(headings) + 1
-    }
+def expected() -> dict[str, dict[str, int]]:
+    """Return the status of each route for each kind of caller."""
+    head, *lines = STATUSES.read_text(encoding="utf-8").splitlines()
+    _, *headings = re.split(" {2,}", head)
+    rows = [re.split(" {2,}", line) for line in lines]
+    return {row[0]: dict(zip(headings, map(int, row[1:]), strict=True)) for row in rows}
 
 
-def test_every_route_answers_each_scope_as_the_table_says(guarded: Guarded) -> None:
-    promised = table()
-    assert set(promised) == routes_of(guarded.app)
+def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
+    statuses = expected()
+    assert set(statuses) == routes_of(guarded.app) == set(RIGHTS)
 
     async def told(client: httpx.AsyncClient, route: str) -> int:
         for file in guarded.editor_dir.iterdir():
@@ -206,15 +217,19 @@ def test_every_route_answers_each_scope_as_the_table_says(guarded: Guarded) -> N
             for i, credential in enumerate(credentials):
                 async with guarded.client(credential) as client:
                     yield heading, i, client
+        without_keys = replace(guarded, app=guarded.open_app)
+        for heading, address in (("this machine", HERE), ("elsewhere", ELSEWHERE)):
+            async with without_keys.client(address=address) as client:
+                yield heading, 0, client
 
     async def wrong() -> list[tuple[str, str, int, int]]:
         return [
-            (route, f"{heading} {i}", status, statuses[heading])
+            (route, f"{heading} {i}", status, row[heading])
             async for heading, i, client in with_each()
-            for route, statuses in promised.items()
-            # What asks for no key is asked with one of each kind.
-            if i == 0 or statuses["no key"] == 401
-            if (status := await told(client, route)) != statuses[heading]
+            for route, row in statuses.items()
+            # Routes that need no key are asked with one credential of each kind.
+            if i == 0 or row["no key"] == 401
+            if (status := await told(client, route)) != row[heading]
         ]
 
     assert asyncio.run(wrong()) == []
@@ -222,7 +237,7 @@ def test_every_route_answers_each_scope_as_the_table_says(guarded: Guarded) -> N
 
 def test_a_learner_reads_what_is_the_learner_s_own(guarded: Guarded) -> None:
     [token] = guarded.credentials["token"]
-    [record], [tutor] = guarded.credentials["`record`"], guarded.credentials["`tutor`"]
+    [record], [tutor] = guarded.credentials["record"], guarded.credentials["tutor"]
     path = f"/v1/exercises/{EXERCISE}/attempts"
     of_grace = guarded.ask("POST", path, record, json={"learner": "grace", **ANSWERS}).json()
     own = guarded.names["attempt_id"]
@@ -245,9 +260,9 @@ def test_a_learner_reads_what_is_the_learner_s_own(guarded: Guarded) -> None:
     assert reason not in read.text
 
 
-def test_idempotency_keys_belong_to_who_sends_them(guarded: Guarded) -> None:
+def test_idempotency_keys_belong_to_their_sender(guarded: Guarded) -> None:
     path, body = f"/v1/exercises/{EXERCISE}/attempts", {"learner": "ada", **ANSWERS}
-    [record], [token] = guarded.credentials["`record`"], guarded.credentials["token"]
+    [record], [token] = guarded.credentials["record"], guarded.credentials["token"]
 
     def recorded(credential: str) -> str:
         headers = {"Idempotency-Key": "first"}
@@ -257,11 +272,11 @@ def test_idempotency_keys_belong_to_who_sends_them(guarded: Guarded) -> None:
     assert recorded(record) == recorded(record) != recorded(token) == recorded(token)
 
 
-def test_a_token_has_no_right_that_its_key_has_not(guarded: Guarded) -> None:
+def test_a_token_has_no_right_that_its_key_does_not_have(guarded: Guarded) -> None:
     def made(credential: str, **more: Any) -> httpx.Response:
         return guarded.ask("POST", "/v1/tokens", credential, json={"learner": "ada", **more})
 
-    graded = made(guarded.credentials["`grade`"][1], minutes=1)
+    graded = made(guarded.credentials["grade"][1], minutes=1)
     assert graded.headers["Cache-Control"] == "no-store"
     left = datetime.fromisoformat(graded.json()["expires_at"]) - datetime.now(UTC)
     assert timedelta(seconds=30) < left <= timedelta(minutes=1)
@@ -272,26 +287,26 @@ def test_a_token_has_no_right_that_its_key_has_not(guarded: Guarded) -> None:
     path = f"/v1/exercises/{EXERCISE}/attempts"
     refused = guarded.ask("POST", path, token, json={"learner": "ada", **ANSWERS})
     assert refused.json()["type"].endswith("scope-missing")
-    [record] = guarded.credentials["`record`"]
+    [record] = guarded.credentials["record"]
     wrong: list[dict[str, Any]] = [
         {"exercises": []}, {"exercises": ["nothing"]}, {"minutes": 481}, {"key": "x"}
     ]  # fmt: skip
     assert [made(record, **each).status_code for each in wrong] == [422] * len(wrong)
 
 
-def test_each_of_many_submissions_is_held_to_the_exercises_of_the_key(guarded: Guarded) -> None:
+def test_each_of_many_submissions_must_be_to_an_exercise_of_the_key(guarded: Guarded) -> None:
     [elsewhere] = guarded.credentials["other exercise"]
     many = [{"exercise": exercise, "answers": {}} for exercise in (EXERCISE, OTHER)]
     answer = guarded.ask("POST", "/v1/grade", elsewhere, json={"submissions": many}).json()
     assert [next(iter(each)) for each in answer["results"]] == ["problem", "report"]
     assert answer["results"][0]["problem"]["type"].endswith("other-exercise")
-    # Its attempts are listed where it names its exercise.
+    # A restricted key lists the attempts at the exercise that it names.
     assert guarded.ask("GET", f"/v1/attempts?exercise={OTHER}", elsewhere).status_code == 200
     assert guarded.ask("GET", f"/v1/attempts?exercise={EXERCISE}", elsewhere).status_code == 403
 
 
 def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None:
-    [elsewhere], [tutor] = guarded.credentials["other exercise"], guarded.credentials["`tutor`"]
+    [elsewhere], [tutor] = guarded.credentials["other exercise"], guarded.credentials["tutor"]
 
     def links(path: str, key: str) -> set[str]:
         page = guarded.ask("GET", path, key)
@@ -302,13 +317,13 @@ def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None
     pages = links("/tutor", elsewhere) | links(f"/tutor/solutions/{OTHER}", elsewhere)
     assert {f"/tutor/{each}/{OTHER}" for each in ("solutions", "statistics")} <= pages
     assert "/tutor/attempts" in pages
-    # Whatever they lead to is open to the key.
+    # The key may open all pages that they link to.
     assert {path: guarded.ask("GET", path, elsewhere).status_code for path in pages} == (
         dict.fromkeys(pages, 200)
     )
     assert {"/tutor/editor", "/tutor/class"} <= links("/tutor", tutor)
     assert "/tutor/editor" in links(f"/tutor/solutions/{OTHER}", tutor)
-    # The list is of its exercise, and deletes nobody in all of them.
+    # The page lists only its exercise, and offers no deletion in all exercises.
     attempts = guarded.ask("GET", "/tutor/attempts", elsewhere).text
     everything = guarded.ask("GET", "/tutor/attempts", tutor).text
     for text in ("All exercises", EXERCISE, "Forget a learner"):
@@ -317,10 +332,10 @@ def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None
     assert 'href="tutor"' in guarded.ask("GET", "/", elsewhere).text
 
 
-def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Guarded) -> None:
+def test_a_refused_browser_gets_a_page_that_says_what_to_do(guarded: Guarded) -> None:
     reader = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
-    [record], [elsewhere] = guarded.credentials["`record`"], guarded.credentials["other exercise"]
-    [tutor], expired = guarded.credentials["`tutor`"], guarded.credentials["not valid"][0]
+    [record], [elsewhere] = guarded.credentials["record"], guarded.credentials["other exercise"]
+    [tutor], expired = guarded.credentials["tutor"], guarded.credentials["not valid"][0]
     create = 'dh-grader keys create "Your name" --scope tutor'
     for key, path, status, said in [
         ("", "/tutor", 401, create),
@@ -338,7 +353,7 @@ def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Gu
         assert "script-src 'self'" in page.headers["Content-Security-Policy"]
         assert said in page.text.partition("<main")[2].partition("</main")[0]
         assert "<b>" not in page.text
-        # Its style is found from wherever it stands.
+        # The relative address of its style is right.
         [style] = re.findall(r'href="([^"]*static/page-[^"]*css)', page.text)
         assert guarded.ask("GET", urljoin(path, style)).status_code == 200
         program = guarded.ask("GET", path, key)
@@ -351,26 +366,26 @@ def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Gu
 
 
 def test_a_browser_sends_the_key_as_a_password(guarded: Guarded) -> None:
-    [tutor] = guarded.credentials["`tutor`"]
+    [tutor] = guarded.credentials["tutor"]
     asked = guarded.ask("GET", "/tutor")
-    # A line for each: of several in one line a browser may know none.
+    # Each challenge has a header of its own: some browsers cannot read several in one.
     password, bearer = asked.headers.get_list("WWW-Authenticate")
     assert (password[:12], "Bearer" in password, bearer) == ("Basic realm=", False, "Bearer")
     graded = guarded.ask("POST", f"/v1/exercises/{EXERCISE}/grade", json=ANSWERS)
     assert graded.headers["WWW-Authenticate"] == "Bearer"
     assert guarded.ask("GET", "/tutor", auth=("anybody", tutor)).status_code == 200
-    # It would send it for a page of another origin, too; a program that shows it, does so itself.
+    # A browser would also send it for a page of another origin, but a program decides itself.
     path, headers = f"/v1/exercises/{EXERCISE}/solution", {"Origin": "https://evil.example"}
     assert guarded.ask("GET", path, auth=("", tutor), headers=headers).status_code == 403
     assert guarded.ask("GET", path, tutor, headers=headers).status_code == 200
-    # The password of a proxy in front is no key, and no mistake.
+    # The password of a proxy is ignored, and is not an error.
     for password in ("secret", "dhg_"):
         refused = guarded.ask("GET", "/v1/attempts", auth=("proxy", password))
         kind = "key-needed" if password == "secret" else "key-not-valid"
         assert refused.json()["type"].endswith(kind)
 
 
-def test_no_way_leads_around_the_door(guarded: Guarded) -> None:
+def test_no_request_avoids_authentication(guarded: Guarded) -> None:
     async def below_a_prefix() -> list[int]:
         transport = httpx.ASGITransport(guarded.app, root_path="/grader")
         address = "http://127.0.0.1:8000/grader/"
@@ -382,9 +397,10 @@ def test_no_way_leads_around_the_door(guarded: Guarded) -> None:
     access = Access(OPEN_HERE, solutions=None, keys=guarded.ring)
     scope = {"type": "http", "headers": [(b"host", b"127.0.0.1")], "path": "/"}
     here = {"server": ("127.0.0.1", 8000), "client": ("127.0.0.1", 1)}
+    request = Request({**scope, **here, "method": "POST", "route": Route("/v1/grade", print)})
     with pytest.raises(ProblemError, match="needs a key"):
-        access.require(Request({**scope, **here}), Scope.GRADE)
-    assert not access.shows_solutions(Request({**scope, **here}))
+        asyncio.run(access.permit(request))
+    assert not access.shows_solutions(request)
 
 
 def test_a_page_of_an_allowed_origin_may_send_a_token(guarded: Guarded) -> None:
@@ -412,7 +428,7 @@ def test_a_page_of_an_allowed_origin_may_send_a_token(guarded: Guarded) -> None:
         ("none", False, False, False), ("none", True, False, False),
     ],
 )  # fmt: skip
-def test_what_needs_no_key_is_said_by_the_setting(
+def test_the_setting_says_which_routes_need_no_key(
     guarded: Guarded, catalogue: Mapping[str, Exercise],
     says: str | None, needed: bool, grades: bool, records: bool,
 ) -> None:  # fmt: skip
@@ -438,11 +454,11 @@ def test_what_needs_no_key_is_said_by_the_setting(
         return tuple(status < 300 for status in statuses)  # type: ignore[return-value]
 
     assert asked() == (grades, records, not needed)
-    # Reached from another machine, by an address that is not this machine's alone.
+    # Asked at an address that other machines can reach.
     far = says is not None
     assert asked("192.0.2.1") == (grades and far, records and far, False)
-    [record] = guarded.credentials["`record`"]
-    # Where there are no keys, what a proxy in front may have asked for is not looked at.
+    [record] = guarded.credentials["record"]
+    # Without keys the header is ignored: it may be for a proxy.
     assert asked("192.0.2.1", record) == (
         (True, True, False) if needed else (grades and far, records and far, False)
     )
@@ -455,13 +471,13 @@ def test_without_keys_nobody_makes_tokens(client: httpx.Client) -> None:
     assert made.json()["type"].endswith("tokens-not-made")
 
 
-def test_who_asks_too_often_is_told_when_to_come_again(
+def test_too_many_requests_get_429_with_retry_after(
     guarded: Guarded, catalogue: Mapping[str, Exercise]
 ) -> None:
     rates = Rates("2/hour", "1/hour")
     app = application(catalogue, access=Access(keys=guarded.ring), rates=rates)
     limited = replace(guarded, app=app)
-    [record], [tutor] = guarded.credentials["`record`"], guarded.credentials["`tutor`"]
+    [record], [tutor] = guarded.credentials["record"], guarded.credentials["tutor"]
     path = "/v1/exercises"
     asked = [limited.ask("GET", path, each) for each in (record, record, record, tutor, "", "")]
     assert [each.status_code for each in asked] == [200, 200, 429, 200, 200, 429]

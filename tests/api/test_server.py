@@ -1,4 +1,4 @@
-"""The real process: `python -m service serve` on a free port."""
+"""The real process, `python -m service serve`, on a free port."""
 
 import json
 import os
@@ -42,7 +42,7 @@ def test_head_has_no_body_on_the_wire(server: Served) -> None:
         plain = {"accept-encoding": "identity"}
         length = int(client.head(url, headers=plain).headers["content-length"])
         assert length == len(client.get(url, headers=plain).content)
-        # Packed by gzip, both are as short.
+        # Compressed, both have the same length.
         packed = client.get(url)
         assert packed.headers["content-encoding"] == "gzip"
         assert client.head(url).headers["content-length"] == packed.headers["content-length"]
@@ -73,14 +73,14 @@ def test_twenty_megabytes_are_refused_while_they_are_still_coming(
 
 
 def receive(connection: socket.socket) -> bytes:
-    """What has come, or nothing where the server has hung up."""
+    """Return the bytes that have arrived, or none if the server has closed the connection."""
     try:
         return connection.recv(65536)
     except ConnectionResetError:
         return b""
 
 
-def test_a_bad_exercise_file_refuses_the_start(tmp_path: Path) -> None:
+def test_a_bad_exercise_file_prevents_startup(tmp_path: Path) -> None:
     (tmp_path / "broken.toml").write_text('title = "x"\n', encoding="utf-8")
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(
@@ -92,7 +92,7 @@ def test_a_bad_exercise_file_refuses_the_start(tmp_path: Path) -> None:
     assert "Traceback" not in result.stderr
 
 
-def test_so_does_it_under_a_server_of_ones_own(tmp_path: Path) -> None:
+def test_a_bad_exercise_file_prevents_startup_under_another_server(tmp_path: Path) -> None:
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(
         [sys.executable, "-m", "uvicorn", "service.app:app", "--port", "0"],

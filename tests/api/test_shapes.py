@@ -1,4 +1,4 @@
-"""What a student is told of each kind of answer before answering."""
+"""The shape of an answer, which a student sees before answering."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Statements as HTML: Markdown and formulas, and nothing that a page would run or load."""
+"""Statements as HTML: Markdown and formulas, and nothing that a browser would run or load."""
 
 from html.parser import HTMLParser
 
@@ -9,7 +9,7 @@ from service.api.statement import statement_html
 
 
 class Elements(HTMLParser):
-    """The elements and attributes of a text, as a browser's parser finds them."""
+    """The elements and attributes of a text, as the parser of a browser finds them."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -42,7 +42,7 @@ def test_a_matrix_and_a_table() -> None:
     assert "style" not in html
 
 
-def test_subscripts_in_plain_text_stay_as_they_are() -> None:
+def test_subscripts_in_plain_text_are_unchanged() -> None:
     text = "Rot_z(theta) Trans_z(d), frame {0}, z_i and x_i"
     assert statement_html(text) == f"<p>{text}</p>\n"
 
@@ -74,7 +74,7 @@ HARMLESS = {
 
 
 @pytest.mark.parametrize("text", HOSTILE)
-def test_what_is_hostile_is_shown_as_text(text: str) -> None:
+def test_hostile_markup_is_shown_as_text(text: str) -> None:
     for tag, attributes in Elements(statement_html(text)).found:
         assert tag in HARMLESS
         assert set(attributes) <= {"href", "class", "display", "stretchy"}

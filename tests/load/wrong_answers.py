@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from service.api.http.bodies import checked
+from service.api.http.bodies import validated
 from service.catalogue import Exercise
 from service.grading import grade
 from service.submissions.body import GradeRequest
@@ -82,7 +82,7 @@ def in_process(bodies: Sequence[Body], catalogue: dict[str, Exercise]) -> list[f
     """The processor seconds of each grading, with nothing around it."""
     found = []
     for exercise, content in bodies:
-        body = checked(GradeRequest, json.loads(content), ())
+        body = validated(GradeRequest, json.loads(content), ())
         submission = body.submission(catalogue[exercise].feedback)
         began = time.thread_time()
         grade(catalogue[exercise], submission)

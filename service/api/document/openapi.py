@@ -1,11 +1,10 @@
-"""The OpenAPI document: bodies, failures and examples that the service really gives.
+"""The OpenAPI document: the bodies, failures and examples that the service really sends.
 
-The examples are files, not computed at the start; a test holds them against the service's answers.
+The examples are files, so that no start computes them; a test compares them with real answers.
 """
 
 import json
 from collections.abc import Mapping
-from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any, Final
@@ -19,13 +18,18 @@ EXAMPLES = Path(__file__).parent / "examples"
 
 _REFUSALS = {
     HTTPStatus.BAD_REQUEST: "The body is not JSON.",
-    HTTPStatus.UNAUTHORIZED: "There is no key, or one that is not valid.",
+    HTTPStatus.UNAUTHORIZED: "The key is missing or not valid.",
     HTTPStatus.FORBIDDEN: "It is not allowed: the detail says why.",
     HTTPStatus.NOT_FOUND: "There is no such exercise.",
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The body is larger than 256 KiB.",
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
-    HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
-    HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached, or did not confirm.",
+    HTTPStatus.UNPROCESSABLE_ENTITY: "The body does not match its schema, or a part is unknown.",
+    HTTPStatus.SERVICE_UNAVAILABLE: "The database does not answer, or did not confirm the attempt.",
+}
+# The responses of every operation for the statuses that it does not name.
+OTHER_FAILURES: Final[dict[int | str, dict[str, Any]]] = {
+    "4XX": {"description": "Any other refusal of the request."},
+    "5XX": {"description": "The service has failed, or has no room for the request now."},
 }
 _REFUSED_BODIES: Final = (
     HTTPStatus.BAD_REQUEST,
@@ -34,67 +38,69 @@ _REFUSED_BODIES: Final = (
     HTTPStatus.UNPROCESSABLE_ENTITY,
 )
 
-# How the document is headed, as options of FastAPI.
+# The head of the document, as options of FastAPI.
 HEADING: Final[Mapping[str, Any]] = {
     "title": "DH Grader",
     "summary": "Grades Denavit-Hartenberg tables, transforms and forward kinematics.",
     "description": """
 Answers in, a report out: row by row and cell by cell, what is right, what is wrong, and why.
 
-A student's mistake is never an error of the request: whatever an answer holds, a report comes back.
-Every other failure is a `Problem`, sent as `application/problem+json` (RFC 9457).
+A student's mistake is never an error of the request: every answer gets a report. Every other
+failure is a `Problem`, sent as `application/problem+json` (RFC 9457).
 
-Messages, kinds of answers and problems have stable codes. New ones come with new versions: show the
-message of a code that your program does not know. A field that says nothing is left out.
+Messages, kinds of answers and problems have stable codes. New versions may add codes: if your
+program does not know a code, show its message. Fields without a value are left out.
 """,
     "license_info": {"name": "MIT", "identifier": "MIT"},
     "contact": {"name": "DH Grader authors"},
-    # Relative to the document's own address, whatever stands in front of it.
+    # Relative to the address of the document, so that it is right behind a proxy, too.
     "servers": [{"url": ".", "description": "The service that this document comes from."}],
     "openapi_tags": [
         {"name": "grading", "description": "Answers in, a report out. Nothing is recorded."},
         {
             "name": "exercises",
-            "description": "The catalogue, and all that a student sees of an exercise before "
-            "answering. Never an answer.",
+            "description": "The catalogue, and everything that a student sees of an exercise "
+            "before answering. Never an answer.",
         },
-        {"name": "attempts", "description": "Attempts that are recorded, where a database is set."},
+        {"name": "attempts", "description": "Recorded attempts, if the service has a database."},
         {
             "name": "drawing",
-            "description": "Numbers to draw with, so that no page needs a kinematics of its own.",
+            "description": "Coordinates to draw with, so that a page needs no kinematics.",
         },
-        {"name": "preview", "description": "How a text is read, while the student still types."},
+        {
+            "name": "preview",
+            "description": "How a text is read, shown while the student is typing.",
+        },
         {
             "name": "solutions",
-            "description": "The model solutions, for tutors: off unless the service is started "
-            "with them on.",
+            "description": "Model solutions, for tutors. The service must be started with them on.",
         },
         {
             "name": "tokens",
-            "description": "Tokens of learners, for pages that must not show a key.",
+            "description": "Tokens of learners, for pages in browsers, which must not show a key.",
         },
-        {"name": "health", "description": "What a supervisor asks."},
+        {"name": "health", "description": "Checks for a supervisor of the service."},
     ],
 }
 
 
 def example(name: str) -> Any:
-    """The JSON value of an example file."""
+    """Return the JSON value of an example file."""
     return json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
 
 
-# What a route says of itself that needs a key, where the service knows keys.
+# The options of a route that needs a key if the service has keys.
 MAY_NEED_KEY: Final[dict[str, Any]] = {"security": [{"key": []}, {}]}
 _SCHEMES: Final = {
     "key": {
         "type": "http",
         "scheme": "bearer",
-        "description": "A key of `dh-grader keys create`, or a token of a learner. A service that "
-        "was given no keys needs none.",
+        "description": "A key from `dh-grader keys create`, or a token of a learner. A service "
+        "without keys needs none.",
     }
 }
 _REF_TEMPLATE: Final = "#/components/schemas/{model}"
-# The schemas of bodies, each empty until a document is asked for.
+# The schemas of bodies. They are empty until the document is requested.
 _BODY_SCHEMAS: Final[dict[type[BaseModel], dict[str, Any]]] = {}
 
 
@@ -105,9 +111,10 @@ def posting(
     *further: HTTPStatus,
     success: HTTPStatus = HTTPStatus.OK,
 ) -> dict[str, Any]:
-    """Body and responses of a route that reads its body by ``body_as``, as options of the route.
+    """Return the options of a route that reads a body with ``read_body``.
 
-    ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
+    ``name`` is the start of the names of its two example files. ``further`` are statuses of
+    refusals other than those of a body.
     """
     schema = _BODY_SCHEMAS.setdefault(body, {})
     content = {"schema": schema, "example": example(f"{name}-request")}
@@ -120,47 +127,33 @@ def posting(
 def answers(
     model: type, name: str, *statuses: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
 ) -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI response of success with its schema and example, and those for the refusals."""
+    """Return the OpenAPI responses for success, with schema and example, and for the refusals."""
     answer = {"model": model, "content": {"application/json": {"example": example(name)}}}
     return {int(success): answer, **refusals(*statuses)}
 
 
 def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI responses for the ways in which a request may be refused."""
-    return {int(status): _problem(_REFUSALS[status]) for status in statuses}
-
-
-def other_failures() -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI responses for every status that a route does not name."""
-    return {
-        "4XX": _problem("Any other refusal of the request."),
-        "5XX": _problem("The service has failed, or has no room for the request now."),
-    }
-
-
-def _problem(description: str) -> dict[str, Any]:
-    return {"description": description, "content": {MEDIA_TYPE: {"schema": _problem_schema()}}}
-
-
-@cache
-def _problem_schema() -> dict[str, Any]:
-    # Worked out for each response, it took a quarter of the application's start.
-    return ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
-
-
-def work_out_schemas() -> None:
-    """Fill in the schemas of all bodies, which no start of the service waits for."""
-    for body, schema in _BODY_SCHEMAS.items():
-        schema.update(body.model_json_schema(ref_template=_REF_TEMPLATE))
+    """Return the OpenAPI responses for the ways in which a request may be refused."""
+    return {int(status): {"description": _REFUSALS[status]} for status in statuses}
 
 
 def completed(document: dict[str, Any]) -> dict[str, Any]:
-    """FastAPI's document with what generators of clients and linters ask for besides."""
-    tidy_schemas(document)
-    document["components"]["securitySchemes"] = _SCHEMES
-    # Unless an operation says otherwise, whoever can reach the service may use it.
-    document["security"] = []
+    """Return FastAPI's document with schemas of problems, tidy schemas, and the use of keys."""
+    problem = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     for path in document["paths"].values():
         for operation in path.values():
+            for status, response in operation["responses"].items():
+                if not status.startswith("2"):
+                    response["content"] = {MEDIA_TYPE: {"schema": problem}}
             operation["responses"] = dict(sorted(operation["responses"].items()))
+    tidy_schemas(document)
+    document["components"]["securitySchemes"] = _SCHEMES
+    # Operations need no key unless they say so themselves.
+    document["security"] = []
     return document
+
+
+def fill_body_schemas() -> None:
+    """Fill in the schemas of all bodies. Only the document needs them, so startup does not wait."""
+    for body, schema in _BODY_SCHEMAS.items():
+        schema.update(body.model_json_schema(ref_template=_REF_TEMPLATE))

@@ -1,7 +1,7 @@
-"""The schemas of the OpenAPI document as generators of clients want them.
+"""The schemas of the OpenAPI document in a form that suits generators of clients.
 
-Pydantic's own say how a value is checked. A client wants a name for each model and each choice, and
-a field that is left out where it says nothing as optional, not as one that may be null.
+Pydantic's schemas say how a value is validated. A client needs a name for each model and each
+choice. It also needs to know that a field may be left out, and is then not sent as null.
 """
 
 import json
@@ -12,7 +12,7 @@ Schema = dict[str, Any]
 _REFERENCE: Final = "#/components/schemas/"
 _NULL: Final = {"type": "null"}
 
-# The names in the document of classes whose plain names the program uses for something else.
+# The names that classes have in the document if they are not their own.
 _PUBLIC_NAMES: Final = {
     "Alive": "Liveness",
     "ComponentView": "ListComponent",
@@ -28,7 +28,7 @@ _PUBLIC_NAMES: Final = {
     "Shown": "PrintedMatrix",
     "SymbolView": "ExerciseSymbol",
 }
-# The names of choices, which the models write out.
+# The names of choices. The models have them as literals, without a name.
 _CHOICES: Final = {
     ("angle", "length", "number"): "Quantity",
     ("R", "P"): "JointKind",
@@ -44,7 +44,7 @@ _CHOICES: Final = {
 
 
 def public_name(name: str) -> str:
-    """The name in the document of the class with this name."""
+    """Return the name that a class has in the document."""
     return _PUBLIC_NAMES.get(name, name)
 
 
@@ -61,13 +61,13 @@ def tidy_schemas(document: Schema) -> None:
 
 
 class _Tidying:
-    """One tidying of a document; ``named`` are the schemas that got a name."""
+    """One tidying of a document; ``named`` holds the schemas that have a name."""
 
     def __init__(self) -> None:
         self.named: Schema = {}
 
     def visit_operation(self, operation: Schema) -> None:
-        """Tidy the schemas of one operation in their places."""
+        """Tidy the schemas of one operation."""
         for parameter in operation.get("parameters", ()):
             parameter["schema"] = self.tidied(parameter["schema"])
         asked = operation.get("requestBody", {"content": {}})
@@ -76,7 +76,7 @@ class _Tidying:
                 content["schema"] = self.tidied(content["schema"], is_sent=message is not asked)
 
     def name(self, name: str, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """A reference to the schema by its public name; that of a class counts before others."""
+        """Give the schema its public name, if that is free, and return a reference to this name."""
         name = public_name(name)
         if name not in self.named:
             self.named[name] = {}
@@ -84,7 +84,7 @@ class _Tidying:
         return {"$ref": f"{_REFERENCE}{name}"}
 
     def tidied(self, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """A schema that stands in some place; ``is_sent`` where the service answers it."""
+        """Return the tidied schema; ``is_sent`` is True for answers, and False for requests."""
         for name, definition in schema.get("$defs", {}).items():
             self.name(name, definition, is_sent=is_sent)
         if "properties" in schema:
@@ -120,10 +120,11 @@ class _Tidying:
         return body
 
     def _fields(self, schema: Schema, *, is_sent: bool) -> Schema:
-        """The fields of a model.
+        """Return the fields of a model.
 
-        What the service sends has every field but those without a value. In a request a default is
-        told in words: as ``default`` it makes some generators ask for the field.
+        The service sends every field that has a value, so a field with a default is
+        required there. In a request the description says the default: given as ``default``,
+        it makes some generators require the field.
         """
         required = list(schema.get("required", ()))
         fields = {}
@@ -142,7 +143,7 @@ class _Tidying:
 
 
 def _without_null(field: Schema) -> Schema:
-    """An optional field that is left out rather than null."""
+    """Return an optional field that may be left out instead of being null."""
     forms = [form for form in field.get("anyOf", ()) if form != _NULL]
     rest = {key: value for key, value in field.items() if key != "anyOf"}
     if rest.get("default", ()) is None:
@@ -153,7 +154,7 @@ def _without_null(field: Schema) -> Schema:
 
 
 def _texts(schema: Schema) -> Schema:
-    """The description, if there is one, with code as Markdown has it."""
+    """Return the description, if there is one, with code marked as in Markdown."""
     if "description" not in schema:
         return {}
     return {"description": schema["description"].replace("``", "`")}

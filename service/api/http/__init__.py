@@ -1,1 +1,1 @@
-"""What all routes share: bodies, problems, layers around the application."""
+"""What all routes share: bodies, problems, and layers around the application."""

@@ -1,4 +1,4 @@
-"""Reading a request's body once, straight into its model."""
+"""The body of a request, read once and validated as a model."""
 
 from email.message import Message
 from http import HTTPStatus
@@ -15,24 +15,24 @@ from service.submissions.strict_json import MalformedError, read_json
 M = TypeVar("M", bound=BaseModel)
 
 
-async def body_as(model: type[M], request: Request) -> M:
-    """The body as this model; any Content-Type will do where it can be read as JSON.
+async def read_body(model: type[M], request: Request) -> M:
+    """Return the body as this model. Any Content-Type is accepted if the body is JSON.
 
-    Forms and scripts that forget the header are common, and nothing here acts on a cookie that
-    another site could borrow. Raises ProblemError: 400 for a body that is no JSON, 415 where the
-    header claims another type, 422 for another shape.
+    Forms and scripts often forget the header. Accepting them is safe, because no cookie gives a
+    request any right. Raises ProblemError: 400 if the body is not JSON, 415 if moreover the
+    header names another type, 422 if the body does not match the model.
     """
     try:
         value = read_json(await request.body())
     except MalformedError as error:
         raise _malformed(error, request.headers.get("content-type", "")) from error
-    return checked(model, value)
+    return validated(model, value)
 
 
-def checked(model: type[M], value: object, at: Location = ()) -> M:
-    """A value of a body as this model; ``at`` is its place in the body.
+def validated(model: type[M], value: object, at: Location = ()) -> M:
+    """Return part of a body as this model; ``at`` is its place in the body.
 
-    Raises ProblemError: 422 for another shape.
+    Raises ProblemError: 422 if it does not match the model.
     """
     try:
         return model.model_validate(_with_few_unknown(model, value))
@@ -43,7 +43,7 @@ def checked(model: type[M], value: object, at: Location = ()) -> M:
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    """The value with no more unknown fields than are told; it is refused in any case."""
+    """Return the value with at most as many unknown fields as a problem lists; they are refused."""
     known = model.model_fields
     if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
         return value

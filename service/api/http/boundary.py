@@ -1,4 +1,4 @@
-"""The outermost layers, which every request and answer passes."""
+"""The outermost layers, which every request and every answer passes."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -12,13 +12,13 @@ from service.api.http.problems import too_large
 from service.api.http.request_context import HEADER, begin_request, current_request
 from service.submissions.strict_json import MAX_BODY_SIZE
 
-# What a page of another origin may read of an answer besides its body.
+# The headers of an answer that a page of another origin may read.
 EXPOSED_HEADERS: Final = ("Retry-After", HEADER)
 _DIGITS: Final = len(str(MAX_BODY_SIZE))
 
 
-class NamingMiddleware:
-    """Gives every request its id, and tells it in the answer."""
+class RequestIdMiddleware:
+    """Give every request an id, and send it with the answer."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -38,8 +38,8 @@ class NamingMiddleware:
         await self.app(scope, receive, named)
 
 
-class RouteNoting:
-    """Notes which route the application has found for a request."""
+class RouteMiddleware:
+    """Note the route that the application has found for a request, for the log and the metrics."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -54,8 +54,8 @@ class RouteNoting:
                 request.route = getattr(scope.get("route"), "path", "")
 
 
-class RefusalNoting:
-    """Notes which of these routes a request was for that a layer before the routes refused."""
+class RefusedRouteMiddleware:
+    """Note the route of a request that an outer layer refused before the routes saw it."""
 
     def __init__(self, app: ASGIApp, routes: Sequence[APIRoute]) -> None:
         self.app = app
@@ -80,10 +80,10 @@ class RefusalNoting:
 
 
 class BoundaryMiddleware:
-    """Hardens answers, has HEAD answered as GET, and refuses a body that says it is too large.
+    """Add security headers, answer HEAD like GET, and refuse bodies that are declared too large.
 
-    The framework's own limit counts the bytes as they come; where a length is declared, nothing
-    need be read, and an address that takes no body refuses it as well.
+    The framework's own limit counts the bytes as they arrive. If the length is declared,
+    nothing has to be read, and routes that take no body refuse it as well.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -99,8 +99,8 @@ class BoundaryMiddleware:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 headers["X-Content-Type-Options"] = "nosniff"
-                # No page of another origin shows or runs it, but what says otherwise: the element's
-                # files, and figures. Pages of DH_GRADER_CORS_ORIGINS ask in a mode that may.
+                # No page of another origin may embed the answer. The element's files and figures
+                # set their own value; pages of DH_GRADER_CORS_ORIGINS use CORS.
                 headers.setdefault("Cross-Origin-Resource-Policy", "same-origin")
             await send(message)
 
@@ -108,7 +108,7 @@ class BoundaryMiddleware:
             answer = too_large().response(Request(scope).url.path)
             await answer(scope, receive, hardened)
             return
-        # The server still knows that it was HEAD, and sends the headers alone.
+        # The server still knows that the method is HEAD, and sends only the headers.
         inner = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
         await self.app(inner, receive, hardened)
 

@@ -1,4 +1,4 @@
-"""Work that takes a while: in a thread, one at a time, and few in the queue."""
+"""Slow work: in a thread, one piece at a time, with a short queue."""
 
 import asyncio
 from collections.abc import Callable
@@ -9,19 +9,19 @@ from service.api.http.problems import ProblemError
 
 T = TypeVar("T")
 
-# A tutor's page sends its next request after the answer to the last one.
+# The length of the queue. A tutor's page waits for an answer before its next request.
 WAITING: Final = 4
 
 
 class BoundedWork:
-    """One piece of work at a time, in a thread; whoever finds the queue full is told so."""
+    """Does one piece of work at a time in a thread; refuses more if the queue is full."""
 
     def __init__(self) -> None:
         self._working = asyncio.Lock()
         self._accepted = 0
 
     async def do(self, work: Callable[[], T]) -> T:
-        """The result of ``work``. Raises ProblemError where too many wait."""
+        """Return the result of ``work``. Raises ProblemError if the queue is full."""
         if self._accepted > WAITING:
             raise ProblemError(
                 HTTPStatus.SERVICE_UNAVAILABLE,

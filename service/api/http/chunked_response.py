@@ -1,16 +1,16 @@
-"""A response that is in memory and sent piece by piece."""
+"""A response whose content is in memory and is sent in chunks."""
 
 from typing import Final
 
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
-# Bytes that are handed to the server at once.
+# Bytes of a chunk.
 _PIECE: Final = 16 * 1024
 
 
-class PiecewiseResponse(Response):
-    """A file that is in memory, sent piece by piece: whoever does not read it holds one piece."""
+class ChunkedResponse(Response):
+    """A response that is sent in chunks: for a client that does not read, only one is buffered."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
         """Serve one ASGI connection."""

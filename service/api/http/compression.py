@@ -1,18 +1,19 @@
-"""Answers packed by gzip, where they are worth it: pages, scripts, drawings, descriptions."""
+"""Compression of pages, scripts, drawings and descriptions with gzip."""
 
 from typing import Final
 
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-# Of nine; the higher ones take twice as long for a hundredth less.
+# Of nine levels. Higher ones take twice as long and save 1 %.
 _LEVEL: Final = 6
 
 
-class PackedGets:
-    """Packs the answers to GET for clients that take it.
+class CompressedGets:
+    """Compress the answers to GET for clients that accept gzip.
 
-    Those to POST, reports and previews, are small and have to be quick.
+    The answers to POST, reports and previews, are small and must be fast, so they are not
+    compressed.
     """
 
     def __init__(self, app: ASGIApp) -> None:

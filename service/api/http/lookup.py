@@ -15,17 +15,17 @@ from service.submissions.lookup import UnknownExerciseError, find_exercise, near
 
 Catalogue = Mapping[str, Exercise]
 ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
-# The steps from the whole body to a place in it.
+# A place in a body: the keys and indices that lead to it.
 Location = tuple[str | int, ...]
 
 
-def reached(catalogue: Catalogue, caller: Caller) -> Catalogue:
-    """The exercises that a caller's key is for."""
+def reachable_exercises(catalogue: Catalogue, caller: Caller) -> Catalogue:
+    """Return the exercises that the caller's key is for."""
     return {name: each for name, each in catalogue.items() if caller.reaches(name)}
 
 
 def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
-    """The exercise named in a path. Raises ProblemError."""
+    """Return the exercise that a path names. Raises ProblemError."""
     try:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
@@ -35,7 +35,7 @@ def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
 
 
 def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
-    """The exercise named in a body, in its field ``exercise``. Raises ProblemError."""
+    """Return the exercise that the field ``exercise`` of a body names. Raises ProblemError."""
     try:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
@@ -44,7 +44,7 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
 
 
 def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: str) -> None:
-    """Check that the exercises of a list in a body exist. Raises ProblemError."""
+    """Check that the exercises in the list ``field`` of a body exist. Raises ProblemError."""
     details = []
     for i, exercise_id in enumerate(exercise_ids):
         try:
@@ -56,9 +56,10 @@ def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: 
 
 
 def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
-    """Check that the exercise has these parts, each with its place in the body.
+    """Check that the exercise has these parts, each given with its place in the body.
 
-    Raises ProblemError naming those that there are, and the places of the first that there are not.
+    Raises ProblemError, which lists the parts of the exercise and the places of the first
+    unknown ones.
     """
     absent = (each for each in located if exercise.part(each[0]) is None)
     known = [part.id for part in exercise.parts]

@@ -26,9 +26,10 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request that cannot be answered. ``name`` makes the type; empty for the bare status.
+    """A request that cannot be answered. ``name`` is the end of its type.
 
-    Each of ``challenges`` is a line ``WWW-Authenticate`` of its own.
+    A problem without a name has the type ``about:blank``. Each of ``challenges`` is sent as a
+    header ``WWW-Authenticate`` of its own.
     """
 
     status: HTTPStatus
@@ -40,20 +41,20 @@ class ProblemError(Exception):
     challenges: Sequence[str] = ()
 
     def response(self, instance: str) -> Response:
-        """The problem as an answer to a request for the path ``instance``."""
+        """Return the problem as the answer to a request for the path ``instance``."""
         request = current_request()
         content = self.content(instance, "" if request is None else request.id)
         return self.answer(content, MEDIA_TYPE)
 
     def answer(self, content: bytes, media_type: str = "text/html") -> Response:
-        """The answer with this content, and with the status and headers of the problem."""
+        """Return an answer with this content and with the status and headers of the problem."""
         response = Response(content, self.status, self.headers, media_type)
         for challenge in self.challenges:
             response.headers.append("WWW-Authenticate", challenge)
         return response
 
     def content(self, instance: str, request_id: str = "") -> bytes:
-        """The problem as JSON; ``instance`` is what was asked for."""
+        """Return the problem as JSON; ``instance`` is the path that was requested."""
         document: dict[str, Any] = {
             "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
             "title": self.title or self.status.phrase,
@@ -65,16 +66,16 @@ class ProblemError(Exception):
             document["request_id"] = request_id
         if self.errors:
             document["errors"] = list(self.errors)
-        # Escaped to ASCII: whatever the request held can be written out.
+        # In ASCII, because the request may hold characters that cannot be encoded.
         return json.dumps(document).encode("ascii")
 
 
-# A problem as a page; None for a request that a program has made.
+# Makes the page of a problem; None if a program has made the request.
 ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
-    """A body over the limit. The connection ends, so that the rest of it is not read."""
+    """Return the problem of a body over the limit. The connection ends, so the rest is not read."""
     return ProblemError(
         HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
         f"A request may hold {MAX_BODY_SIZE // 1024} KiB; this one is larger.",
@@ -85,7 +86,7 @@ def too_large() -> ProblemError:
 
 
 def store_down(detail: str) -> ProblemError:
-    """The database of the attempts cannot be reached; grading goes on without it."""
+    """Return the problem that the database does not answer. Grading does not need it."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         detail,
@@ -96,7 +97,7 @@ def store_down(detail: str) -> ProblemError:
 
 
 def failed() -> ProblemError:
-    """A failure of the program itself."""
+    """Return the problem of a failure inside the program."""
     return ProblemError(
         HTTPStatus.INTERNAL_SERVER_ERROR,
         "The service failed at this request. Nothing is wrong with the answer itself; the failure "
@@ -105,7 +106,7 @@ def failed() -> ProblemError:
 
 
 def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) -> ProblemError:
-    """The problem for pydantic's findings in a body; ``fields`` are those that a body may have."""
+    """Return the problem of a body with errors that pydantic found; it may have ``fields``."""
     errors = [
         {"pointer": _pointer(detail["loc"]), "detail": _message(detail, fields)}
         for detail in details[:MAX_ERRORS]
@@ -119,12 +120,12 @@ def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) ->
     )
 
 
-# A longer pattern says nothing to a reader: it is that of a line that can be told from all others.
+# A longer pattern does not help a reader. It is the one of names, which are one visible line.
 _LONGEST_PATTERN: Final = 200
 
 
 def _pointer(location: Sequence[str | int]) -> str:
-    """A JSON pointer as a URI fragment, as RFC 9457 writes it; overlong keys are cut."""
+    """Return a JSON pointer as a URI fragment, as RFC 9457 writes it; long keys are cut."""
     steps = (str(step)[:60].replace("~", "~0").replace("/", "~1") for step in location)
     return "#" + "".join(f"/{step}" for step in steps)
 
@@ -146,9 +147,9 @@ def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
 
 
 def install(app: FastAPI, page: ProblemPage | None = None) -> None:
-    """Have the app answer every failure, its framework's own included, with a problem.
+    """Let the app answer every failure with a problem, including those of its framework.
 
-    Whoever reads in a browser gets its ``page``.
+    A browser gets the ``page`` of the problem instead.
     """
 
     async def answer(request: Request, error: Exception) -> Response:
@@ -177,7 +178,7 @@ def _problem(request: Request, error: Exception) -> ProblemError:
         case RequestValidationError():
             return invalid([{**detail, "loc": detail["loc"][1:]} for detail in error.errors()])
         case ClientDisconnect():
-            # The client reads no answer; this only keeps it from counting as our failure.
+            # The client reads no answer, but this must not count as a failure of the service.
             detail = "The request ended before its body was complete."
             return ProblemError(HTTPStatus.BAD_REQUEST, detail)
         case HTTPException(status_code=HTTPStatus.METHOD_NOT_ALLOWED):
@@ -190,12 +191,12 @@ def _problem(request: Request, error: Exception) -> ProblemError:
         case HTTPException():
             status = HTTPStatus(error.status_code)
             return ProblemError(status, str(error.detail), headers=error.headers)
-        case _:  # without details; the server logs the traceback
+        case _:  # no details for the client; the server logs the traceback
             return failed()
 
 
 def _other_method(request: Request, error: HTTPException) -> ProblemError:
-    """The problem that names the other methods: HEAD goes wherever GET does."""
+    """Return the problem that lists the allowed methods; HEAD is allowed if GET is."""
     methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = ", ".join(sorted(methods))

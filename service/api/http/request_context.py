@@ -1,4 +1,4 @@
-"""What is known of the request that is being answered: its id, its route, when it came."""
+"""The request that is being answered: its id, its route, and when it arrived."""
 
 import re
 import secrets
@@ -7,31 +7,31 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Final
 
-# The header that names a request: a client's own id is kept, and comes back in the answer.
+# The header with the id of a request. The id of a client is kept, and sent with the answer.
 HEADER: Final = "X-Request-ID"
-# As proxies and tracers write them; nothing that would have to be quoted in a log.
+# Ids as proxies and tracers write them, without characters that a log would have to quote.
 _WELL_FORMED: Final = re.compile(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
 
 
 @dataclass(slots=True)
 class RequestContext:
-    """One request. ``route`` is the pattern of its path, empty until it is found."""
+    """One request. ``route`` is the pattern of its path, or empty until it is known."""
 
     id: str
     route: str = ""
-    came: float = field(default_factory=perf_counter)
+    arrived: float = field(default_factory=perf_counter)
 
     @property
     def seconds(self) -> float:
-        """How long it has been here."""
-        return perf_counter() - self.came
+        """The seconds since the request arrived."""
+        return perf_counter() - self.arrived
 
 
 _current: ContextVar[RequestContext | None] = ContextVar("request", default=None)
 
 
 def begin_request(wished: str | None = None) -> RequestContext:
-    """Have what follows in this task belong to a new request; its id is ``wished`` if usable."""
+    """Start a new request in the current task. Its id is ``wished`` if that is well formed."""
     usable = wished is not None and _WELL_FORMED.fullmatch(wished)
     context = RequestContext(wished if usable and wished else secrets.token_hex(16))
     _current.set(context)
@@ -39,10 +39,10 @@ def begin_request(wished: str | None = None) -> RequestContext:
 
 
 def current_request() -> RequestContext | None:
-    """The request that this task answers; None outside of one."""
+    """Return the request that the current task answers, or None."""
     return _current.get()
 
 
 def end_request() -> None:
-    """Have what follows belong to no request."""
+    """End the request of the current task."""
     _current.set(None)

@@ -1,1 +1,1 @@
-"""Authentication and rights."""
+"""Authentication, and the rights of callers."""

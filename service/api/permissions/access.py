@@ -1,8 +1,7 @@
-"""Who may do what: the one place that routes ask.
+"""Who may do what: the caller of each request is checked against the table of rights.
 
-Where there are keys, they say it. Where there are none, grading and recording are open, and the
-tutor is whoever asks from the machine that serves, unless a proxy stands in between, which brings
-in the students.
+As long as there are no keys, grading and recording are open. Tutors are then the users of the
+machine that the service runs on, unless a proxy forwards the request: it also forwards students.
 """
 
 import base64
@@ -11,38 +10,30 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
-from ipaddress import ip_address
+from ipaddress import IPv4Address, IPv6Address, ip_address
 from typing import Final
 from urllib.parse import urlsplit
 
 from fastapi import Request
 from starlette.datastructures import Headers
-from starlette.types import Scope as Asked
+from starlette.types import Scope as AsgiScope
 
 from service.access.caller import NOBODY, Caller, Scope
 from service.access.key_text import PREFIX
 from service.access.keys import CredentialError, Keys, KeysBusyError, KeysUnreachableError
 from service.access.open_access import OPEN_ANYWHERE, OpenAccess
-from service.api.http.problems import ProblemError
+from service.api.http.problems import ProblemError, store_down
 from service.api.permissions.access_problems import (
-    asking_for_password,
-    attempts_not_changed,
-    attempts_not_shown,
-    credential_refused,
-    key_needed,
-    keys_busy,
-    keys_unreachable,
-    learner_makes_token,
-    origin_refused,
-    other_exercise,
+    access_problem,
     scope_missing,
-    solutions_off,
-    tokens_not_made,
+    token_for_token,
+    with_password_challenge,
 )
+from service.api.permissions.rights import RIGHTS, Reach, Right, WithoutKeys, right_of
 
-# Where the layer at the door leaves who asks, in the scope of a request.
+# The key of a request's ASGI scope under which the authentication leaves the identity.
 IDENTITY: Final = "dh_grader.identity"
-# A proxy names whom it speaks for, or how it was asked, in one of these or in X-Forwarded-…
+# Headers by which a proxy names its client or the address it was asked for, besides X-Forwarded-….
 _OF_PROXIES: Final = frozenset(
     {
         "forwarded", "via", "x-real-ip", "x-client-ip", "x-cluster-client-ip", "true-client-ip",
@@ -51,14 +42,20 @@ _OF_PROXIES: Final = frozenset(
 )  # fmt: skip
 
 _OPEN: Final = Caller(frozenset({Scope.GRADE, Scope.RECORD}))
+# The problem of a request for something that is not shown, or not changed, for this caller.
+_NOT_SHOWN: Final = {
+    WithoutKeys.SOLUTIONS: "solutions-off",
+    WithoutKeys.ATTEMPTS: "attempts-not-shown",
+    WithoutKeys.THIS_MACHINE: "attempts-not-changed",
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """Who asks; ``by_key`` where keys decide.
+    """The caller of a request; ``by_key`` is True if the service has keys.
 
-    ``refusal`` is the problem of a key that is not valid. ``in_browser`` is set
-    where a browser has added the key by itself, as it may for other pages, too.
+    ``refusal`` is the problem of a key that is not valid. ``in_browser`` is True if a browser has
+    added the key by itself; it may do so for pages of other origins, too.
     """
 
     caller: Caller
@@ -71,10 +68,10 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 
 
 class Access:
-    """Who may do what.
+    """The checks of callers.
 
-    ``solutions`` and ``read_attempts`` say whether these are shown at all: to nobody (False), to
-    tutors (None), and where there are no keys, to whoever asks (True).
+    ``solutions`` and ``read_attempts`` say who sees these: nobody (False), tutors (None), or, while
+    there are no keys, everybody (True).
     """
 
     def __init__(
@@ -85,188 +82,141 @@ class Access:
         read_attempts: bool | None = False,
         keys: Keys | None = None,
     ) -> None:
-        self._open = open_access
-        self._solutions = solutions
-        self._read_attempts = read_attempts
         self.keys = keys
+        self._open = open_access
+        self._shown = {
+            WithoutKeys.SOLUTIONS: solutions,
+            WithoutKeys.ATTEMPTS: read_attempts,
+            # Even if everybody may read attempts, only tutors change them.
+            WithoutKeys.THIS_MACHINE: None if read_attempts else read_attempts,
+        }
         self._always = Identity(Caller(open_access.scopes) if open_access.scopes else NOBODY)
         self._until_keys = Identity(_OPEN) if open_access.until_keys else self._always
 
-    async def identify(self, asked: Asked) -> Identity:
-        """Who asks, where there may be keys."""
+    async def identify(self, scope: AsgiScope) -> Identity:
+        """Return the identity of the caller of a request."""
         if self.keys is None or not await self.keys.are_needed():
-            return self._without_keys(asked)
-        credential, in_browser = _credential(Headers(scope=asked).get("authorization", ""))
+            return self._without_keys(scope)
+        credential, in_browser = _credential(Headers(scope=scope).get("authorization", ""))
         if not credential:
             return Identity(self._always.caller, by_key=True)
         try:
             caller = await self.keys.caller(credential)
         except CredentialError as error:
-            return Identity(NOBODY, by_key=True, refusal=credential_refused(str(error)))
+            refusal = access_problem("key-not-valid", reason=error)
         except KeysUnreachableError:
-            return Identity(NOBODY, by_key=True, refusal=keys_unreachable())
+            refusal = store_down("The key cannot be checked: the database does not answer.")
         except KeysBusyError:
-            return Identity(NOBODY, by_key=True, refusal=keys_busy())
-        return Identity(caller, by_key=True, in_browser=in_browser)
+            refusal = access_problem("busy")
+        else:
+            return Identity(caller, by_key=True, in_browser=in_browser)
+        return Identity(NOBODY, by_key=True, refusal=refusal)
 
-    def require(self, request: Request, scope: Scope, exercise: str | None = None) -> Caller:
-        """Who asks, who may do so, for this exercise where one is named. Raises ProblemError."""
-        identity = self._identity(request)
-        caller = identity.caller
-        if scope not in caller.scopes and scope not in self._always.caller.scopes:
-            raise identity.refusal or (scope_missing(scope) if caller.key_id else key_needed())
-        if identity.refusal is not None:
-            raise identity.refusal
-        require_reach(caller, exercise)
-        return caller
-
-    def require_recording(
-        self, request: Request, exercise: str, origins: Collection[str]
-    ) -> Caller:
-        """Who records an attempt at this exercise. Raises ProblemError.
-
-        A page records only from the service's own origin, or from one of ``origins``: a browser
-        sends what any other page posts as well, without asking first, and only withholds the
-        answer. Who shows a key in a header of its own has no need of that.
-        """
-        caller = self.require(request, Scope.RECORD, exercise)
-        shows_key = bool(caller.key_id) and not self._identity(request).in_browser
-        is_allowed = "*" in origins or request.headers.get("origin") in origins
-        if not (shows_key or is_allowed or _is_same_origin(request)):
-            raise origin_refused()
-        return caller
-
-    def require_solutions(self, request: Request, exercise: str | None = None) -> None:
-        """Check the right to model solutions: of one exercise, or of all. Raises ProblemError."""
-        caller = self.require_solutions_of_some(request)
-        if caller.exercises is not None and exercise not in caller.exercises:
-            raise other_exercise()
-
-    def require_solutions_of_some(self, request: Request) -> Caller:
-        """Who has that right, of whatever exercises. Raises ProblemError."""
-        self._require_tutor(request, self._solutions, solutions_off())
-        return self._identity(request).caller
-
-    def require_tutor(self, request: Request, exercise: str | None) -> None:
-        """Check the right to what is known of a class: in an exercise, or in all of them.
+    async def permit(self, request: Request) -> None:
+        """Check the right that the route of the request needs; a dependency of all routes.
 
         Raises ProblemError.
         """
-        self.require_tutor_of_one(request)
-        self.require_reading(request, exercise)
+        self._check(request, right_of(request))
 
-    def require_tutor_of_one(self, request: Request) -> Caller:
-        """Who has the same right, of whatever exercises. Raises ProblemError."""
-        caller = self.require_reading_one(request)
-        if caller.learner is not None:
-            raise scope_missing(Scope.TUTOR)
-        return caller
-
-    def require_reading(self, request: Request, exercise: str | None) -> Caller:
-        """Who asks for recorded attempts: of one exercise, or of all. Raises ProblemError.
-
-        A learner with a token, too, who then reads no attempts but their own.
-        """
-        caller = self.require_reading_one(request)
-        if caller.exercises is not None and exercise not in caller.exercises:
-            raise other_exercise()
-        return caller
-
-    def require_reading_one(self, request: Request) -> Caller:
-        """Who asks for one recorded attempt, of whatever exercise it is. Raises ProblemError."""
-        caller = self._identity(request).caller
-        if caller.learner is None:
-            self._require_tutor(request, self._read_attempts, attempts_not_shown())
-        elif self._read_attempts is False:
-            raise attempts_not_shown()
-        else:
-            self.require(request, Scope.RECORD)
-        return caller
-
-    def require_change(self, request: Request, exercise: str | None) -> Caller:
-        """Who may change what is recorded: of one exercise, or of all. Raises ProblemError."""
-        caller = self.require_change_of_one(request)
-        if caller.exercises is not None and exercise not in caller.exercises:
-            raise other_exercise()
-        return caller
-
-    def require_change_of_one(self, request: Request) -> Caller:
-        """Who may change one recorded attempt, of whatever exercise it is. Raises ProblemError.
-
-        Where there are no keys, nobody but who is at the machine, even where others may read.
-        """
-        shown = None if self._read_attempts else self._read_attempts
-        self._require_tutor(request, shown, attempts_not_changed())
+    def caller(self, request: Request) -> Caller:
+        """Return the caller of a request."""
         return self._identity(request).caller
 
-    def require_key(self, request: Request) -> Caller:
-        """The holder of a key, not of a token. Raises ProblemError."""
-        identity = self._identity(request)
-        if identity.refusal is not None:
-            raise identity.refusal
-        if identity.caller.learner is not None:
-            raise learner_makes_token()
-        if not identity.caller.key_id:
-            raise key_needed() if identity.by_key else tokens_not_made()
-        return identity.caller
+    def require_allowed_origin(self, request: Request, origins: Collection[str]) -> None:
+        """Check that the request comes from a page that may record attempts. Raises ProblemError.
 
-    def token(self, caller: Caller, expires_at: datetime) -> str:
-        """A token with the rights of a holder of a key, bound to a learner."""
-        assert self.keys is not None, "only keys make tokens"
-        return self.keys.token(caller, expires_at)
+        These are the pages of the service and of ``origins``. A browser sends the POST of any page
+        without asking first, and only withholds the answer. Requests that carry a key in a header
+        of their own skip this check.
+        """
+        identity = self._identity(request)
+        shows_key = bool(identity.caller.key_id) and not identity.in_browser
+        is_allowed = "*" in origins or request.headers.get("origin") in origins
+        if not (shows_key or is_allowed or _is_same_origin(request)):
+            raise access_problem("origin-refused")
 
     def shows_solutions(self, request: Request) -> bool:
-        """Whether who asks has the right to model solutions: of all exercises, or of some."""
+        """Return whether the caller may see the solutions of at least one exercise."""
         try:
-            self.require_solutions_of_some(request)
+            self._check(request, RIGHTS["GET /tutor"])
         except ProblemError:
             return False
         return True
 
+    def token(self, caller: Caller, expires_at: datetime) -> str:
+        """Return a token with the rights of ``caller``: of the holder of a key, for a learner."""
+        assert self.keys is not None, "only keys make tokens"
+        return self.keys.token(caller, expires_at)
+
     def close(self) -> None:
-        """Write what waits, and end."""
+        """Write what is pending about the use of keys, and stop their threads."""
         if self.keys is not None:
             self.keys.close()
+
+    def _check(self, request: Request, right: Right) -> None:
+        if right.scope is None:
+            return
+        identity = self._identity(request)
+        problem = identity.refusal or self._problem(request, identity, right, right.scope)
+        if problem is not None:
+            raise with_password_challenge(problem) if right.scope is Scope.TUTOR else problem
+        exercises = identity.caller.exercises
+        if exercises is None or right.reach is Reach.OWN:
+            return
+        if right.reach.named(request) not in exercises:
+            raise access_problem("other-exercise")
+
+    def _problem(
+        self, request: Request, identity: Identity, right: Right, scope: Scope
+    ) -> ProblemError | None:
+        """Return the problem of a caller without the right, or None."""
+        caller = identity.caller
+        shown = self._shown.get(right.without_keys)
+        is_learner = caller.learner is not None
+        if is_learner and right.tokens and scope is Scope.TUTOR:
+            scope = Scope.RECORD  # learners who may record may read what is recorded of them
+        if not identity.by_key and right.without_keys in _NOT_SHOWN:
+            is_shown = is_at_the_machine(request) if shown is None else shown
+        elif right.without_keys is WithoutKeys.NOBODY and not caller.key_id:
+            return access_problem("key-needed" if identity.by_key else "tokens-not-made")
+        elif is_learner and not right.tokens:
+            return scope_missing(scope) if scope is Scope.TUTOR else token_for_token()
+        elif scope not in caller.scopes and scope not in self._always.caller.scopes:
+            return scope_missing(scope) if caller.key_id else access_problem("key-needed")
+        elif right.without_keys not in _NOT_SHOWN:
+            return None
+        else:
+            is_shown = shown is not False
+        # A program that sends a key in a header of its own may name any origin.
+        sends_key = identity.by_key and not identity.in_browser
+        is_allowed = is_shown and (sends_key or _is_same_origin(request))
+        return None if is_allowed else access_problem(_NOT_SHOWN[right.without_keys])
 
     def _identity(self, request: Request) -> Identity:
         identity: Identity | None = request.scope.get(IDENTITY)
         if identity is not None:
             return identity
-        # Where there may be keys, nobody is let in who did not pass the door.
+        # If the service may have keys, a request that has not been authenticated has no rights.
         return self._without_keys(request.scope) if self.keys is None else _UNKNOWN
 
-    def _without_keys(self, asked: Asked) -> Identity:
-        if self._open.anywhere or _is_to_this_machine((asked.get("server") or ("",))[0]):
+    def _without_keys(self, scope: AsgiScope) -> Identity:
+        if self._open.anywhere or _is_to_this_machine((scope.get("server") or ("",))[0]):
             return self._until_keys
         return self._always
 
-    def _require_tutor(self, request: Request, shown: bool | None, refusal: ProblemError) -> None:
-        identity = self._identity(request)
-        caller = identity.caller
-        if not identity.by_key:
-            allowed = is_at_the_machine(request) if shown is None else shown
-            if not (allowed and _is_same_origin(request)):
-                raise refusal
-            return
-        if identity.refusal is not None:
-            raise asking_for_password(identity.refusal)
-        if Scope.TUTOR not in caller.scopes:
-            raise scope_missing(Scope.TUTOR) if caller.key_id else key_needed(with_password=True)
-        if shown is False or (identity.in_browser and not _is_same_origin(request)):
-            raise refusal
-
 
 def require_reach(caller: Caller, exercise: str | None) -> None:
-    """Check that what is asked for may be of this exercise, if of any. Raises ProblemError."""
+    """Check that the caller's key is for this exercise, if one is named. Raises ProblemError."""
     if exercise is not None and not caller.reaches(exercise):
-        raise other_exercise()
+        raise access_problem("other-exercise")
 
 
 def is_at_the_machine(request: Request) -> bool:
-    """Whether the request was made on this machine, to this machine, and for nobody else.
+    """Return whether a program or browser on this machine made the request, for itself.
 
-    Both ends of the connection are on it, the client asks for it by a name of its own (a page of
-    another name that leads here asks for that name), and no proxy stands in between.
+    Both ends of the connection are on this machine, no proxy is between them, and the header Host
+    has a local name. The last condition refuses pages whose own name resolves to this machine.
     """
     server = request.scope.get("server") or ("",)
     client = request.scope.get("client") or ("",)
@@ -280,37 +230,33 @@ def is_at_the_machine(request: Request) -> bool:
 
 
 def _is_of_proxy(request: Request) -> bool:
-    """Whether a proxy shows that it stands in between.
+    """Return whether a proxy has forwarded the request, as far as it shows.
 
-    nginx without a line of configuration adds no header and names this machine as host, but speaks
-    HTTP/1.0 (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), as no browser does.
+    An unconfigured nginx adds no header and names this machine as host, but it speaks HTTP/1.0
+    (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), which no browser does.
     """
     return request.scope.get("http_version") == "1.0" or any(
         name in _OF_PROXIES or name.startswith("x-forwarded-") for name in request.headers
     )
 
 
-@lru_cache(1024)
 def is_loopback(host: str) -> bool:
-    """Whether an address is one that only this machine reaches."""
-    try:
-        return ip_address(host).is_loopback
-    except ValueError:
-        return False
+    """Return whether an address is a loopback address, which only this machine reaches."""
+    address = _address(host)
+    return address is not None and address.is_loopback
 
 
 def _is_to_this_machine(server: str) -> bool:
-    """Whether the address that was asked is a loopback address, or a socket in the file system."""
-    return is_loopback(server) or not _is_address(server)
+    """Return whether the server's address is a loopback address or a socket in the file system."""
+    return _address(server) is None or is_loopback(server)
 
 
 @lru_cache(1024)
-def _is_address(host: str) -> bool:
+def _address(host: str) -> IPv4Address | IPv6Address | None:
     try:
-        ip_address(host)
+        return ip_address(host)
     except ValueError:
-        return False
-    return True
+        return None
 
 
 def _host_name(netloc: str) -> str:
@@ -321,12 +267,12 @@ def _host_name(netloc: str) -> str:
 
 
 def _is_same_origin(request: Request) -> bool:
-    """True if no page of another origin asks; programs name no origin.
+    """True unless a page of another origin made the request; programs name no origin.
 
-    A browser says by Sec-Fetch-Site where a request comes from, also for pictures and scripts, for
-    which it names no origin (Fetch Metadata). It says so over HTTPS and to this machine, and knows
-    the scheme better than a service behind a proxy. Following a link from anywhere is no fault: the
-    page that holds the link sees nothing of the answer.
+    A browser says in Sec-Fetch-Site where a request comes from (Fetch Metadata), also for pictures
+    and scripts, for which it sends no Origin. It sends this header over HTTPS and to this machine,
+    and it knows the scheme better than a service behind a proxy. A user may follow a link from any
+    page: that page sees nothing of the answer.
     """
     headers = request.headers
     site = headers.get("sec-fetch-site")
@@ -341,7 +287,7 @@ def _is_same_origin(request: Request) -> bool:
 
 
 def _follows_link(request: Request) -> bool:
-    """True if a browser opens the answer as a page of its own, in no frame."""
+    """True if a browser opens the answer as a page, and not in a frame."""
     headers = request.headers
     return (
         request.method in ("GET", "HEAD")
@@ -351,9 +297,10 @@ def _follows_link(request: Request) -> bool:
 
 
 def _credential(header: str) -> tuple[str, bool]:
-    """The key or token in a header, and whether a browser sends it as a password.
+    """Return the key or token in a header Authorization, and whether it is sent as a password.
 
-    Another password is none: it may be that of a proxy, which has looked at it already.
+    A browser sends it as a password. Any other password is ignored: it may be for a proxy, which
+    has already checked it.
     """
     scheme, _, value = header.partition(" ")
     match scheme.lower():

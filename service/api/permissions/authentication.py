@@ -1,18 +1,18 @@
-"""The layer at which a request says who asks, before it waits for its turn."""
+"""The layer that authenticates requests and counts them, before they wait for their turn."""
 
 from typing import Final, Protocol
 
 from starlette.types import ASGIApp, Receive, Send
-from starlette.types import Scope as Asked
+from starlette.types import Scope as AsgiScope
 
 from service.access.caller import Caller, Scope
 from service.api.permissions.access import IDENTITY, Access
-from service.api.permissions.access_problems import too_often
+from service.api.permissions.access_problems import access_problem
 from service.api.turns import CLIENT, COURSE_SITE, ONE_ADDRESS, ONE_STUDENT, Client
 
-# What counts towards limits, below whatever prefix the service stands; pages and files do not.
+# Parts of the paths that count towards limits, after any prefix of a proxy; pages and files do not.
 _COUNTED: Final = ("/v1/", "/tutor")
-# Where a supervisor asks, who has no key and must not wait for the database of keys.
+# Supervisors have no key, and must not wait for the database of keys.
 _HEALTH: Final = ("/healthz", "/readyz")
 
 
@@ -20,21 +20,21 @@ class RequestRates(Protocol):
     """Counts of requests."""
 
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
-        """Count a request; 0 where it is allowed, else when to come again."""
+        """Count a request. Return 0 if it is allowed, else the seconds until one is."""
 
     def close(self) -> None:
-        """End."""
+        """Stop the threads of the counts."""
 
 
-class DoorMiddleware:
-    """Notes who asks, and refuses whoever asks too often."""
+class AuthenticationMiddleware:
+    """Note the caller of each request, and refuse requests beyond the caller's rate."""
 
     def __init__(self, app: ASGIApp, access: Access, rates: RequestRates | None) -> None:
         self.app = app
         self._access = access
         self._rates = rates
 
-    async def __call__(self, scope: Asked, receive: Receive, send: Send) -> None:
+    async def __call__(self, scope: AsgiScope, receive: Receive, send: Send) -> None:
         """Serve one ASGI connection."""
         if scope["type"] != "http" or scope["path"].endswith(_HEALTH):
             await self.app(scope, receive, send)
@@ -44,7 +44,8 @@ class DoorMiddleware:
             address = (scope.get("client") or ("",))[0]
             seconds = await self._rates.seconds_to_wait(identity.caller, address)
             if seconds:
-                await too_often(seconds).response(scope["path"])(scope, receive, send)
+                refused = access_problem("too-often", seconds=seconds)
+                await refused.response(scope["path"])(scope, receive, send)
                 return
         inner = {**scope, IDENTITY: identity}
         if identity.caller.owner:
@@ -55,7 +56,7 @@ class DoorMiddleware:
 def _most_shares(caller: Caller) -> float:
     """Return how many shares of the processor the holder of a key or token has at most.
 
-    A key that may record is that of a course site, which speaks for all students of the course.
+    A key that may record is taken for that of a course site, which acts for all its students.
     """
     if caller.learner is not None:
         return ONE_STUDENT

@@ -1,4 +1,4 @@
-"""The routes by which tutors read what is recorded."""
+"""The routes with which tutors, and learners with a token, read recorded attempts."""
 
 import json
 import re
@@ -14,7 +14,7 @@ from service.api.document.openapi import MAY_NEED_KEY, refusals
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import invalid
 from service.api.permissions.access import Access
-from service.api.permissions.access_problems import other_learner
+from service.api.permissions.access_problems import access_problem
 from service.api.recording.store import ask, private, private_json, unknown_attempt
 from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
 from service.attempts.errors import BadCursorError
@@ -52,9 +52,9 @@ _DATE: Final = re.compile(r"\d{4}-\d\d-\d\d[Tt ]")
 Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
 Since = Annotated[
     Moment | None,
-    Query(description="The first moment, with its time zone: 2026-10-01T08:00:00Z."),
+    Query(description="Attempts from this moment on; with its time zone: 2026-10-01T08:00:00Z."),
 ]
-Until = Annotated[Moment | None, Query(description="The moment before which all are.")]
+Until = Annotated[Moment | None, Query(description="Attempts before this moment.")]
 Name = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
 
 _REFUSED: Final = refusals(
@@ -66,7 +66,7 @@ _REFUSED: Final = refusals(
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
-    """The routes that read what is recorded: for tutors, and for learners what is their own."""
+    """Return the routes that read attempts: tutors read all of them, learners their own."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.get(
@@ -81,24 +81,25 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
     async def list_attempts(
         request: Request,
         exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
-        learner: Annotated[Learner | None, Query(description="Whose attempts.")] = None,
+        learner: Annotated[Learner | None, Query(description="The learner.")] = None,
         since: Since = None,
         until: Until = None,
         counted: Annotated[
-            bool | None, Query(description="Only those that count, or that do not.")
+            bool | None,
+            Query(description="Only attempts that count (true), or that do not count (false)."),
         ] = None,
         cursor: Annotated[
-            str | None, Query(max_length=40, description="The `next` of the page before.")
+            str | None, Query(max_length=40, description="The `next` of the previous page.")
         ] = None,
         limit: Annotated[
-            int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most on a page.")
+            int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most attempts on a page.")
         ] = 50,
     ) -> Response:
-        """List recorded attempts for tutors, the newest first, without answers and reports.
+        """List recorded attempts, the newest first, without answers and reports.
 
-        To a learner with a token only the learner's own.
+        Tutors see all attempts. A learner with a token sees the learner's own.
         """
-        caller = access.require_reading(request, exercise)
+        caller = access.caller(request)
         wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
         try:
             shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
@@ -120,11 +121,11 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
     async def show_attempt(
         request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
     ) -> Response:
-        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides.
+        """Show a recorded attempt with its answers and its report.
 
-        To the learner with a token only answers and report.
+        Tutors also see earlier reports and overrides.
         """
-        caller = access.require_reading_one(request)
+        caller = access.caller(request)
         found = await ask(store, lambda it: it.history(attempt_id))
         if found is None or not _may_read(caller, found):
             raise unknown_attempt()
@@ -135,15 +136,14 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         operation_id="getStatistics",
         summary="Show the statistics of an exercise",
         response_model=ExerciseStatistics,
-        response_description="The recorded attempts in counts.",
+        response_description="The counts of recorded attempts.",
         responses=_REFUSED,
         openapi_extra=MAY_NEED_KEY,
     )
     async def show_statistics(
-        request: Request, exercise_id: ExerciseId, since: Since = None, until: Until = None
+        exercise_id: ExerciseId, since: Since = None, until: Until = None
     ) -> Response:
-        """Count recorded attempts for tutors: who is right where, which mistakes are common."""
-        access.require_tutor(request, exercise_id)
+        """Count recorded attempts for tutors: right answers in each place, and common mistakes."""
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
         figures = await ask(store, lambda it: it.statistics(wanted))
@@ -153,9 +153,9 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
 
 
 def _readable(caller: Caller, learner: str | None) -> str | None:
-    """Whose attempts are listed, where those of ``learner`` are asked for. Raises ProblemError."""
+    """Return the learner whose attempts the caller may list; None for all. Raises ProblemError."""
     if caller.learner is not None and learner not in (None, caller.learner):
-        raise other_learner()
+        raise access_problem("other-learner")
     return caller.learner or learner
 
 
@@ -165,7 +165,7 @@ def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
 
 
 def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
-    # What a tutor has written, and what a regrade has replaced, is for tutors.
+    # Overrides and replaced reports are only for tutors.
     is_tutor = caller.learner is None
     attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
     return {

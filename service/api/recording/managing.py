@@ -1,4 +1,4 @@
-"""The routes by which tutors export and change what is recorded."""
+"""The routes with which tutors export and change recorded attempts."""
 
 from collections.abc import AsyncIterator
 from dataclasses import asdict
@@ -12,7 +12,7 @@ from starlette.responses import StreamingResponse
 
 from service.access.caller import Caller
 from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
-from service.api.http.bodies import body_as
+from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import invalid
@@ -40,7 +40,7 @@ if TYPE_CHECKING:  # they load the drivers of databases
     from service.attempts.regrades.outdated import Regrading
     from service.attempts.store import AttemptStore
 
-# Bytes of an export that are handed to the server at once.
+# Bytes of an export that are sent at once.
 _PIECE: Final = 64 * 1024
 _REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
 _NO_STORE: Final = {"Cache-Control": "no-store"}
@@ -54,7 +54,7 @@ _EXPORTED: Final[dict[int | str, dict[str, Any]]] = {
 def routes(
     catalogue: Catalogue, feedback: FeedbackLevel, store: "AttemptStore | None", access: Access
 ) -> APIRouter:
-    """The routes that export and change what is recorded; no new report tells over ``feedback``."""
+    """Return the routes that export and change attempts; new reports have at most this level."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
     regrades = _Regrades(feedback)
 
@@ -68,29 +68,27 @@ def routes(
         openapi_extra=MAY_NEED_KEY,
     )
     async def export_attempts(
-        request: Request,
         exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
-        learner: Annotated[Learner | None, Query(description="Whose attempts.")] = None,
+        learner: Annotated[Learner | None, Query(description="The learner.")] = None,
         since: Since = None,
         until: Until = None,
         form: Annotated[
             GradesFormat,
             Query(
                 alias="format",
-                description="`csv` and `jsonl` have every attempt; `canvas` and `moodle`, of one "
-                "exercise, the one of each learner that counts, as the gradebook imports it.",
+                description="`csv` and `jsonl` have every attempt. `canvas` and `moodle` are for a "
+                "gradebook: of one exercise, the attempt of each learner that counts.",
             ),
         ] = GradesFormat.CSV,
     ) -> Response:
         """Export recorded attempts for tutors, by exercise, learner and moment.
 
-        Which attempt of a learner counts is decided among those that are exported.
+        If only one attempt of a learner counts, it is chosen among the exported ones.
         """
-        access.require_tutor(request, exercise)
         if form.is_gradebook and exercise is None:
             message = f"{form} has one column for one exercise; name it"
             raise invalid([{"type": "missing_exercise", "loc": ("exercise",), "msg": message}])
-        # Only here: it loads the drivers of databases.
+        # Imported here, because it loads the drivers of databases.
         from service.attempts.results.grades import counting_rules
 
         wanted = AttemptFilter(exercise, learner, since, until)
@@ -107,18 +105,19 @@ def routes(
         "/attempts/{attempt_id}/override",
         operation_id="overrideAttempt",
         summary="Give an attempt other points",
-        response_description="The attempt as it now counts.",
+        response_description="The attempt with its new points.",
         **posting(OverrideRequest, AttemptSummary, "override", *_REFUSED),
     )
     async def override_attempt(
         request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
     ) -> Response:
-        """Give an attempt points in place of its report's, with a reason; for tutors.
+        """Give an attempt other points than its report does, with a reason; for tutors.
 
-        Who did so, when and why is kept, also of points that are withdrawn later.
+        The service keeps the author, the reason and the moment, also of points that are
+        withdrawn later.
         """
-        caller = access.require_change_of_one(request)
-        body = await body_as(OverrideRequest, request)
+        caller = access.caller(request)
+        body = await read_body(OverrideRequest, request)
         found = await ask(store, lambda it: it.history(attempt_id))
         if found is None or not caller.reaches(found.attempt.exercise):
             raise unknown_attempt()
@@ -136,18 +135,18 @@ def routes(
     @router.post(
         "/learners/forget",
         operation_id="forgetLearner",
-        summary="Delete all that is recorded of a learner",
-        response_description="How much is recorded of the learner, or was.",
+        summary="Delete everything that is recorded of a learner",
+        response_description="How much is, or was, recorded of the learner.",
         **posting(ForgetRequest, ForgottenData, "forget", *_REFUSED),
     )
     async def forget_learner(request: Request) -> Response:
-        """Delete all that is recorded of a learner, for ever; for tutors of all exercises.
+        """Delete everything that is recorded of a learner for ever; for tutors of all exercises.
 
-        Without `apply` nothing is deleted, and the answer tells how much it would be. While another
-        program reads a database of SQLite, what was deleted is still in a file beside it: `erased`.
+        Without `apply` nothing is deleted, and the answer says how much it would be. With
+        SQLite, deleted data remain in a file beside the database as long as another program
+        reads it: see `erased`.
         """
-        access.require_change(request, None)
-        body = await body_as(ForgetRequest, request)
+        body = await read_body(ForgetRequest, request)
         erased = None
         if body.apply:
             data, erased = await ask(store, lambda it: it.forget(body.learner))
@@ -160,45 +159,44 @@ def routes(
     @router.post(
         "/exercises/{exercise_id}/regrade",
         operation_id="regradeAttempts",
-        summary="Grade the attempts at a corrected exercise anew, some of them",
-        response_description="What this step has graded, and the cursor of the next one.",
+        summary="Regrade some attempts at a corrected exercise",
+        response_description="The results of this step, and the cursor of the next one.",
         **posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED),
     )
     async def regrade_attempts(request: Request, exercise_id: ExerciseId) -> Response:
-        """Grade anew what another version of the exercise or the program has graded; for tutors.
+        """Regrade attempts that another version of exercise or program has graded; for tutors.
 
-        One request does as much as fits into about a second; ask again with `next` until there is
-        none. Without `apply` nothing is written, and the answers tell whose result would change
-        and why. With it the new reports are written and the old ones kept. Whoever stops in the
-        midst goes on with a first step.
+        One request works for about a second. Repeat it with `next` as the cursor until the
+        answer has no `next`. Without `apply` nothing is written, and the answers say which
+        results would change and why. With `apply` the new reports are written, and the old
+        ones are kept. An interrupted regrade continues with a request without a cursor.
         """
-        access.require_change(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
-        body = await body_as(RegradeRequest, request)
+        body = await read_body(RegradeRequest, request)
         return private(await ask(store, lambda it: regrades.step(it, exercise, body)))
 
     return router
 
 
 class _Regrades:
-    """Steps of regrades, one at a time, so that recording and grading go on beside them."""
+    """Steps of regrades, one at a time, so that the service can record and grade meanwhile."""
 
     def __init__(self, ceiling: FeedbackLevel) -> None:
         self._ceiling = ceiling
         self._work = BoundedWork()
-        # That of the last step: it knows the reports on answers that it has seen already.
+        # The regrade of the last step, which has memoized the reports on equal answers.
         self._last: tuple[Exercise, Regrading] | None = None
 
     async def step(
         self, store: "AttemptStore", exercise: Exercise, body: RegradeRequest
     ) -> RegradeAnswer:
-        """One step. Raises ProblemError, StoreDownError."""
+        """Do one step. Raises ProblemError, StoreDownError."""
         return await self._work.do(partial(self._step, store, exercise, body))
 
     def _step(
         self, store: "AttemptStore", exercise: Exercise, body: RegradeRequest
     ) -> RegradeAnswer:
-        # Only here: it loads the drivers of databases.
+        # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 
         step = apply_step if body.apply else preview_step
@@ -208,7 +206,7 @@ class _Regrades:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a step."}
             raise invalid([detail]) from error
         if done.following is None:
-            # The reports that it has kept are of no more use.
+            # The memoized reports are not needed any more.
             self._last = None
         changed = (each for each in done.regraded if each.is_changed)
         return RegradeAnswer(
@@ -233,12 +231,12 @@ async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:
 
 
 def _stem(form: GradesFormat, exercise: str | None) -> str:
-    """The name of the file, without its ending; an id that no exercise has is left out."""
+    """Return the name of the exported file without its ending. It has no unknown exercise in it."""
     kind = form.value if form.is_gradebook else "attempts"
     return f"{kind}-{exercise}" if exercise and is_exercise_id(exercise) else kind
 
 
 def _author(caller: Caller, given: str | None) -> str:
-    """Who overrides: by a name that nobody has checked, and by the key."""
+    """Return the author of an override: the given name, which nobody has checked, and the key."""
     by = f"key {caller.key_id}" if caller.key_id else "at the machine"
     return f"{given} ({by})" if given else by

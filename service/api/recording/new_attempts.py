@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 from fastapi import APIRouter, Header, Request, Response
 
 from service.api.document.openapi import posting
-from service.api.http.bodies import body_as
+from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.http.problems import ProblemError, store_down
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
-from service.api.permissions.access_problems import other_learner
-from service.api.turns import giving_way
+from service.api.permissions.access_problems import access_problem
+from service.api.turns import run_in_turns
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.errors import StoreDownError
 from service.attempts.graded import AttemptGrading, AttemptReport
@@ -36,8 +36,8 @@ IdempotencyKey = Annotated[
         alias="Idempotency-Key",
         min_length=1,
         max_length=255,
-        description="A text of your own for this attempt. A request that is sent again with the "
-        "same key is answered like the first, and nothing is recorded twice.",
+        description="Any text that you choose for this attempt. If the request is sent again with "
+        "the same key, the answer is the same, and nothing is recorded twice.",
     ),
 ]
 
@@ -50,9 +50,9 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """The routes that record; no report tells more than ``feedback``.
+    """Return the route that records; reports have at most the level ``feedback``.
 
-    Pages of ``origins`` may record besides those of the service itself.
+    Pages of the service and of ``origins`` may record.
     """
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
@@ -60,7 +60,7 @@ def routes(
         "/exercises/{exercise_id}/attempts",
         operation_id="recordAttempt",
         summary="Grade a submission and record it",
-        response_description="The attempt and its report. It is recorded durably.",
+        response_description="The recorded attempt and its report.",
         status_code=HTTPStatus.CREATED,
         **posting(
             AttemptRequest,
@@ -77,16 +77,18 @@ def routes(
     ) -> Response:
         """Grade answers and record them with their report, once for each idempotency key.
 
-        Attempts are counted and limited as the exercise says; one in which nothing could be read
-        does not count. What is answered with 201 is not lost, whatever happens to the service.
+        The exercise says how attempts are counted and limited; an attempt in which nothing
+        could be read does not count. An attempt that is answered with 201 is not lost,
+        whatever happens to the service.
         """
-        caller = access.require_recording(request, exercise_id, origins)
+        access.require_allowed_origin(request, origins)
         if store is None:
             raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)
-        body = await body_as(AttemptRequest, request)
+        body = await read_body(AttemptRequest, request)
+        caller = access.caller(request)
         if caller.learner not in (None, body.learner):
-            raise other_learner()
+            raise access_problem("other-learner")
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
         attempting = _Attempting(
             exercise, body, feedback, store, caller.owner, idempotency_key, monitor
@@ -109,7 +111,7 @@ def routes(
 
 
 def not_recorded() -> ProblemError:
-    """The service has no database."""
+    """Return the problem of a service without a database."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         "No attempts are recorded here: the service has no database.",
@@ -119,7 +121,7 @@ def not_recorded() -> ProblemError:
 
 
 class _Attempting:
-    """One request for an attempt, graded and recorded."""
+    """One request to record an attempt."""
 
     def __init__(
         self,
@@ -147,7 +149,7 @@ class _Attempting:
         self._request_digest = _digest(content)
 
     async def recorded(self, request: Request) -> RecordedAttempt:
-        """The attempt of this request. Raises StoreDownError, AttemptRefusedError, ProblemError."""
+        """Grade and record it. Raises StoreDownError, AttemptRefusedError, ProblemError."""
         standing = await self._store.standing(
             self._exercise.id, self._body.learner, self._owner, self._key
         )
@@ -156,7 +158,7 @@ class _Attempting:
                 return self._same(standing.earlier)
             most = self._most(self._ruling(standing))
             if not self._grading.has(most):
-                await giving_way(request, partial(self._grade, most))
+                await run_in_turns(request, partial(self._grade, most))
             written = await self._store.record(standing, self._after)
             if isinstance(written, RecordedAttempt):
                 return written
@@ -166,7 +168,7 @@ class _Attempting:
         return ruling(self._exercise.attempts, standing.counted, self._now)
 
     def _most(self, taken: Ruling) -> FeedbackLevel:
-        """The most that the learner is told at this attempt."""
+        """Return the highest feedback level for the learner at this attempt."""
         return least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
 
     def _grade(self, most: FeedbackLevel) -> None:
@@ -187,7 +189,7 @@ class _Attempting:
         return earlier
 
     def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
-        """The attempt after this standing, where it is allowed and needs no further grading."""
+        """Return the attempt to record; None if it is not allowed or must be graded first."""
         if standing.earlier is not None:
             return None
         try:
@@ -223,7 +225,7 @@ class _Attempting:
 
 
 def _answer(recorded: RecordedAttempt) -> bytes:
-    """The attempt and its report as JSON; the report as it was written, byte by byte."""
+    """Return the attempt and its report as JSON; the report is the recorded text, byte by byte."""
     attempt = Attempt.model_validate(recorded, from_attributes=True)
     told = attempt.model_dump_json(exclude_none=True)
     return f'{{"attempt":{told},"report":{recorded.report}}}'.encode()

@@ -1,4 +1,4 @@
-"""The store of attempts as the routes of tutors ask it."""
+"""The store of attempts, as the routes for tutors use it."""
 
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
@@ -20,7 +20,7 @@ R = TypeVar("R")
 async def ask(
     store: "AttemptStore | None", question: Callable[["AttemptStore"], Awaitable[R]]
 ) -> R:
-    """What the store answers. Raises ProblemError where there is none, or where it is down."""
+    """Return the store's answer. Raises ProblemError if there is no store, or if it is down."""
     if store is None:
         raise not_recorded()
     try:
@@ -31,7 +31,7 @@ async def ask(
 
 
 def unknown_attempt() -> ProblemError:
-    """No attempt has the id, or none that may be seen by who asks."""
+    """Return the problem of an id that no attempt has, or none that the caller may see."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         "No attempt with this id is recorded here.",
@@ -41,10 +41,10 @@ def unknown_attempt() -> ProblemError:
 
 
 def private(model: BaseModel) -> Response:
-    """An answer that nobody keeps on the way."""
+    """Return an answer that no cache may store."""
     return private_json(model.model_dump_json(exclude_none=True).encode())
 
 
 def private_json(content: bytes) -> Response:
-    """The same of JSON that is written already."""
+    """Return JSON as an answer that no cache may store."""
     return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")

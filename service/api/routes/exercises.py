@@ -1,4 +1,4 @@
-"""The routes that list and describe exercises: everything but the answers."""
+"""The routes that list and describe exercises, without the answers."""
 
 from http import HTTPStatus
 from typing import Any
@@ -13,10 +13,10 @@ from service.contract.exercises import ExerciseList, ExerciseView
 
 
 def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
-    """The routes that show the catalogue; ``feedback`` is the most that any report tells."""
+    """Return the routes of the catalogue; ``feedback`` is the highest level of any report."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
 
-    # The models pick from the exercises, by attribute, the fields that are public.
+    # The models take the public fields from the attributes of the exercises.
     @router.get(
         "",
         operation_id="listExercises",

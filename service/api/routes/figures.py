@@ -10,13 +10,15 @@ from fastapi import APIRouter, Query, Response
 
 from service.api.document.openapi import refusals
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.http.memoized import Kept
+from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
 from service.catalogue import Exercise
 from service.figures.drawing.style import Theme, style_sheet
 from service.figures.figure import exercise_figure
 
-_THEME = Query(description="Light, dark, or as the reader's system asks; printed it is light.")
+_THEME = Query(
+    description="`light`, `dark`, or `auto`, as the reader's system wants. Prints are always light."
+)
 
 
 class SvgResponse(Response):
@@ -26,9 +28,9 @@ class SvgResponse(Response):
 
 
 def routes(catalogue: Catalogue) -> APIRouter:
-    """The route of the figures."""
+    """Return the route of the figures."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
-    figures = Kept()
+    figures = MemoizedResults()
 
     @router.get(
         "/{exercise_id}/figure.svg",
@@ -43,8 +45,8 @@ def routes(catalogue: Catalogue) -> APIRouter:
     ) -> Response:
         """Draw the robot of an exercise: joints, links, names of lengths and joint variables.
 
-        No frames, no numbers. The angles of all joints are 0, sliding joints are drawn out. An
-        exercise without a robot has no figure.
+        The figure has no frames and no numbers. The angles of all joints are 0, and sliding
+        joints are extended. An exercise without a robot has no figure.
         """
         exercise = exercise_or_404(catalogue, exercise_id)
         if exercise.reference is None:
@@ -66,7 +68,7 @@ def _drawn(exercise: Exercise, theme: Theme) -> bytes:
 
 
 def _headers(theme: Theme) -> dict[str, str]:
-    """The figure's own style and nothing else, wherever it is opened; any page may show it."""
+    """Return headers that allow only the figure's own style, and let any page show the figure."""
     digest = base64.b64encode(hashlib.sha256(style_sheet(theme).encode()).digest()).decode()
     policy = f"default-src 'none'; style-src 'sha256-{digest}'; frame-ancestors 'self'"
     return {

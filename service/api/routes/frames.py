@@ -1,4 +1,4 @@
-"""The route that says where everything is: the frames of a table, the parts of a mechanism."""
+"""The route that computes the places of a table's frames and of a mechanism's parts."""
 
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
@@ -8,13 +8,12 @@ from typing import Any, Final
 import numpy as np
 from fastapi import APIRouter, Request, Response
 
-from service.access.caller import Scope
 from service.api.document.openapi import posting
-from service.api.http.bodies import body_as
+from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, Location, require_exercise
 from service.api.http.problems import ProblemError, invalid
 from service.api.permissions.access import Access, require_reach
-from service.api.turns import giving_way
+from service.api.turns import run_in_turns
 from service.catalogue import Exercise
 from service.contract.frames import (
     ConvertedRow,
@@ -43,50 +42,50 @@ from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
 
-_KEPT: Final = 64
+_MOST_MECHANISMS: Final = 64
 
 
 class _Mechanisms:
-    """Mechanisms at the lengths that they were last asked for: one per drag of a slider."""
+    """The mechanisms that were used last, at their lengths; dragging a slider reuses one."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
+        self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
 
     def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
-        """The mechanism of an exercise that has one, with these numbers, and its view."""
+        """Return the mechanism of an exercise that has one, with these numbers, and its view."""
         key = (exercise.id, exercise.version, exercise.view, *numbers.values())
-        if key not in self._kept:
+        if key not in self._mechanisms:
             subject = subject_of(exercise)
             mechanism = mechanism_of(subject.reference, numbers)
-            self._kept[key] = mechanism, subject.view or default_view(mechanism, numbers)
-            while len(self._kept) > _KEPT:
-                self._kept.popitem(last=False)
-        self._kept.move_to_end(key)
-        return self._kept[key]
+            self._mechanisms[key] = mechanism, subject.view or default_view(mechanism, numbers)
+            while len(self._mechanisms) > _MOST_MECHANISMS:
+                self._mechanisms.popitem(last=False)
+        self._mechanisms.move_to_end(key)
+        return self._mechanisms[key]
 
 
 def routes(catalogue: Catalogue, access: Access) -> APIRouter:
-    """The route that gives frames."""
+    """Return the route that computes frames."""
     router = APIRouter(prefix="/v1", tags=["drawing"])
     mechanisms = _Mechanisms()
 
     @router.post(
         "/frames",
         operation_id="getFrames",
-        summary="Say where frames and links are",
-        response_description="Numbers to draw with.",
+        summary="Compute the places of frames and links",
+        response_description="Coordinates to draw with.",
         **posting(FramesRequest, FramesAnswer, "frames"),
     )
     async def frames(request: Request) -> Response:
-        """Say where the frames of a table and the links of an exercise's mechanism are.
+        """Compute the frames of a table and the links of an exercise's mechanism.
 
-        A table may be wrong, or half written: its frames go as far as it can be read. Nothing of a
-        mechanism answers the exercise: no frames, no parameters, only what a picture shows.
+        A table may be wrong or incomplete: its frames end at the first row that cannot be
+        read. The mechanism does not contain the answer of the exercise: no frames and no
+        parameters, only what a picture shows.
         """
-        caller = access.require(request, Scope.GRADE)
-        body = await body_as(FramesRequest, request)
-        require_reach(caller, body.exercise)
-        answer = await giving_way(request, partial(_answered, catalogue, body, mechanisms))
+        body = await read_body(FramesRequest, request)
+        require_reach(access.caller(request), body.exercise)
+        answer = await run_in_turns(request, partial(_answered, catalogue, body, mechanisms))
         content = answer.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")
 
@@ -94,7 +93,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
 
 
 def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms) -> FramesAnswer:
-    """The answer to a request. Raises ProblemError for one that does not fit together."""
+    """Return the answer to a request. Raises ProblemError if its fields contradict each other."""
     exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
     scope = _scope(exercise, body)
     constants = [variable.name for variable in scope.variables if variable.joint is None]
@@ -108,7 +107,7 @@ def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms
         table, found = _table(body.table, body, scope, numbers, amounts)
         if found is not None:
             written = WrittenChain(found.frames[0], found.row_joints, body.table.convention)
-        # Of the letters of a book only those that the table uses.
+        # Without an exercise, only the symbols that the table uses.
         used = used if exercise else found.symbols if found else set()
     if exercise is not None:
         movable, view = mechanisms.of(exercise, numbers)
@@ -150,7 +149,7 @@ def _refused(place: Location, message: str) -> ProblemError:
 
 
 def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
-    """The joint values of each picture, ``(pictures, joints)``."""
+    """Return the joint values of each picture, ``(pictures, joints)``."""
     if body.joints is None:
         return np.array([[numbers[joint.variable] for joint in scope.joints]])
     for i, values in enumerate(body.joints):
@@ -181,7 +180,7 @@ def _table(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
-    """The frames of the table, as they are told and as they are drawn."""
+    """Return the frames for the answer and those for the drawing; None if nothing is read."""
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
         written = table_to_draw(table.rows, scope, budget, body.angle_unit)
@@ -211,7 +210,7 @@ def _table(
 
 
 def _printed(found: TableFormulas) -> TableInFormulas:
-    # The cells of the converted table are those of the table itself, in other places.
+    # Most cells of the converted table are cells of the table itself, in other places.
     formula = cache(_formula)
     converted = [
         ConvertedRow(label=row.label, cells=[formula(cell) for cell in row.cells])
@@ -265,5 +264,5 @@ def _configuration(shown: Configuration) -> DrawnConfiguration:
 
 
 def _plain(numbers: Numbers) -> Any:
-    """Numbers as lists, rounded far below what can be seen, and without a negative 0."""
+    """Return numbers as lists, rounded far below what can be seen, and without a negative 0."""
     return (np.round(numbers, 12) + 0.0).tolist()

@@ -6,14 +6,14 @@ from http import HTTPStatus
 
 from fastapi import APIRouter, Request, Response
 
-from service.access.caller import Caller, Scope
+from service.access.caller import Caller
 from service.api.document.openapi import posting
-from service.api.http.bodies import body_as, checked
+from service.api.http.bodies import read_body, validated
 from service.api.http.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
 from service.api.http.problems import ProblemError, failed
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access, require_reach
-from service.api.turns import give_way, giving_way
+from service.api.turns import give_way, run_in_turns
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.grading import GradeManyResponse
 from service.formats.documents.json import rendered
@@ -27,11 +27,11 @@ _log = logging.getLogger(__name__)
 def routes(
     catalogue: Catalogue, feedback: FeedbackLevel, access: Access, monitor: Monitor | None = None
 ) -> APIRouter:
-    """The routes that grade; no report tells more than ``feedback``."""
+    """Return the routes that grade; reports have at most the level ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["grading"])
 
-    # On the event loop and not in a thread: a grading is a millisecond of pure Python, which
-    # threads cannot share, and a hop there and back costs a tenth of that.
+    # Gradings run on the event loop: each is a millisecond of pure Python, which threads cannot
+    # run in parallel, and changing threads would take another tenth of that.
     @router.post(
         "/exercises/{exercise_id}/grade",
         operation_id="grade",
@@ -42,14 +42,14 @@ def routes(
     async def grade_one(exercise_id: ExerciseId, request: Request) -> Response:
         """Grade answers, row by row and cell by cell. Nothing is recorded.
 
-        Whatever a student wrote, the answer is a report: what cannot be read is `unreadable` there,
-        with the reason, and everything else is graded. The same answers give the same report. It
-        tells no more than the exercise and the service allow; `feedback` may ask for less.
+        The answer is a report, whatever a student wrote: an entry that cannot be read is
+        `unreadable`, with the reason, and everything else is graded. The same answers
+        always get the same report. It says no more than the exercise and the service allow;
+        `feedback` may ask for less.
         """
-        access.require(request, Scope.GRADE, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
-        body = await body_as(GradeRequest, request)
-        report = await giving_way(request, lambda: _report(exercise, body, ()))
+        body = await read_body(GradeRequest, request)
+        report = await run_in_turns(request, lambda: _report(exercise, body, ()))
         return Response(report, media_type="application/json")
 
     @router.post(
@@ -60,26 +60,27 @@ def routes(
         **posting(GradeManyRequest, GradeManyResponse, "grade-many"),
     )
     async def grade_many(request: Request) -> Response:
-        """Grade submissions to any exercises, each as if it came alone. Nothing is recorded.
+        """Grade submissions to any exercises, each as if it were alone. Nothing is recorded.
 
-        The results stand in the order of the submissions. One that cannot be graded, because its
-        exercise or one of its parts does not exist, has a problem in its place and costs no other.
+        The results have the order of the submissions. If a submission cannot be graded
+        because its exercise or one of its parts does not exist, its result is a problem;
+        the others are graded.
         """
-        caller = access.require(request, Scope.GRADE)
-        body = await body_as(GradeManyRequest, request)
+        caller = access.caller(request)
+        body = await read_body(GradeManyRequest, request)
         results = []
         for i, submission in enumerate(body.submissions):
             if i:
                 await give_way(request)
             graded = partial(_result, submission, i, request.url.path, caller)
-            results.append(await giving_way(request, graded))
+            results.append(await run_in_turns(request, graded))
         content = b'{"results":[%b]}' % b",".join(results)
         return Response(content, media_type="application/json")
 
     def _result(value: object, i: int, path: str, caller: Caller) -> bytes:
         at = ("submissions", i)
         try:
-            submission = checked(ExerciseSubmission, value, at)
+            submission = validated(ExerciseSubmission, value, at)
             require_reach(caller, submission.exercise)
             exercise = exercise_or_404(catalogue, submission.exercise)
             return b'{"report":%b}' % _report(exercise, submission, at)
@@ -91,7 +92,7 @@ def routes(
         return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")
 
     def _report(exercise: Exercise, body: GradeRequest, at: Location) -> bytes:
-        """The report as JSON. Raises ProblemError for an unknown part of the submission."""
+        """Return the report as JSON. Raises ProblemError if the submission has an unknown part."""
         require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
         submission = body.submission(least(exercise.feedback, feedback))
         began = working_time()

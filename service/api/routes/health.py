@@ -1,4 +1,4 @@
-"""The routes that a supervisor asks."""
+"""The routes with which a supervisor checks the service."""
 
 import asyncio
 from http import HTTPStatus
@@ -15,25 +15,25 @@ from service.attempts.errors import StoreDownError
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
-# So long the database may take to answer (seconds).
+# The seconds that the database may take to answer.
 _PATIENCE: Final = 3.0
 
 
 class Alive(BaseModel):
-    """The process answers."""
+    """The answer of a process that is alive."""
 
     status: Literal["ok"] = "ok"
 
 
 class Ready(BaseModel):
-    """The catalogue is loaded."""
+    """The answer of a service with exercises."""
 
     status: Literal["ready"] = "ready"
     exercises: int
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
-    """The routes that a supervisor asks."""
+    """Return the routes with which a supervisor checks the service."""
     router = APIRouter(tags=["health"])
     checks = None if store is None else _Checks(store)
 
@@ -44,7 +44,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         response_description="It answers.",
     )
     async def alive() -> Alive:
-        """Tell whether the process answers at all."""
+        """Answer if the process is alive."""
         return Alive()
 
     @router.get(
@@ -55,7 +55,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         responses=refusals(HTTPStatus.SERVICE_UNAVAILABLE),
     )
     async def ready() -> Ready:
-        """Tell whether submissions can be graded and, where there is a database, recorded."""
+        """Say whether the service can grade submissions and, if it has a database, record them."""
         exercises = len(catalogue)
         if not exercises:
             raise _no_exercises()
@@ -70,17 +70,17 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
 
 
 class _Checks:
-    """Checks of the database, of which one at a time answers all who ask meanwhile."""
+    """Checks of the database, one at a time; requests that arrive during a check share it."""
 
     def __init__(self, store: "AttemptStore") -> None:
         self._store = store
         self._under_way: asyncio.Task[None] | None = None
 
     async def passed(self) -> None:
-        """Return once a check has passed. Raises StoreDownError."""
+        """Return after a check has passed. Raises StoreDownError."""
         if self._under_way is None or self._under_way.done():
             self._under_way = asyncio.create_task(self._check())
-        # Who asked may go away; the others still wait.
+        # If one client goes away, the others still wait for the check.
         await asyncio.shield(self._under_way)
 
     async def _check(self) -> None:

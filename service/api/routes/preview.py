@@ -1,17 +1,16 @@
-"""The route that shows how a text is read, while the student still types."""
+"""The routes that show how a text is read while the student is typing."""
 
 from functools import partial
 from typing import Final
 
 from fastapi import APIRouter, Request, Response
 
-from service.access.caller import Scope
 from service.api.document.openapi import posting
-from service.api.http.bodies import body_as
+from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, require_exercise, require_parts
 from service.api.http.problems import invalid
 from service.api.permissions.access import Access, require_reach
-from service.api.turns import giving_way
+from service.api.turns import run_in_turns
 from service.catalogue import Exercise
 from service.contract.preview import (
     PreviewAnswer,
@@ -24,7 +23,7 @@ from service.grading.reading.preview import CellPreview, preview_entries, previe
 
 JOINTS: Final = range(1, 10)
 
-# For a text that belongs to no exercise: the letters of a robotics textbook's formulas.
+# For a text without an exercise: the symbols of formulas in robotics textbooks.
 GENERIC: Final = Vocabulary(
     [
         *(joint_variable(i) for i in JOINTS),
@@ -36,7 +35,7 @@ GENERIC: Final = Vocabulary(
 
 
 def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
-    """The reading of the text in this vocabulary."""
+    """Return the reading of the text in this vocabulary."""
     try:
         expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
     except ExpressionError as error:
@@ -54,7 +53,7 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
 
 
 def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
-    """The readings of the entries, as a grading reads them; they share its work budget."""
+    """Return the readings of the entries as a grading reads them; they share its work budget."""
     entries = [(entry.text, entry.quantity) for entry in body.entries]
     cells = preview_entries(entries, exercise, body.part, body.angle_unit)
     return PreviewManyResponse(results=[_answer(cell) for cell in cells])
@@ -67,12 +66,12 @@ def _answer(cell: CellPreview) -> PreviewAnswer:
     return PreviewAnswer.model_validate({"ok": True, **read})
 
 
-# Characters between the cells of a table or matrix, which no single entry holds.
+# Characters between the cells of a table or matrix. A single entry has none of them.
 _BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
 
 
 def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
-    """The reading of a whole pasted table or matrix, cell by cell."""
+    """Return the reading of a whole pasted table or matrix, cell by cell."""
     pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
     symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
     return PreviewAnswer.model_validate(
@@ -87,18 +86,18 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
 
 
 def _shown(body: PreviewRequest, exercise: Exercise | None) -> str:
-    """The reading of the text, as JSON: as one entry, or as a grid if it is none."""
+    """Return the reading of the text as JSON: of one entry, or of a grid if it is not one entry."""
     shown = preview(body, exercise.vocabulary if exercise else GENERIC)
     if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
         grid = preview_grid(body, exercise, body.part)
-        # A text that is no grid either is better explained as the one entry that it may be.
+        # If the text is not a grid either, the problem of the single entry explains it better.
         is_script = grid.error is not None and grid.error.code == "unread_script"
         shown = grid if grid.rows or is_script or "\n" in body.text else shown
     return shown.model_dump_json(exclude_none=True)
 
 
 def routes(catalogue: Catalogue, access: Access) -> APIRouter:
-    """The route that previews."""
+    """Return the routes of previews."""
     router = APIRouter(prefix="/v1", tags=["preview"])
 
     @router.post(
@@ -109,15 +108,15 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         **posting(PreviewRequest, PreviewAnswer, "preview"),
     )
     async def preview_text(request: Request) -> Response:
-        """Show how a text is read: normal text, LaTeX, MathML; or why not, and the text repaired.
+        """Show how a text is read: as plain text, LaTeX and MathML.
 
-        With `exercise` and `part` the text may also be a whole pasted table or matrix.
+        If it cannot be read, the answer has the reason and the repaired text. With
+        `exercise` and `part` the text may also be a whole pasted table or matrix.
         """
-        caller = access.require(request, Scope.GRADE)
-        body = await body_as(PreviewRequest, request)
-        require_reach(caller, body.exercise)
+        body = await read_body(PreviewRequest, request)
+        require_reach(access.caller(request), body.exercise)
         exercise = _exercise(catalogue, body)
-        content = await giving_way(request, partial(_shown, body, exercise))
+        content = await run_in_turns(request, partial(_shown, body, exercise))
         return Response(content, media_type="application/json")
 
     @router.post(
@@ -130,15 +129,15 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
     async def preview_entries_of_part(request: Request) -> Response:
         """Show how several entries of one part are read, each on its own.
 
-        They are read as a grading reads them: a star marks a joint's variable in a table. Entries
-        beyond the work that one submission may cost are shown as text only.
+        They are read as a grading reads them: in a table, a star marks the variable of a
+        joint. Entries beyond the work that one submission may cost are returned only as
+        text.
         """
-        caller = access.require(request, Scope.GRADE)
-        body = await body_as(PreviewManyRequest, request)
-        require_reach(caller, body.exercise)
+        body = await read_body(PreviewManyRequest, request)
+        require_reach(access.caller(request), body.exercise)
         exercise = require_exercise(catalogue, body.exercise)
         require_parts(exercise, [(body.part, ("part",))])
-        shown = await giving_way(request, partial(preview_many, body, exercise))
+        shown = await run_in_turns(request, partial(preview_many, body, exercise))
         return Response(shown.model_dump_json(exclude_none=True), media_type="application/json")
 
     return router

@@ -7,14 +7,14 @@ from http import HTTPStatus
 from fastapi import APIRouter, Request, Response
 
 from service.api.document.openapi import posting
-from service.api.http.bodies import body_as
+from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, require_exercises
 from service.api.permissions.access import Access, require_reach
 from service.contract.tokens import TokenRequest, TokenResponse
 
 
 def routes(catalogue: Catalogue, access: Access) -> APIRouter:
-    """The route that makes tokens, for the holders of keys."""
+    """Return the route with which holders of keys make tokens."""
     router = APIRouter(prefix="/v1", tags=["tokens"])
 
     @router.post(
@@ -32,20 +32,21 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         ),
     )
     async def create_token(request: Request) -> Response:
-        """Make a token with which a learner's browser grades, records, and reads its own attempts.
+        """Make a token. A learner's browser grades, records and reads its own attempts with it.
 
-        So a page can call the service without showing the key. The token has no right that its key
-        has not, and is valid no longer than the key. Nothing is kept of it.
+        A page with a token calls the service without showing the key. The token has no
+        right that its key does not have, and expires no later than the key. The service
+        does not store it.
         """
-        caller = access.require_key(request)
-        body = await body_as(TokenRequest, request)
+        caller = access.caller(request)
+        body = await read_body(TokenRequest, request)
         exercises = caller.exercises
         if body.exercises is not None:
             require_exercises(catalogue, body.exercises, "exercises")
             for exercise in body.exercises:
                 require_reach(caller, exercise)
             exercises = frozenset(body.exercises)
-        # Seconds are all that a token holds.
+        # A token has no fractions of seconds.
         now = datetime.now(UTC).replace(microsecond=0)
         expires_at = now + timedelta(minutes=body.minutes)
         learner = replace(caller, learner=body.learner, exercises=exercises)

@@ -3,7 +3,8 @@
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
-from service.api.http.lookup import Catalogue, exercise_or_404, reached
+from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
+from service.api.permissions.access import require_reach
 from service.web.assets import Assets
 from service.web.page_headers import PRIVATE_HEADERS
 from service.web.tutor.attempt_pages import (
@@ -16,7 +17,7 @@ from service.web.tutor.tutor_routes import Tutoring
 
 
 def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """The pages of recorded attempts; each asks for the tutor's right first."""
+    """The pages of recorded attempts."""
     router = APIRouter(prefix="/tutor", include_in_schema=False)
     access = tutoring.access
 
@@ -27,22 +28,19 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
         """The list of attempts; with a key for certain exercises, of one of them."""
-        caller = access.require_tutor_of_one(request)
-        if exercise:
-            access.require_tutor(request, exercise)
-        shown = reached(catalogue, caller)
+        caller = access.caller(request)
+        require_reach(caller, exercise or None)
+        shown = reachable_exercises(catalogue, caller)
         return answer(attempts_page(shown, assets, of_all=caller.exercises is None), "../")
 
     @router.get("/attempts/{attempt_id}")
-    async def attempt(request: Request, attempt_id: str) -> Response:
+    async def attempt(attempt_id: str) -> Response:
         """One attempt."""
-        access.require_tutor_of_one(request)
         return answer(attempt_page(attempt_id, assets), "../../")
 
     @router.get("/statistics/{exercise_id}")
-    async def statistics(request: Request, exercise_id: str) -> Response:
+    async def statistics(exercise_id: str) -> Response:
         """The statistics of an exercise, and its regrade."""
-        access.require_tutor(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         return answer(statistics_page(exercise, assets), "../../")
 

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
 from service.api.http.bounded_work import BoundedWork
-from service.api.http.chunked_response import PiecewiseResponse
+from service.api.http.chunked_response import ChunkedResponse
 from service.api.http.lookup import Catalogue
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
@@ -18,7 +18,7 @@ _HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(frame_sr
 
 def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> APIRouter:
     """The page to choose files on, the frame of the reports, and the grading."""
-    router = APIRouter()
+    router = APIRouter(prefix="/tutor")
 
     @router.get("/class")
     async def class_form() -> Response:
@@ -44,6 +44,6 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
         """The folder of a class as a ZIP archive; nothing of it is kept."""
         packed = await request.body()
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue))
-        return PiecewiseResponse(content, headers=NO_STORE, media_type="application/zip")
+        return ChunkedResponse(content, headers=NO_STORE, media_type="application/zip")
 
     return router

@@ -7,7 +7,7 @@ from typing import Final
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
-from service.api.http.bodies import body_as
+from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
@@ -30,7 +30,7 @@ def editor_routes(
     checking: Checking,
 ) -> APIRouter:
     """The editor, the check of its text, and the writing of its file."""
-    router = APIRouter()
+    router = APIRouter(prefix="/tutor")
 
     @router.get("/editor")
     async def editor(request: Request, exercise: str | None = None) -> Response:
@@ -55,7 +55,7 @@ def editor_routes(
     @router.post("/check")
     async def check(request: Request) -> Response:
         """The findings on a text, which is not kept."""
-        body = await body_as(CheckRequest, request)
+        body = await read_body(CheckRequest, request)
         content = await work.do(partial(checking.checked, body))
         return Response(content, headers=NO_STORE, media_type="application/json")
 
@@ -66,7 +66,7 @@ def editor_routes(
             raise ProblemError(
                 HTTPStatus.FORBIDDEN, "Files are written for whoever is at this machine only."
             )
-        body = await body_as(SaveRequest, request)
+        body = await read_body(SaveRequest, request)
         mark = await work.do(partial(folder.save, body))
         return JSONResponse({"mark": mark}, headers=NO_STORE)
 

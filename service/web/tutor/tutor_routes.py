@@ -6,13 +6,13 @@ from functools import partial
 from http import HTTPStatus
 from pathlib import Path
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
 from service.api.http.bounded_work import BoundedWork
-from service.api.http.chunked_response import PiecewiseResponse
-from service.api.http.lookup import Catalogue, exercise_or_404, reached
-from service.api.http.memoized import Kept
+from service.api.http.chunked_response import ChunkedResponse
+from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
+from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
@@ -40,13 +40,10 @@ class Tutoring:
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """The pages and the routes that they ask; each asks for the tutor's right first."""
+    """The pages, and the routes that they call."""
     access = tutoring.access
 
-    async def require(request: Request) -> None:
-        access.require_solutions(request, request.path_params.get("exercise_id"))
-
-    router = APIRouter(prefix="/tutor", include_in_schema=False)
+    router = APIRouter(include_in_schema=False)
     work = BoundedWork()
     folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
     for routes in (
@@ -54,13 +51,13 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
         editor_routes(catalogue, assets, folder, work, tutoring.checking),
         class_routes(catalogue, assets, work),
     ):
-        router.include_router(routes, dependencies=[Depends(require, scope="function")])
+        router.include_router(routes)
 
-    @router.get("")
+    @router.get("/tutor")
     async def home(request: Request) -> Response:
         """What there is for tutors; with a key for certain exercises, for tutors of these."""
-        caller = access.require_solutions_of_some(request)
-        shown = reached(catalogue, caller)
+        caller = access.caller(request)
+        shown = reachable_exercises(catalogue, caller)
         content = tutor_page(shown, assets, of_all=caller.exercises is None)
         return HTMLResponse(content, headers=PRIVATE_HEADERS)
 
@@ -68,18 +65,18 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
 
 def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> APIRouter:
-    router = APIRouter()
-    solutions, figures = Kept(), Kept()
+    router = APIRouter(prefix="/tutor")
+    solutions, figures = MemoizedResults(), MemoizedResults()
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
         """The model solution of an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        of_all = access.require_solutions_of_some(request).exercises is None
+        of_all = access.caller(request).exercises is None
         key = (exercise.id, exercise.version, exercise.title, of_all)
         drawn = partial(solution_page, exercise, assets, of_all=of_all)
         content = await solutions.of(key, drawn)
-        return PiecewiseResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+        return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:

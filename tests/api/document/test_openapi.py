@@ -1,4 +1,4 @@
-"""The OpenAPI document tells the truth, in a form that linters and generators of clients like."""
+"""The OpenAPI document is true, and has the form that linters and generators of clients need."""
 
 import copy
 import json
@@ -28,7 +28,7 @@ EXAMPLE_URLS = {
 }
 ROUTES = {**EXAMPLE_URLS, "grade": "/v1/exercises/{exercise_id}/grade"}
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
-# Written out, for they are the names of functions in other people's programs.
+# Written out, because they are names of functions in programs of other people.
 OPERATIONS = {
     "listExercises", "getExercise", "getFigure", "getFrames", "getSolution", "grade",
     "gradeMany", "createToken", "recordAttempt", "listAttempts", "getAttempt", "getStatistics",
@@ -54,7 +54,7 @@ def operations(document: Schema) -> list[Schema]:
 
 
 def schemas_in(value: Any) -> Iterator[Schema]:
-    """Every schema below a value of the document, examples left out."""
+    """Yield every schema in a value of the document, without those in examples."""
     if isinstance(value, dict):
         if not value.keys().isdisjoint({"type", "$ref", "anyOf", "oneOf", "const"}):
             yield value
@@ -86,7 +86,7 @@ def test_the_documented_answer_is_what_the_service_answers(
     request = operation["requestBody"]["content"]["application/json"]["example"]
     documented = operation["responses"]["200"]["content"]["application/json"]["example"]
     answered = client.post(EXAMPLE_URLS[name], json=request).json()
-    # A version is a digest of the exercise's file: every change of a statement changes it.
+    # A version is a digest of the exercise's file, so it changes with every statement.
     assert without_versions(documented) == without_versions(answered), (
         f"The answer has changed; {EXAMPLES / name}-response.json should now be:\n"
         + json.dumps(answered, indent=2, ensure_ascii=False)
@@ -109,10 +109,10 @@ def test_the_examples_fit_their_schemas(document: Schema) -> None:
 
 
 def strictly(document: Schema, schema: Schema) -> Draft202012Validator:
-    """A validator that also refuses a field which the schema does not have."""
+    """Return a validator that also refuses fields that the schema does not have."""
     components = copy.deepcopy(document["components"])
     for each in components["schemas"].values():
-        # LinkTransform and its like repeat the fields of the class that they come from.
+        # Some schemas, such as LinkTransform, repeat the fields of their base class.
         if "properties" in each:
             each["additionalProperties"] = False
     return Draft202012Validator({**schema, "components": components})
@@ -253,7 +253,7 @@ def test_only_the_structure_in_the_list_may_be_null(document: Schema) -> None:
 
 
 def test_there_are_no_titles_and_no_defaults(document: Schema) -> None:
-    """A title repeats a name; a default makes openapi-typescript ask for the field."""
+    """A title repeats a name, and a default makes openapi-typescript require the field."""
     assert [each for each in schemas_in(document) if {"title", "default"} & each.keys()] == []
 
 

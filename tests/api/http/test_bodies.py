@@ -1,4 +1,4 @@
-"""Bodies that are not what a request must be; the same for every route that reads one."""
+"""Bodies that are not valid requests; the same for every route that reads a body."""
 
 import json
 
@@ -24,7 +24,7 @@ PREVIEW = "/v1/preview"
         ({"answers": {}, "angle_units": "degrees"}, "#/angle_units"),
     ],
 )
-def test_a_wrong_shape_is_a_422_that_points_there(
+def test_a_body_of_another_shape_gets_422_with_a_pointer(
     client: httpx.Client, body: object, pointer: str
 ) -> None:
     response = client.post(GRADE, content=json.dumps(body))
@@ -60,7 +60,7 @@ def test_an_unknown_field_is_answered_with_the_known_ones(client: httpx.Client) 
     ],
 )
 @pytest.mark.parametrize("url", [GRADE, PREVIEW])
-def test_what_is_no_json_is_a_400(client: httpx.Client, url: str, content: bytes) -> None:
+def test_a_body_that_is_not_json_gets_400(client: httpx.Client, url: str, content: bytes) -> None:
     response = client.post(url, content=content, headers={"Content-Type": "application/json"})
     assert response.status_code == 400
     assert response.headers["content-type"] == "application/problem+json"
@@ -93,7 +93,7 @@ def test_json_is_read_under_any_content_type(client: httpx.Client, content_type:
         ("application/problem+json", 400),
     ],
 )
-def test_what_neither_is_nor_claims_to_be_json_is_a_415(
+def test_a_body_that_is_not_json_under_another_content_type_gets_415(
     client: httpx.Client, content_type: str, status: int
 ) -> None:
     headers = {"Content-Type": content_type}
@@ -113,8 +113,10 @@ def test_control_characters_in_names_come_back_escaped(client: httpx.Client) -> 
 
 
 @pytest.mark.parametrize("url", [GRADE, PREVIEW])
-def test_of_thousands_of_unknown_fields_the_first_are_told(client: httpx.Client, url: str) -> None:
-    """The known ones behind them are not missing."""
+def test_only_the_first_of_thousands_of_unknown_fields_are_listed(
+    client: httpx.Client, url: str
+) -> None:
+    """Known fields that follow them are not reported as missing."""
     known: dict[str, object] = {"answers": {}} if url == GRADE else {"text": "q1"}
     response = client.post(url, json={**{f"field{i}": 0 for i in range(12_000)}, **known})
     assert response.status_code == 422
@@ -122,7 +124,7 @@ def test_of_thousands_of_unknown_fields_the_first_are_told(client: httpx.Client,
     assert pointers == [f"#/field{i}" for i in range(20)]
 
 
-def test_of_thousands_of_unknown_parts_the_first_are_told(client: httpx.Client) -> None:
+def test_only_the_first_of_thousands_of_unknown_parts_are_listed(client: httpx.Client) -> None:
     response = client.post(GRADE, json={"answers": {f"part{i}": 0 for i in range(12_000)}})
     assert response.status_code == 422
     pointers = [error["pointer"] for error in response.json()["errors"]]

@@ -1,4 +1,4 @@
-"""What holds around every route: sizes, methods, headers, failures."""
+"""The behaviour that all routes share: sizes, methods, headers, failures."""
 
 import asyncio
 import re
@@ -18,7 +18,7 @@ ClientOf = Callable[[FastAPI], httpx.Client]
 
 
 def scope(headers: list[tuple[bytes, bytes]]) -> dict[str, Any]:
-    """A POST of answers, as a server hands it to the app."""
+    """Return the ASGI scope of a POST of answers, as a server passes it to the app."""
     return {
         "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST",
         "path": GRADE, "raw_path": GRADE.encode(), "root_path": "", "scheme": "http",

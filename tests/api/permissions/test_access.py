@@ -1,4 +1,4 @@
-"""Who is taken for a tutor: a student must never be, by whatever way the request comes."""
+"""Only a request from the machine itself is taken for a tutor's, however a student sends one."""
 
 import asyncio
 from typing import Any
@@ -20,7 +20,7 @@ def answered(
     server: str = "127.0.0.1",
     http_version: str = "1.1",
 ) -> bool:
-    """Whether the request has the right, with these ends of its connection and this HTTP."""
+    """Return whether a request with these addresses and this HTTP version may see solutions."""
     app = FastAPI()
     access = Access(solutions=solutions)
 
@@ -41,16 +41,16 @@ def answered(
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1:8000", "localhost:8000", "[::1]:8000", "LOCALHOST"])
-def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
+def test_a_browser_at_the_machine_is_a_tutor_s(host: str) -> None:
     assert answered(None, {"host": host})
     assert answered(None, {"host": host, "origin": f"http://{host}"})
     assert answered(None, {"host": host}, client="::1", server="::1")
-    # A browser that shows a page of the service, and one in which somebody typed the address.
+    # A browser that shows a page of the service, or whose user has typed the address.
     for site in ("same-origin", "none"):
         assert answered(None, {"host": host, "sec-fetch-site": site})
     own = {"origin": f"http://{host}", "sec-fetch-site": "same-origin", "sec-fetch-mode": "cors"}
     assert answered(None, {"host": host, **own})
-    # A link on another page, which learns nothing of the answer.
+    # A link on another page, which does not see the answer.
     link = {"sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
     for site in ("cross-site", "same-site"):
         assert answered(None, {"host": host, "sec-fetch-site": site, **link})
@@ -60,9 +60,9 @@ def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
     ("headers", "ends"),
     [
         ({"host": "10.0.0.7:8000"}, {"client": "10.0.0.9", "server": "10.0.0.7"}),
-        (PROGRAM, {"client": "10.0.0.9"}),  # a proxy that the server believes
-        (PROGRAM, {"server": "10.0.0.7"}),  # from the machine to a port that all can reach
-        ({"host": "grader.example.edu"}, {}),  # nginx as docs/deployment.md has it, or rebinding
+        (PROGRAM, {"client": "10.0.0.9"}),  # a proxy that the server trusts
+        (PROGRAM, {"server": "10.0.0.7"}),  # from the machine to an address that others can reach
+        ({"host": "grader.example.edu"}, {}),  # nginx as in docs/deployment.md, or DNS rebinding
         ({"host": "localhost.example.edu"}, {}),
         ({"host": "[::1"}, {}),
         ({"host": ""}, {}),
@@ -71,14 +71,14 @@ def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
         ({**PROGRAM, "via": "1.1 proxy"}, {}),
         ({**PROGRAM, "x-forwarded-proto": "https"}, {}),
         ({**PROGRAM, "cf-connecting-ip": "10.0.0.7"}, {}),
-        (PROGRAM, {"http_version": "1.0"}),  # nginx that nobody has told anything
+        (PROGRAM, {"http_version": "1.0"}),  # an unconfigured nginx
         ({**PROGRAM, "origin": "https://course.example.edu"}, {}),
         ({**PROGRAM, "origin": "http://127.0.0.1:9000"}, {}),
         ({**PROGRAM, "origin": "null"}, {}),
-        # The same name by another scheme is another origin.
+        # The same name with another scheme is another origin.
         ({**PROGRAM, "origin": "https://127.0.0.1:8000"}, {}),
         ({**PROGRAM, "origin": "chrome-extension://127.0.0.1:8000"}, {}),
-        # A picture, script, frame or form of another page, or of another port of this machine.
+        # A picture, script, frame or form of another page or of another port of this machine.
         *(
             ({**PROGRAM, "sec-fetch-site": site, **how}, {})
             for site in ("cross-site", "same-site", "unheard-of", "")
@@ -92,18 +92,18 @@ def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
         ),
     ],
 )
-def test_nobody_else_is(headers: dict[str, str], ends: dict[str, str]) -> None:
+def test_no_other_request_is_a_tutor_s(headers: dict[str, str], ends: dict[str, str]) -> None:
     assert not answered(None, headers, **ends)
 
 
-def test_the_setting_decides_where_it_is_set() -> None:
+def test_the_setting_decides_if_it_is_set() -> None:
     far = {"client": "10.0.0.9", "server": "10.0.0.7"}
     assert answered(True, {"host": "grader.example.edu"}, **far)
     assert not answered(False, PROGRAM)
-    # A page elsewhere never asks with a tutor's browser.
+    # A page of another origin cannot use a tutor's browser.
     assert not answered(True, {**PROGRAM, "origin": "https://course.example.edu"})
     assert not answered(True, {**PROGRAM, "sec-fetch-site": "cross-site"})
-    # A proxy that speaks TLS and does not say so: the browser does.
+    # A proxy ends TLS and does not say so, but the browser does.
     name = {"host": "grader.example.edu", "origin": "https://grader.example.edu"}
     assert answered(True, {**name, "sec-fetch-site": "same-origin"}, **far)
     assert not answered(True, name, **far)

@@ -30,7 +30,7 @@ Tutor = Any
 
 @pytest.fixture
 def tutor_of(catalogue: Mapping[str, Exercise], store: AttemptStore) -> Tutor:
-    """Makes a client of a service that lets whom it says read; by default at the machine itself."""
+    """Return a function that makes a client of a service, by default at the machine itself."""
 
     def make(
         read_attempts: bool | None = None, at: str = "http://127.0.0.1:8000", **headers: str
@@ -46,7 +46,7 @@ def post(client: httpx.Client, learner: str) -> Any:
     return client.post("/v1/exercises/scara/attempts", json=body).json()
 
 
-def test_what_was_posted_is_read(tutor_of: Tutor) -> None:
+def test_recorded_attempts_can_be_read(tutor_of: Tutor) -> None:
     tutor = tutor_of()
     posted = [post(tutor, learner) for learner in ("ada", "grace", "ada")]
     first = tutor.get("/v1/attempts", params={"limit": 2}).json()
@@ -65,7 +65,7 @@ def test_what_was_posted_is_read(tutor_of: Tutor) -> None:
     assert figures["identical"][0]["among"] == ["ada", "grace"]
 
 
-def test_what_is_read_is_documented_field_by_field(tutor_of: Tutor) -> None:
+def test_every_field_of_an_attempt_is_documented(tutor_of: Tutor) -> None:
     tutor = tutor_of()
     attempt = post(tutor, "ada")["attempt"]["id"]
     document = tutor.get("/openapi.json").json()
@@ -84,7 +84,7 @@ def test_what_is_read_is_documented_field_by_field(tutor_of: Tutor) -> None:
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_only_who_has_the_right_reads(tutor_of: Tutor, path: str) -> None:
+def test_only_callers_with_the_right_read(tutor_of: Tutor, path: str) -> None:
     def status(*options: Any, **headers: str) -> int:
         return int(tutor_of(*options, **headers).get(path).status_code)
 
@@ -92,7 +92,7 @@ def test_only_who_has_the_right_reads(tutor_of: Tutor, path: str) -> None:
     elsewhere = "http://grader.example.edu"
     assert status() == readable
     assert status(Host="localhost:8000") == readable
-    # A proxy on the machine, a page of another origin, a name that was made to lead here.
+    # A proxy on the machine, a page of another origin, a name that resolves to the machine.
     assert status(**{"X-Forwarded-For": "10.0.0.7"}) == 403
     assert status(Origin="https://evil.example") == 403
     assert status(Host="grader.example.edu") == status(None, elsewhere) == 403
@@ -127,7 +127,7 @@ def test_a_query_is_checked(tutor_of: Tutor, query: str, status: int) -> None:
     assert tutor_of().get(f"/v1/attempts?{query}").status_code == status
 
 
-def test_what_is_not_there_is_not_found(tutor_of: Tutor, catalogue: Any) -> None:
+def test_unknown_attempts_and_exercises_are_not_found(tutor_of: Tutor, catalogue: Any) -> None:
     assert tutor_of().get("/v1/attempts/%00").status_code == 404
     assert tutor_of().get("/v1/exercises/no-such/statistics").status_code == 404
     nothing = application(catalogue, access=Access(read_attempts=True))
@@ -135,7 +135,7 @@ def test_what_is_not_there_is_not_found(tutor_of: Tutor, catalogue: Any) -> None
         assert client.get("/v1/attempts").json()["type"].endswith("attempts-not-recorded")
 
 
-def test_while_the_database_is_down_reading_says_so(tutor_of: Tutor, store: AttemptStore) -> None:
+def test_reading_gets_503_while_the_database_is_down(tutor_of: Tutor, store: AttemptStore) -> None:
     with store.engine.begin() as connection:
         connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))
     assert {tutor_of().get(path).status_code for path in PATHS} == {503}

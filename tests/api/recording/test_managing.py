@@ -1,4 +1,4 @@
-"""What tutors do with recorded attempts over HTTP: export, override, forget, regrade."""
+"""The routes with which tutors export, override, delete and regrade attempts."""
 
 import asyncio
 import csv
@@ -24,7 +24,7 @@ from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, recorded
 
 HERE = "http://127.0.0.1:8000"
 NOBODY = 32 * "0"
-# What each route is sent that takes a body.
+# The body of each route that has one.
 BODIES: Mapping[str, Any] = {
     "/v1/attempts/export": None,
     f"/v1/attempts/{NOBODY}/override": {"reason": "x"},
@@ -42,7 +42,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Tutor:
-    """Asks a service in this process, at the machine itself unless ``at`` says other."""
+    """A client of a service in this process, at the machine itself unless ``at`` differs."""
 
     def __init__(
         self, exercises: Mapping[str, Exercise], store: AttemptStore | None,
@@ -57,7 +57,7 @@ class Tutor:
             return client.request(method, path, json=body)
 
     def asked(self, path: str, **more: str) -> httpx.Response:
-        """The answer to what a route of ``BODIES`` is sent."""
+        """Return the answer of a route to its body in ``BODIES``."""
         body = BODIES[path]
         return self.ask("GET" if body is None else "POST", path, body, **more)
 
@@ -73,7 +73,7 @@ def tutor(catalogue: Mapping[str, Exercise], store: AttemptStore) -> Tutor:
 
 
 def corrected(folder: Path) -> Mapping[str, Exercise]:
-    """The catalogue with another SCARA, in which no axis is turned over."""
+    """Return the catalogue with another SCARA, in which no axis points down."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     assert text.count('["a2", "180deg",') == 1, "the exercise has changed"
     folder.mkdir()
@@ -97,7 +97,7 @@ def test_attempts_are_exported(
     assert [(each["attempt"], each["counts"]) for each in lines] == [
         (first.id, "false"), (best.id, "true")
     ]  # fmt: skip
-    # No spreadsheet takes a name for a formula.
+    # No spreadsheet reads a name as a formula.
     assert {each["learner"] for each in lines} == {"'=ada"}
     exported = tutor.ask("GET", "/v1/attempts/export?format=jsonl&until=2026-11-22T12:30:00Z")
     assert [json.loads(line)["attempt"] for line in exported.text.splitlines()] == [first.id]
@@ -135,7 +135,7 @@ def test_an_attempt_gets_other_points_with_a_reason(
     assert unknown.json()["type"].endswith("unknown-attempt")
 
 
-def test_a_learner_is_forgotten_only_when_that_is_said(
+def test_a_learner_is_deleted_only_with_apply(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise], tmp_path: Path
 ) -> None:
     for learner in ("ada-4711", "grace"):
@@ -178,10 +178,10 @@ def test_a_regrade_goes_step_by_step(
     path = "/v1/exercises/scara/regrade"
     [given] = Tutor(catalogue, store).ask("GET", "/v1/attempts?learner=wrong-1").json()["attempts"]
     Tutor(catalogue, store).post(f"/v1/attempts/{given['id']}/override", points=7.5, reason="r")
-    # By the same version and program nothing is outdated.
+    # With the same version and program nothing is outdated.
     same = Tutor(catalogue, store)
     assert same.post(path) == {"applied": False, "regraded": 0, "left": 0, "changes": []}
-    # Few to a step, as if each took long.
+    # Few attempts in each step, as if they were slow.
     monkeypatch.setattr(regrade_steps, "_MOST", 4)
     monkeypatch.setattr(regrade_steps, "_PREVIEW_BATCH", 4)
     monkeypatch.setattr(regrading, "BATCH", 4)
@@ -215,7 +215,7 @@ def test_a_regrade_goes_step_by_step(
         assert tutor.ask("POST", path, {"cursor": cursor}).status_code == 422
 
 
-def test_only_who_has_the_right_asks(
+def test_only_callers_with_the_right_change_attempts(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
     def statuses(tutor: Tutor, **more: str) -> list[int]:
@@ -224,19 +224,19 @@ def test_only_who_has_the_right_asks(
     assert statuses(tutor) == [200, 404, 200, 200]
     none = [403] * len(BODIES)
     assert statuses(tutor, **{"X-Forwarded-For": "10.0.0.7"}) == none
-    # A page of another origin has a tutor's browser send what it wants.
+    # A page of another origin can make a tutor's browser send requests.
     assert statuses(tutor, Origin="https://evil.example") == none
     assert statuses(tutor, Origin="null") == none
     elsewhere = "http://grader.example.edu"
     assert statuses(tutor, at=elsewhere) == none
     assert statuses(Tutor(catalogue, store, reads=False)) == none
-    # Where everybody may read, nobody else may change.
+    # If everybody may read, still only tutors may change.
     opened = Tutor(catalogue, store, reads=True)
     assert statuses(opened, at=elsewhere) == [200, 403, 403, 403]
     assert statuses(opened) == [200, 404, 200, 200]
 
 
-def test_what_cannot_be_done_is_said(
+def test_impossible_changes_are_refused(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
     without = Tutor(catalogue, None)

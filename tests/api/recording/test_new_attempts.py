@@ -35,7 +35,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Course:
-    """Learners who post attempts at one exercise under some rules."""
+    """Learners who post attempts at one exercise with some rules."""
 
     def __init__(self, client: httpx.Client) -> None:
         self._client = client
@@ -50,7 +50,7 @@ class Course:
 
 @pytest.fixture
 def course_of(catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any) -> Any:
-    """Makes a course whose exercise has other rules."""
+    """Return a function that makes a course whose exercise has other rules."""
 
     def make(levels: tuple[FeedbackLevel, ...] = (FeedbackLevel.HINTS,), **rules: Any) -> Course:
         exercise = replace(
@@ -104,7 +104,7 @@ def test_only_readable_attempts_count(course_of: Any) -> None:
     assert course.post(WRONG, "grace").status_code == 201
 
 
-def test_each_attempt_is_told_as_much_as_its_level_says(course_of: Any) -> None:
+def test_each_report_has_the_level_of_its_attempt(course_of: Any) -> None:
     course = course_of((FeedbackLevel.SCORE, FeedbackLevel.VERDICTS, FeedbackLevel.HINTS))
     levels = [course.post(WRONG).json()["report"]["feedback"] for _ in range(4)]
     assert levels == ["score", "verdicts", "hints", "hints"]
@@ -124,7 +124,7 @@ def test_outcomes_have_their_codes_at_every_level(course_of: Any, store: Attempt
 
 @pytest.fixture
 def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
-    """The levels of all gradings of attempts from now on."""
+    """Return the list of the levels of all gradings of attempts from now on."""
     done: list[FeedbackLevel] = []
 
     def counted(exercise: Exercise, submission: Submission) -> GradedAnswers:
@@ -153,7 +153,7 @@ def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vai
     store: AttemptStore,
     gradings: list[FeedbackLevel],
 ) -> None:
-    """At two replicas, and whatever the number is that the attempt then has."""
+    """This holds for two replicas, and for whichever number an attempt gets."""
     levels = (first, FeedbackLevel.VERDICTS, FeedbackLevel.HINTS)
     exercise = replace(
         catalogue["scara"], feedback_by_attempt=levels, attempts=AttemptsSpec(limit=10)
@@ -179,7 +179,7 @@ def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vai
     assert {problem(each) for each in answers if each.status_code != 201} == {
         (403, "no-attempts-left")
     }
-    # All of them begin as a first attempt; what is worked out for that serves any lower level.
+    # All of them are first graded as a first attempt; lower levels reuse that grading.
     anew = 11 if first is FeedbackLevel.FULL else 0
     assert len(gradings) <= 12 + anew
 
@@ -241,16 +241,16 @@ def test_a_learner_may_have_any_letters(course_of: Any) -> None:
 def test_no_learner_has_a_character_that_is_not_seen() -> None:
     taken = TypeAdapter(Learner)
     for character in map(chr, range(0x110000)):
-        # By the tables of Unicode; what is not assigned yet is unknown to them.
+        # As the Unicode tables of Python say, which do not know unassigned characters.
         if unicodedata.category(character) in ("Cc", "Cf", "Co", "Zl", "Zp", "Zs"):
             with pytest.raises(ValidationError):
                 taken.validate_python(f"a{character}")
 
 
-def test_a_page_of_another_origin_records_nothing(
+def test_a_page_of_another_origin_cannot_record(
     catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any
 ) -> None:
-    """A browser sends it without asking first where its type is that of a plain text."""
+    """A browser sends a body of the type text/plain without asking the service first."""
     course = "https://course.example.edu"
 
     def status(origin: str | None, *allowed: str) -> tuple[int, int]:
@@ -267,7 +267,7 @@ def test_a_page_of_another_origin_records_nothing(
     assert status(course, course) == status("https://any.example", "*") == (201, 1)
 
 
-def test_the_page_on_attempts_shows_what_is_answered(course_of: Any) -> None:
+def test_the_page_on_attempts_shows_the_real_answer(course_of: Any) -> None:
     page = (Path(__file__).parents[3] / "docs" / "attempts.md").read_text(encoding="utf-8")
     sent, shown, *_ = re.findall(r"```json(?: attempt\.json)?\n(.*?)```", page, re.DOTALL)
     [(url, headers)] = re.findall(

@@ -10,7 +10,7 @@ from service.api.application import application
 from service.catalogue import Exercise, Robot, load_catalogue
 from tests.together import together
 
-# Its reference holds 0.125, 0.75, 61 and 0.3125, which stand nowhere else.
+# Its reference has the numbers 0.125, 0.75, 61 and 0.3125, which are nowhere else in it.
 SECRETIVE = """
 title = "Two joints"
 source = "none"

@@ -22,7 +22,7 @@ def test_a_figure_is_the_drawing_of_the_exercise(
     assert client.get("/v1/exercises/scara").json()["figure"] is True
 
 
-def test_nothing_runs_in_it_and_its_own_style_alone_counts(client: httpx.Client) -> None:
+def test_a_figure_runs_no_script_and_uses_only_its_own_style(client: httpx.Client) -> None:
     for theme in Theme:
         answer = client.get(f"/v1/exercises/planar-rr/figure.svg?theme={theme}")
         policy = answer.headers["content-security-policy"]
@@ -40,7 +40,9 @@ def test_nothing_runs_in_it_and_its_own_style_alone_counts(client: httpx.Client)
         ("scara/figure.svg?theme=pink", 422, "invalid-request"),
     ],
 )
-def test_there_is_no_such_figure(client: httpx.Client, path: str, status: int, kind: str) -> None:
+def test_a_figure_of_an_unknown_exercise_or_theme_is_refused(
+    client: httpx.Client, path: str, status: int, kind: str
+) -> None:
     answer = client.get(f"/v1/exercises/{path}")
     assert answer.status_code == status
     assert answer.json()["type"] == f"urn:dh-grader:problem:{kind}"

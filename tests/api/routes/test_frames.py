@@ -51,7 +51,7 @@ def texts_in(value: Any) -> set[str]:
 
 
 def parameters(exercise: Exercise) -> set[str]:
-    """The texts of all cells of the answer, in both conventions, that are no 0."""
+    """Return the texts of all cells of the answer that are not 0, in both conventions."""
     assert isinstance(exercise.reference, Robot)
     rows = [row for table in exercise.reference.tables.values() for row in table.rows]
     return {cell.text() for row in rows for cell in row} - {"0"}
@@ -84,7 +84,7 @@ def test_a_mechanism_tells_nothing_that_the_statement_does_not(
 
 
 def test_another_choice_of_frames_gives_the_same_mechanism(client: httpx.Client) -> None:
-    """Two exercises on one arm, with frames of their own in either convention."""
+    """There are two exercises on one arm, with different frames, in each convention."""
     answers = [answered(client, {"exercise": name}) for name in ("rrrp", "rrrp-proximal")]
     one, other = (answer["mechanism"]["configurations"][0] for answer in answers)
     assert one["tool"] == pytest.approx(other["tool"])

@@ -19,14 +19,14 @@ from tests.together import together
 
 URL = "/v1/exercises/planar-rrr/grade"
 
-# From the exercise's source: the proximal table of the planar arm.
+# From the source of the exercise: the table of the planar arm, modified convention.
 TABLE = [
     {"a": 0, "alpha": 0, "d": 0, "theta": "q1"},
     {"a": "l1", "alpha": 0, "d": 0, "theta": "q2"},
     {"a": "l2", "alpha": 0, "d": 0, "theta": "q3"},
     {"a": "l3", "alpha": 0, "d": 0, "theta": 0},
 ]
-# Planar forward kinematics, by the sums of angles that every textbook has.
+# Planar forward kinematics with sums of angles, as in textbooks.
 X = "l1*cos(q1) + l2*cos(q1+q2) + l3*cos(q1+q2+q3)"
 Y = "l1*sin(q1) + l2*sin(q1+q2) + l3*sin(q1+q2+q3)"
 POSE = [
@@ -56,7 +56,7 @@ def test_right_answers_earn_everything(client: httpx.Client) -> None:
     assert {part["verdict"] for part in result["parts"]} == {"correct"}
 
 
-def test_a_wrong_cell_is_named_and_fields_that_say_nothing_are_left_out(
+def test_a_wrong_cell_is_named_and_fields_without_a_value_are_left_out(
     client: httpx.Client,
 ) -> None:
     rows = [*TABLE[:1], {**TABLE[1], "a": "l2"}, *TABLE[2:]]
@@ -116,7 +116,7 @@ def test_no_caller_gets_more_than_the_exercise_allows(
         ("score", "full", "hints", "score"),
     ],
 )
-def test_the_least_of_what_is_asked_and_allowed_is_told(
+def test_a_report_has_the_lower_of_the_requested_and_the_allowed_level(
     exercise: str, service: str, asked: str | None, told: str,
     catalogue: Mapping[str, Exercise], client_of: Callable[[FastAPI], httpx.Client],
 ) -> None:  # fmt: skip
@@ -165,7 +165,7 @@ def test_no_cell_fails_the_request_or_the_rest(
     "literal",
     ["NaN", "-Infinity", "1e999", "9" * 400, "9" * 5000, "-" + "9" * 5000, '"\\ud800"'],
 )
-def test_a_literal_that_no_number_holds_costs_only_its_cell(
+def test_a_literal_that_is_no_finite_number_affects_only_its_cell(
     client: httpx.Client, literal: str
 ) -> None:
     body = json.dumps({"answers": RIGHT}).replace('"l2"', literal, 1)
@@ -187,9 +187,7 @@ JSON = st.recursive(
 
 
 @given(answer=JSON, part=st.sampled_from(["table", "pose"]))
-def test_whatever_an_answer_holds_there_is_a_report(
-    client: httpx.Client, answer: object, part: str
-) -> None:
+def test_every_answer_gets_a_report(client: httpx.Client, answer: object, part: str) -> None:
     response = client.post(URL, content=json.dumps({"answers": {part: answer}}))
     assert response.status_code == 200
     graded = next(each for each in response.json()["parts"] if each["part"] == part)

@@ -1,4 +1,4 @@
-"""What a supervisor is told about a real database, and what that costs the database."""
+"""The answers to a supervisor with a real database, and the queries that they cost."""
 
 import asyncio
 import logging
@@ -26,7 +26,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 def asked(app: FastAPI, path: str, times: int = 1) -> list[httpx.Response]:
-    """The answers to so many questions at once."""
+    """Return the answers to several requests at once."""
 
     async def ask() -> list[httpx.Response]:
         transport = httpx.ASGITransport(app)

@@ -127,7 +127,7 @@ def test_entries_of_a_part_are_read_each_on_its_own_and_in_their_order(
     assert [each["ok"] for each in results] == [True, False, True, True]
     assert [each.get("text") for each in results] == ["q1", None, "-90deg", "l2"]
     assert results[1]["error"]["suggestion"] == "2"
-    # In a table a star marks the joint's variable, and need not be told.
+    # In a table a star marks the variable of a joint; this needs no note.
     assert results[0]["notes"] == []
 
 

@@ -1,4 +1,4 @@
-"""Model solutions over HTTP: for those who have switched them on, and never in the way."""
+"""Model solutions over HTTP are off by default, and do not delay other requests."""
 
 import asyncio
 import subprocess
@@ -14,7 +14,7 @@ import pytest
 from fastapi import FastAPI
 
 from service.api.application import application
-from service.api.http.memoized import Kept
+from service.api.http.memoized import MemoizedResults
 from service.api.permissions.access import Access
 from service.api.routes.solutions import _solved
 from service.catalogue import Exercise
@@ -30,7 +30,7 @@ def tutor(catalogue: Mapping[str, Exercise]) -> Iterator[httpx.Client]:
         yield client
 
 
-def test_they_are_off_and_the_answer_says_how_to_switch_them_on(client: httpx.Client) -> None:
+def test_solutions_are_off_and_the_problem_says_how_to_switch_them_on(client: httpx.Client) -> None:
     for name in ("stanford-arm", "nothing"):
         response = client.get(PATH.format(name))
         assert response.status_code == 403
@@ -92,17 +92,17 @@ def test_a_changed_exercise_has_a_solution_of_its_own(
         assert tutor.get(PATH.format("scara")).text == "other"
 
 
-def test_the_loop_goes_on_while_one_is_worked_out(
+def test_the_event_loop_runs_while_a_solution_is_computed(
     catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
-    """What stalls it is only the interpreter's hand-over between threads, some milliseconds."""
+    """Only the interpreter's switch between threads delays the loop, by some milliseconds."""
 
     arm = catalogue["baxter-left-arm"]
 
     async def watched() -> tuple[float, float, int]:
         start = last = time.perf_counter()
         longest, turns = 0.0, 0
-        task = asyncio.create_task(Kept().of("arm", partial(_solved, arm)))
+        task = asyncio.create_task(MemoizedResults().of("arm", partial(_solved, arm)))
         while not task.done():
             await asyncio.sleep(0)
             now = time.perf_counter()

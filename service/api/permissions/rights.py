@@ -1,0 +1,121 @@
+"""The right that each route needs: one table, which the service checks and docs/keys.md prints."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from functools import partial
+from typing import Final
+
+from fastapi import Request
+from fastapi.routing import APIRouter, iter_route_contexts
+
+from service.access.caller import Scope
+
+
+class Reach(Enum):
+    """The exercises that a route is about. A key restricted to some exercises must reach them."""
+
+    PATH = "the one in the path"
+    QUERY = "the one in `?exercise=`, else all"
+    ALL = "all"
+    # The route itself checks each exercise of its body, or answers for these exercises only.
+    OWN = "those of the key"
+
+    def named(self, request: Request) -> str | None:
+        """Return the exercise that the request is about; None for all exercises."""
+        if self is Reach.QUERY:
+            return request.query_params.get("exercise")
+        return request.path_params["exercise_id"] if self is Reach.PATH else None
+
+
+class WithoutKeys(Enum):
+    """Who may use a route while the service has no keys."""
+
+    EVERYBODY = "everybody"
+    OPEN = "`DH_GRADER_OPEN`"
+    SOLUTIONS = "`DH_GRADER_SOLUTIONS`"
+    ATTEMPTS = "`DH_GRADER_READ_ATTEMPTS`"
+    THIS_MACHINE = "this machine"
+    NOBODY = "nobody"
+
+
+@dataclass(frozen=True, slots=True)
+class Right:
+    """What a caller needs for a route.
+
+    ``scope`` is the scope of the key; None if everybody may use the route, with or without keys.
+    ``tokens`` is True if learners may use it with a token, for what is their own.
+    """
+
+    scope: Scope | None
+    without_keys: WithoutKeys
+    reach: Reach
+    tokens: bool = False
+
+
+_EVERYBODY: Final = Right(None, WithoutKeys.EVERYBODY, Reach.OWN, tokens=True)
+_grade = partial(Right, Scope.GRADE, WithoutKeys.OPEN, tokens=True)
+_record = partial(Right, Scope.RECORD, WithoutKeys.OPEN, tokens=True)
+_solutions = partial(Right, Scope.TUTOR, WithoutKeys.SOLUTIONS)
+_attempts = partial(Right, Scope.TUTOR, WithoutKeys.ATTEMPTS)
+_change = partial(Right, Scope.TUTOR, WithoutKeys.THIS_MACHINE)
+
+# The right of each route, by its method and the pattern of its path.
+RIGHTS: Final[Mapping[str, Right]] = {
+    "GET /": _EVERYBODY,
+    "GET /play": _EVERYBODY,
+    "GET /embed.js": _EVERYBODY,
+    "GET /static/{name}": _EVERYBODY,
+    "GET /exercises/{exercise_id}": _EVERYBODY,
+    "GET /docs": _EVERYBODY,
+    "GET /docs/{name}": _EVERYBODY,
+    "GET /openapi.json": _EVERYBODY,
+    "GET /healthz": _EVERYBODY,
+    "GET /readyz": _EVERYBODY,
+    "GET /v1/exercises": _EVERYBODY,
+    "GET /v1/exercises/{exercise_id}": _EVERYBODY,
+    "GET /v1/exercises/{exercise_id}/figure.svg": _EVERYBODY,
+    "POST /v1/exercises/{exercise_id}/grade": _grade(Reach.PATH),
+    "POST /v1/grade": _grade(Reach.OWN),
+    "POST /v1/preview": _grade(Reach.OWN),
+    "POST /v1/previews": _grade(Reach.OWN),
+    "POST /v1/frames": _grade(Reach.OWN),
+    "POST /v1/tokens": Right(Scope.GRADE, WithoutKeys.NOBODY, Reach.OWN),
+    "POST /v1/exercises/{exercise_id}/attempts": _record(Reach.PATH),
+    "GET /v1/attempts": _attempts(Reach.QUERY, tokens=True),
+    "GET /v1/attempts/{attempt_id}": _attempts(Reach.OWN, tokens=True),
+    "GET /v1/attempts/export": _attempts(Reach.QUERY),
+    "GET /v1/exercises/{exercise_id}/statistics": _attempts(Reach.PATH),
+    "POST /v1/attempts/{attempt_id}/override": _change(Reach.OWN),
+    "POST /v1/learners/forget": _change(Reach.ALL),
+    "POST /v1/exercises/{exercise_id}/regrade": _change(Reach.PATH),
+    "GET /v1/exercises/{exercise_id}/solution": _solutions(Reach.PATH),
+    "GET /tutor": _solutions(Reach.OWN),
+    "GET /tutor/solutions/{exercise_id}": _solutions(Reach.PATH),
+    "GET /tutor/solutions/{exercise_id}/frames.svg": _solutions(Reach.PATH),
+    "GET /tutor/editor": _solutions(Reach.ALL),
+    "POST /tutor/check": _solutions(Reach.ALL),
+    "POST /tutor/files": _solutions(Reach.ALL),
+    "GET /tutor/class": _solutions(Reach.ALL),
+    "GET /tutor/class/report": _solutions(Reach.ALL),
+    "POST /tutor/class": _solutions(Reach.ALL),
+    "GET /tutor/attempts": _attempts(Reach.OWN),
+    "GET /tutor/attempts/{attempt_id}": _attempts(Reach.OWN),
+    "GET /tutor/statistics/{exercise_id}": _attempts(Reach.PATH),
+}
+
+
+def right_of(request: Request) -> Right:
+    """Return the right that the route of this request needs."""
+    return RIGHTS[f"{request.method} {request.scope['route'].path}"]
+
+
+def require_entries(router: APIRouter) -> None:
+    """Check that the table has an entry for each route. Raises LookupError."""
+    routes = {
+        f"{method} {route.path}"
+        for route in iter_route_contexts(router.routes)
+        for method in (route.methods or {"ANY"}) - {"HEAD"}
+    }
+    if absent := sorted(routes - RIGHTS.keys()):
+        raise LookupError(f"RIGHTS has no entry for {', '.join(absent)}")

@@ -1,0 +1,36 @@
+"""Write the table of routes in docs/keys.md from the rights that the service checks.
+
+``python -m tests.api.permissions.rights_table`` writes it.
+"""
+
+from pathlib import Path
+from typing import Final
+
+from service.api.permissions.rights import RIGHTS, Right
+
+PAGE: Final = Path(__file__).parents[3] / "docs" / "keys.md"
+_HEADINGS: Final = ("Route", "Scope", "Exercises", "Token of a learner", "Without keys")
+_START: Final = f"| {' | '.join(_HEADINGS)} |\n"
+
+
+def table() -> str:
+    """Return the table: all routes that need a key, in the order of the rights."""
+    rows = [_row(route, right) for route, right in RIGHTS.items() if right.scope is not None]
+    return "".join([_START, f"|{'---|' * len(_HEADINGS)}\n", *rows])
+
+
+def _row(route: str, right: Right) -> str:
+    tokens = "yes" if right.tokens else "no"
+    cells = (f"`{route}`", f"`{right.scope}`", right.reach.value, tokens, right.without_keys.value)
+    return f"| {' | '.join(cells)} |\n"
+
+
+def with_table(page: str) -> str:
+    """Return the page with the current table in place of its own."""
+    before, start, rest = page.partition(_START)
+    assert start, "docs/keys.md has no table of routes"
+    return before + table() + "\n" + rest.partition("\n\n")[2]
+
+
+if __name__ == "__main__":
+    PAGE.write_text(with_table(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
