@@ -17,8 +17,11 @@ MODULES = frozenset({"pickle", "marshal", "shelve", "subprocess", "sympy", "impo
 ROOT = Path(service.__file__).parent
 FOLDERS = ("expressions", "grids", "grading")
 FILES = sorted(file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py"))
-# The kinds are imported by the names of their files.
-ALLOWED = {"grading/kinds/__init__.py": {"importlib", "import_module"}}
+# The kinds and the misconceptions are imported by the names of their files.
+ALLOWED = {
+    f"grading/{package}/__init__.py": {"importlib", "import_module"}
+    for package in ("kinds", "diagnosis")
+}
 
 
 def found(source: str) -> list[str]:
