@@ -1,4 +1,4 @@
-"""The four cells of a row of a DH table -> their entries."""
+"""Read the four cells of a DH row as entries."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -13,16 +13,16 @@ from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
 from service.kinematics.chain import COLUMNS
 
-# Rows of more characters are hardly written twice.
+# Longer rows are not memoized: hardly any two students write the same one.
 _LONGEST: Final = 60
-_REMEMBERED: Final = 4096
+_MEMOIZED: Final = 4096
 _NO_SAMPLES: Final = Samples({})
 
 
 def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
-    """The entries of the row with this number, None where it has none.
+    """Read the cells of row ``number``, which is None if unknown.
 
-    A cell is a JSON value, or the finding why nobody can say what it is.
+    A cell is a JSON value, or the finding why it is unreadable.
     """
     found = arranged_row(cells, reader.vocabulary)
     ordered = [cells[i] for i in found.order] if found else cells
@@ -36,12 +36,12 @@ def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tup
     return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
 
 
-def remembered_row(
+def memoized_row(
     cells: Sequence[object], number: int | None, reader: Reader
 ) -> tuple[Entry, ...] | None:
-    """The same for a row of short texts, all of which can be read; None for any other.
+    """Return the memoized entries of a row of short, readable texts; None for any other row.
 
-    Most of a class write the same rows, and finding one takes a tenth of reading it.
+    Most students of a class write the same rows, and a lookup takes a tenth of reading one.
     """
     a, alpha, d, theta = cells
     if not (type(a) is type(alpha) is type(d) is type(theta) is str):
@@ -56,13 +56,13 @@ def remembered_row(
 
 
 class _ReadRow(NamedTuple):
-    """The entries of a row, and how many symbols were read."""
+    """The entries of a row, and the number of symbols that were read."""
 
     entries: tuple[Entry, ...]
     symbols: int
 
 
-@lru_cache(maxsize=_REMEMBERED)
+@lru_cache(maxsize=_MEMOIZED)
 def _read_row(
     a: str,
     alpha: str,
@@ -75,6 +75,6 @@ def _read_row(
     budget = WorkBudget(repairs=0)
     reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
     entries = read_row((a, alpha, d, theta), number, reader)
-    # What could not be read at first is repaired, and paid for, by whoever asks.
+    # Rows that need repairs are not memoized: each submission must pay for its own repairs.
     is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
     return _ReadRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None

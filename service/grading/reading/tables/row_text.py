@@ -1,4 +1,4 @@
-"""The text of one DH row -> its cells, by name or in order; or that there is no row."""
+"""Split the text of one DH row into its cells; recognize answers such as "none"."""
 
 import re
 from collections.abc import Mapping
@@ -8,14 +8,14 @@ from typing import Final, NamedTuple
 from service.grading.reading.tables.column_headers import QUANTITIES, named_parameter
 
 _LONGEST: Final = 2_000
-# A name in front of = or a colon, with an index or without: a, \alpha_1, θ₁.
+# A name before = or a colon, with or without an index: a, \alpha_1, θ₁.
 _NAMED: Final = re.compile(
     r"(?<![^\s,;({\[$|&])(\\?[A-Za-z\u0370-\u03ff⍺]+)(?:_?\{?[0-9]\}?|_\{?i\}?|[₀-₉])?\s{0,8}[=:]"
 )
 _BETWEEN: Final = re.compile(r"(?:[\s,;$|&]|\\[,;: ]|\\\\|\\quad|\\qquad|\band\b)+")
-# The ends of MATLAB's rows and of lines.
+# The separators of rows in MATLAB, and of lines.
 _ENDS: Final = re.compile(r"[;\n]")
-# Four values with nothing but blanks between them: a sign with blanks around it has two sides.
+# Four values separated by blanks only: a sign with blanks on both sides is an operator.
 _FOUR_VALUES: Final = re.compile(
     r"\s*(?:[-+]?[^\s,;=+*/^-](?:[^\s,;=]*[^\s,;=+*/^-])?(?:[ \t]+|\s*$)){4}"
 )
@@ -34,10 +34,10 @@ class NamedCell(NamedTuple):
 
 
 def named_cells(text: str) -> Mapping[str, NamedCell] | None:
-    """The cells of ``a=3, d=2, theta=90deg, alpha=0`` by column, in whatever order.
+    """Return the cells of a text such as ``a=3, d=2, theta=90deg, alpha=0`` by column.
 
-    Between them may stand commas, semicolons, blanks or the ends of lines; colons do for ``=``.
-    None where the text is anything else. Nothing is in it where a parameter is named twice.
+    The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
+    ``=``. Return None for any other text, and an empty mapping if a parameter is named twice.
     """
     if len(text) > _LONGEST:
         return None
@@ -57,7 +57,7 @@ def named_cells(text: str) -> Mapping[str, NamedCell] | None:
 
 
 def _trimmed(text: str, start: int, end: int) -> NamedCell:
-    """The text between two places, without what parts it from its neighbours."""
+    """Return the text between two places, without the separators around it."""
     while leading := _BETWEEN.match(text, start, end):
         start = leading.end()
     value = text[start:end]
@@ -69,9 +69,9 @@ def _trimmed(text: str, start: int, end: int) -> NamedCell:
 
 
 def in_one_line(text: str) -> str:
-    """The text of a row with commas between its values, and without round brackets around it.
+    """Return the text of a row with commas between its values and without outer round brackets.
 
-    No character moves, so that places in the text stay what they are.
+    No character moves, so that spans stay valid.
     """
     if len(text) > _LONGEST:
         return text
@@ -86,7 +86,7 @@ def in_one_line(text: str) -> str:
 
 
 def _is_enclosed(text: str) -> bool:
-    """Whether the first bracket is closed by the last character."""
+    """True if the last character closes the first bracket."""
     if not (text.startswith("(") and text.endswith(")")):
         return False
     depths = accumulate({"(": 1, ")": -1}.get(sign, 0) for sign in text[:-1])
@@ -94,7 +94,7 @@ def _is_enclosed(text: str) -> bool:
 
 
 def says_none(text: str) -> bool:
-    r"""Whether the text says that there is no row: none, n/a, \text{none}."""
+    r"""True if the text says that there is no row: none, n/a, \text{none}."""
     if len(text) > _LONGEST:
         return False
     plain = _STYLE.sub(r"\1", text)

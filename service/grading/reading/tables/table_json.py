@@ -1,4 +1,4 @@
-"""The JSON shapes in which a DH table is sent -> the one in which it is read."""
+"""Convert the JSON shapes of a DH table into the one that the reader expects."""
 
 from collections.abc import Mapping, Sequence
 from typing import Final
@@ -14,26 +14,26 @@ from service.grading.reading.tables.row_labels import LAST, label_place
 
 _KEYS: Final = QUANTITIES.keys()
 _IN_ORDER: Final = (*QUANTITIES,)
-# More rows than a table may have are counted, not read; nor has a row more names than these.
+# Rows beyond these are counted but not read, and names beyond these are ignored.
 _MOST_ROWS: Final = 16
 _MOST_NAMES: Final = 40
 
-# A row's label, if it has one, and its cells by column; or the row as it was sent.
+# A row's label, if it has one, and its cells by column; or None and the row as it was sent.
 _Read = tuple[object, object]
 
 
 def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
-    """The answer as ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``, where it is a table.
+    """Convert a table to ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``. Never raises.
 
-    Understood is a mapping with ``rows``, whose other fields stay, or the list of rows alone. A row
-    is a mapping whose keys are headers in any spelling ("α", "alpha_i", "twist"), or a list in
-    ``order``, with the row's number in front or without; a list of four headers may stand above
-    such rows, or they in front of lists of a parameter each. A mapping of such headers to lists is
-    a table, too. Rows that all have a number or "e" are put into that order.
+    The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or a
+    mapping from headers to lists. A row is a mapping whose keys are headers in any spelling ("α",
+    "alpha_i", "twist"), or a list in ``order``, with or without the row's number in front. A list
+    of four headers may precede such rows; or each list has the values of one parameter, after its
+    header. If all rows have a number or "e", they are put in that order.
 
-    A row that is none of these stays as it is, and so does one whose keys name a unit, or one
-    column twice: the reader refuses it, or reads of it what it knows. An answer without any row
-    comes back as it is. Never raises.
+    Any other row is kept as it is; so is a row whose keys have a unit, or name one column twice.
+    The reader then refuses the row, or reads the cells that it knows. An answer without any row is
+    returned unchanged.
     """
     if isinstance(answer, Mapping):
         rows = answer.get("rows")
@@ -52,7 +52,7 @@ def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
 
 
 def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
-    """The rows of a table that is sent as a list for each parameter; None for another answer."""
+    """Return the rows of a table that has one list for each parameter; None for other answers."""
     columns = {key: cells for key, cells in answer.items() if isinstance(cells, list)}
     lengths = {len(cells) for cells in columns.values()}
     if not len(_IN_ORDER) <= len(columns) <= _MOST_NAMES or len(lengths) > 1:
@@ -62,9 +62,9 @@ def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
 
 
 def _with_parameters_in_columns(rows: list[object]) -> list[object]:
-    """The rows; or, where a, α, d and θ are the first cells of lists, the columns of these lists.
+    """Return the rows, transposed if the lists begin with a, α, d and θ.
 
-    A list of the joints' numbers may stand above them.
+    A list of joint numbers may precede these lists.
     """
     lists = [row for row in rows[: len(_IN_ORDER) + 1] if isinstance(row, list)]
     if len(lists) < len(rows) or len({len(row) for row in lists}) > 1 or not lists or not lists[0]:
@@ -78,7 +78,7 @@ def _with_parameters_in_columns(rows: list[object]) -> list[object]:
 
 
 def has_unnamed_columns(answer: object) -> bool:
-    """Whether the rows are lists without headers, so that their order says what they hold."""
+    """True if the rows are lists without headers, so that only their order gives the columns."""
     rows = answer.get("rows") if isinstance(answer, Mapping) else answer
     if not isinstance(rows, list) or not any(isinstance(row, list) for row in rows):
         return False
@@ -101,7 +101,7 @@ def _canonical_rows(rows: list[object], order: Sequence[str]) -> list[object]:
 
 
 def _columns(rows: list[object], names: dict[str, Header | None]) -> tuple[str, ...] | None:
-    """The columns of lists, where the first of several is a list of headers."""
+    """Return the columns of rows that are lists, if the first list has the headers."""
     first = rows[0] if len(rows) > 1 else None
     if not isinstance(first, list) or len(first) not in (4, 5):
         return None
@@ -112,7 +112,7 @@ def _columns(rows: list[object], names: dict[str, Header | None]) -> tuple[str, 
 
 
 def _are_numbered(rows: list[object]) -> bool:
-    """Whether every row is a list of five with a number of its own in front, or "e"."""
+    """True if every row is a list of five values that begins with its own number, or "e"."""
     if not all(isinstance(row, list) and len(row) == len(_IN_ORDER) + 1 for row in rows):
         return False
     numbers = [_number(row[0]) for row in rows if isinstance(row, list)]
@@ -120,14 +120,14 @@ def _are_numbered(rows: list[object]) -> bool:
 
 
 def _number(cell: object) -> int | None:
-    """The number of a row. None for 0, and for a length such as l1 in front of five values."""
+    """Return the number of a row. None for 0, and for a length such as l1."""
     place = _place(cell)
     return place if place == LAST or (place and str(cell).strip().isdecimal()) else None
 
 
 def _place(label: object) -> int | None:
-    """The place of a row with this label."""
-    # Python refuses to write out a number of thousands of digits.
+    """Return the place of the row with this label."""
+    # Python raises an error if a number of thousands of digits is converted to text.
     is_number = isinstance(label, int | float) and abs(label) < _MOST_ROWS
     return label_place(str(label)) if is_number or isinstance(label, str) else None
 
@@ -143,7 +143,7 @@ def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | N
 
 
 def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Read:
-    """A row that names its values."""
+    """Return the label and cells of a row that names its values."""
     label: object = None
     cells: dict[str, object] = {}
     for key, value in row.items():
@@ -160,7 +160,7 @@ def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Rea
 
 
 def _header(name: object, names: dict[str, Header | None]) -> Header | None:
-    """The header that a name is; ``names`` remembers those of the rows before."""
+    """Return the header with this name; ``names`` memoizes those of earlier rows."""
     if not isinstance(name, str):
         return None
     if name not in names:
@@ -169,7 +169,7 @@ def _header(name: object, names: dict[str, Header | None]) -> Header | None:
 
 
 def _in_order(rows: Sequence[_Read]) -> list[object]:
-    """The rows in the order of their labels, where each has one of its own."""
+    """Return the rows in the order of their labels, or unchanged unless each has its own label."""
     places = [_place(label) for label, _ in rows]
     known = [place for place in places if place is not None]
     if len(known) < len(rows) or len(set(known)) < len(known):

@@ -1,4 +1,4 @@
-"""Rows that were read before: the same entries, at the same cost."""
+"""Memoized rows have the same entries and the same cost as rows that are read."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ from service.expressions import AngleUnit
 from service.grading.feedback import Finding
 from service.grading.numerics.samples import draw
 from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.tables.row_entries import read_row, remembered_row
+from service.grading.reading.tables.row_entries import memoized_row, read_row
 from service.grading.work_budget import WorkBudget
 
 ROW = ("0", " -90", "d2 + 1", "theta2")
@@ -32,25 +32,25 @@ def told(entry: Entry) -> tuple[str, tuple[Finding, ...]]:
 
 
 @pytest.mark.parametrize("unit", ["radians", "degrees"])
-def test_a_remembered_row_is_the_one_that_is_read(exercise: Exercise, unit: AngleUnit) -> None:
+def test_a_memoized_row_is_the_one_that_is_read(exercise: Exercise, unit: AngleUnit) -> None:
     fresh, remembering = reader_of(exercise, unit), reader_of(exercise, unit)
     expected = read_row(ROW, 2, fresh)
     for _ in range(2):
         remembering.budget.symbols = 100
-        found = remembered_row(ROW, 2, remembering)
+        found = memoized_row(ROW, 2, remembering)
         assert found is not None
         assert list(map(told, found)) == list(map(told, expected))
         assert remembering.budget == fresh.budget
 
 
-def test_units_and_numbers_of_rows_are_told_apart(exercise: Exercise) -> None:
-    inner = remembered_row(("0", "90", "0", "0"), 2, reader_of(exercise))
-    degrees = remembered_row(("0", "90", "0", "0"), 2, reader_of(exercise, "degrees"))
+def test_the_memo_distinguishes_units_and_row_numbers(exercise: Exercise) -> None:
+    inner = memoized_row(("0", "90", "0", "0"), 2, reader_of(exercise))
+    degrees = memoized_row(("0", "90", "0", "0"), 2, reader_of(exercise, "degrees"))
     assert inner is not None
     assert degrees is not None
     assert told(inner[1]) != told(degrees[1])
-    assert remembered_row(("0", "0", "0", "theta_1 = 5"), 1, reader_of(exercise)) is not None
-    assert remembered_row(("0", "0", "0", "theta_1 = 5"), 2, reader_of(exercise)) is None
+    assert memoized_row(("0", "0", "0", "theta_1 = 5"), 1, reader_of(exercise)) is not None
+    assert memoized_row(("0", "0", "0", "theta_1 = 5"), 2, reader_of(exercise)) is None
 
 
 @pytest.mark.parametrize(
@@ -64,15 +64,17 @@ def test_units_and_numbers_of_rows_are_told_apart(exercise: Exercise) -> None:
         ("0", "-90deg", " " * 90 + "d2", "theta2"),
     ],
 )
-def test_other_rows_are_read_each_time(exercise: Exercise, cells: tuple[object, ...]) -> None:
+def test_long_or_unreadable_rows_are_not_memoized(
+    exercise: Exercise, cells: tuple[object, ...]
+) -> None:
     reader = reader_of(exercise)
     for _ in range(2):
-        assert remembered_row(cells, 2, reader) is None
+        assert memoized_row(cells, 2, reader) is None
         assert reader.budget == WorkBudget(symbols=100)
 
 
-def test_a_row_beyond_the_budget_is_left_to_be_read_cell_by_cell(exercise: Exercise) -> None:
-    assert remembered_row(ROW, 2, reader_of(exercise)) is not None
+def test_the_memo_has_no_row_beyond_the_budget(exercise: Exercise) -> None:
+    assert memoized_row(ROW, 2, reader_of(exercise)) is not None
     short = reader_of(exercise, symbols=3)
-    assert remembered_row(ROW, 2, short) is None
+    assert memoized_row(ROW, 2, short) is None
     assert short.budget.symbols == 3

@@ -1,4 +1,4 @@
-"""The JSON shapes that people send tables in."""
+"""The JSON shapes in which clients send tables."""
 
 from typing import Any
 
@@ -43,11 +43,11 @@ def named(keys: str, rows: list[list[Any]]) -> list[dict[str, Any]]:
         [{"note": "base", **TABLE["rows"][0]}, {"why": "?", **TABLE["rows"][1]}],
     ],
 )
-def test_a_table_in_each_shape(answer: object) -> None:
+def test_a_table_in_each_shape_is_converted(answer: object) -> None:
     assert canonical_table(answer) == TABLE
 
 
-def test_what_is_said_besides_the_rows_stays() -> None:
+def test_fields_besides_the_rows_are_kept() -> None:
     answer = {"rows": ROWS, "convention": "modified"}
     assert canonical_table(answer) == {**TABLE, "convention": "modified"}
 
@@ -66,7 +66,7 @@ def test_the_canonical_answer_is_not_copied() -> None:
         {"a": "l1", "alpha": 0, "d": 0, "theta": "q1"},
     ],
 )  # fmt: skip
-def test_what_is_no_table_is_left_alone(answer: object) -> None:
+def test_an_answer_that_is_not_a_table_is_unchanged(answer: object) -> None:
     assert canonical_table(answer) == answer
 
 
@@ -78,18 +78,18 @@ def test_what_is_no_table_is_left_alone(answer: object) -> None:
         [["l2"], "0", "0", "q2"],
         None,
         "l2, 0, 0, q2",
-        # Two of one column; and a unit, which a cell of the canonical form could not carry.
+        # Two keys for one column; and a unit, which a canonical cell cannot have.
         {"a": "l2", "α": 0, "alpha": "pi", "d": 0, "theta": "q2"},
         {"a": "l2", "alpha (deg)": 90, "d": 0, "theta": "q2"},
         {"a [mm]": 300, "alpha": 0, "d": 0, "theta": "q2"},
     ],
 )
-def test_a_row_that_cannot_be_told_costs_only_itself(row: object) -> None:
+def test_an_ambiguous_row_affects_only_itself(row: object) -> None:
     assert canonical_table([ROWS[0], row]) == {"rows": [TABLE["rows"][0], row]}
     assert canonical_table({"rows": [ROWS[0], row]}) == {"rows": [TABLE["rows"][0], row]}
 
 
-def test_a_column_left_out_is_left_out() -> None:
+def test_an_omitted_column_stays_omitted() -> None:
     assert canonical_table([{"α": 0, "d": "d1"}]) == {"rows": [{"alpha": 0, "d": "d1"}]}
 
 
@@ -101,13 +101,13 @@ def test_the_tool_row_comes_last() -> None:
 
 
 @pytest.mark.parametrize("labels", [(1, 1), (2, "x"), ("", 1), (2, None)])
-def test_labels_that_give_no_order_leave_it_alone(labels: tuple[object, object]) -> None:
+def test_labels_without_an_order_leave_the_rows_unchanged(labels: tuple[object, object]) -> None:
     rows = [{"i": label, **row} for label, row in zip(labels, TABLE["rows"], strict=True)]
     assert canonical_table(rows) == TABLE
 
 
-def test_a_row_of_names_alone_is_a_row() -> None:
-    """Where a and d are lengths, the one row of a link transform reads like headers."""
+def test_a_single_row_of_names_is_a_row() -> None:
+    """If a and d are declared lengths, the only row of a table may look like headers."""
     assert canonical_table([["a", "alpha", "d", "theta"]]) == table([["a", "alpha", "d", "theta"]])
 
 
@@ -117,8 +117,8 @@ def test_too_many_rows_are_still_counted() -> None:
     assert len(found["rows"]) == 500
 
 
-def test_of_a_body_full_of_names_few_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each costs some ten microseconds, and a body has room for tens of thousands."""
+def test_only_the_first_names_of_a_body_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each name costs about ten microseconds, and a body may have tens of thousands of them."""
     read: list[str] = []
     monkeypatch.setattr(table_json, "read_header", read.append)
     canonical_table([{f"α_{i}_{j}": 0 for j in range(200)} for i in range(50)])
@@ -126,6 +126,6 @@ def test_of_a_body_full_of_names_few_are_understood(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_number_of_any_length_raises_nothing() -> None:
-    """Python refuses to write out an integer of more than 4,300 digits."""
+    """Python raises an error if an integer of more than 4,300 digits is converted to text."""
     rows = [{"i": 10**5000, "a": 0, "alpha": 0, "d": 0, "theta": "q1"}]
     assert canonical_table(rows) == {"rows": [{"a": 0, "alpha": 0, "d": 0, "theta": "q1"}]}
