@@ -14,6 +14,12 @@ from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.entry import Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, pasted_grid, pasted_robot
 from service.grading.reading.tables.cell_names import first_number
+from service.grading.reading.tables.cells import (
+    canonical_table,
+    has_unnamed_columns,
+    memoized_row,
+    read_row,
+)
 from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.reading.tables.pasted_table import (
     PastedTable,
@@ -21,8 +27,6 @@ from service.grading.reading.tables.pasted_table import (
     table_of,
     table_of_robot,
 )
-from service.grading.reading.tables.row_entries import memoized_row, read_row
-from service.grading.reading.tables.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity, Verdict
 from service.grading.work_budget import MAX_SYMBOLS_AGAIN, WorkBudget
 from service.grids import GridError
@@ -117,7 +121,7 @@ def read_table(
 ) -> StudentTable:
     """Read a table ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    The answer may have one of the other shapes in ``table_json``, and it or its rows may be pasted
+    The answer may have one of the other shapes in ``cells``, and it or its rows may be pasted
     text. Columns without names are in ``order``. A cell that is empty or a dash is missing; with
     ``empty_is_zero`` it is 0 if another cell of its row is not empty.
 

@@ -1,16 +1,29 @@
-"""Convert the JSON shapes of a DH table into the one that the reader expects."""
+"""Find the cells of a DH table or of one row, as JSON or as text, and read them as entries."""
 
+import re
 from collections.abc import Mapping, Sequence
-from typing import Final
+from functools import lru_cache
+from itertools import accumulate
+from typing import Final, NamedTuple
 
+from service.expressions import AngleUnit, Vocabulary
+from service.grading.feedback import Finding
+from service.grading.numerics.samples import Samples
+from service.grading.reading.entry import Entry, Reader, unreadable
+from service.grading.reading.tables.cell_names import arranged_row, row_entries
 from service.grading.reading.tables.column_headers import (
     ASIDE,
     LABEL,
     QUANTITIES,
     Header,
+    named_parameter,
     read_header,
 )
 from service.grading.reading.tables.row_labels import LAST, label_place
+from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
+from service.kinematics.chain import COLUMNS
+
+# Part 1: the JSON shapes of a table -> the one that the reader expects.
 
 _KEYS: Final = QUANTITIES.keys()
 _IN_ORDER: Final = (*QUANTITIES,)
@@ -175,3 +188,169 @@ def _in_order(rows: Sequence[_Read]) -> list[object]:
     if len(known) < len(rows) or len(set(known)) < len(known):
         return [row for _, row in rows]
     return [rows[i][1] for i in sorted(range(len(rows)), key=known.__getitem__)]
+
+
+# Part 2: the text of one row -> its cells.
+
+_LONGEST_TEXT: Final = 2_000
+# A name before = or a colon, with or without an index: a, \alpha_1, θ₁.
+_NAMED: Final = re.compile(
+    r"(?<![^\s,;({\[$|&])(\\?[A-Za-z\u0370-\u03ff⍺]+)(?:_?\{?[0-9]\}?|_\{?i\}?|[₀-₉])?\s{0,8}[=:]"
+)
+_BETWEEN: Final = re.compile(r"(?:[\s,;$|&]|\\[,;: ]|\\\\|\\quad|\\qquad|\band\b)+")
+# The separators of rows in MATLAB, and of lines.
+_ENDS: Final = re.compile(r"[;\n]")
+# Four values separated by blanks only: a sign with blanks on both sides is an operator.
+_FOUR_VALUES: Final = re.compile(
+    r"\s*(?:[-+]?[^\s,;=+*/^-](?:[^\s,;=]*[^\s,;=+*/^-])?(?:[ \t]+|\s*$)){4}"
+)
+_BLANK: Final = re.compile(r"[ \t](?=[^ \t])")
+_STYLE: Final = re.compile(r"\\(?:text|textrm|textit|mathrm|mathit|operatorname)\s?\{([^{}]*)\}")
+_NONE: Final = re.compile(
+    r"none|n/a|no (?:dh )?row|there is (?:none|no row)|does(?: not|n't) exist|\{none: ?true\}"
+)
+
+
+class NamedCell(NamedTuple):
+    """The text of a cell, and the place in the whole text where it begins."""
+
+    text: str
+    start: int
+
+
+def named_cells(text: str) -> Mapping[str, NamedCell] | None:
+    """Return the cells of a text such as ``a=3, d=2, theta=90deg, alpha=0`` by column.
+
+    The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
+    ``=``. Return None for any other text, and an empty mapping if a parameter is named twice.
+    """
+    if len(text) > _LONGEST_TEXT:
+        return None
+    names = list(_NAMED.finditer(text))
+    if not names or text[: names[0].start()].strip(" \t\n([{$"):
+        return None
+    cells: dict[str, NamedCell] = {}
+    ends = [name.start() for name in names[1:]] + [len(text)]
+    for name, end in zip(names, ends, strict=True):
+        named = named_parameter(name[1])
+        if named is None:
+            return None
+        if named.column in cells:
+            return {}
+        cells[named.column] = _trimmed(text, name.end(), end)
+    return cells
+
+
+def _trimmed(text: str, start: int, end: int) -> NamedCell:
+    """Return the text between two places, without the separators around it."""
+    while leading := _BETWEEN.match(text, start, end):
+        start = leading.end()
+    value = text[start:end]
+    for trailing in _BETWEEN.finditer(value):
+        if trailing.end() == len(value):
+            value = value[: trailing.start()]
+            break
+    return NamedCell(value, start)
+
+
+def in_one_line(text: str) -> str:
+    """Return the text of a row with commas between its values and without outer round brackets.
+
+    No character moves, so that spans stay valid.
+    """
+    if len(text) > _LONGEST_TEXT:
+        return text
+    first, last = len(text) - len(text.lstrip()), len(text.rstrip())
+    if _is_enclosed(text[first:last]):
+        text = f"{text[:first]} {text[first + 1 : last - 1]} {text[last:]}"
+    if "," not in text and len(_ENDS.findall(text.strip())) == len(QUANTITIES) - 1:
+        return text[:first] + _ENDS.sub(",", text[first:last]) + text[last:]
+    if _FOUR_VALUES.fullmatch(text):
+        return text[:first] + _BLANK.sub(",", text[first:last]) + text[last:]
+    return text
+
+
+def _is_enclosed(text: str) -> bool:
+    """True if the last character closes the first bracket."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return False
+    depths = accumulate({"(": 1, ")": -1}.get(sign, 0) for sign in text[:-1])
+    return min(depths) > 0
+
+
+def says_none(text: str) -> bool:
+    r"""True if the text says that there is no row: none, n/a, \text{none}."""
+    if len(text) > _LONGEST_TEXT:
+        return False
+    plain = _STYLE.sub(r"\1", text)
+    plain = "".join(sign for sign in plain if sign not in "$\"'“”").strip().rstrip(".!").lower()
+    return _NONE.fullmatch(" ".join(plain.split())) is not None
+
+
+# Part 3: the cells of a row -> entries.
+
+# Longer rows are not memoized: hardly any two students write the same one.
+_LONGEST_MEMOIZED: Final = 60
+_MEMOIZED: Final = 4096
+_NO_SAMPLES: Final = Samples({})
+
+
+def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
+    """Read the cells of row ``number``, which is None if unknown.
+
+    A cell is a JSON value, or the finding why it is unreadable.
+    """
+    found = arranged_row(cells, reader.vocabulary)
+    ordered = [cells[i] for i in found.order] if found else cells
+
+    def read(column: int) -> Entry:
+        raw = ordered[column]
+        if isinstance(raw, Finding):
+            return unreadable(raw)
+        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
+
+    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
+
+
+def memoized_row(
+    cells: Sequence[object], number: int | None, reader: Reader
+) -> tuple[Entry, ...] | None:
+    """Return the memoized entries of a row of short, readable texts; None for any other row.
+
+    Most students of a class write the same rows, and a lookup takes a tenth of reading one.
+    """
+    a, alpha, d, theta = cells
+    if not (type(a) is type(alpha) is type(d) is type(theta) is str):
+        return None
+    if len(a) + len(alpha) + len(d) + len(theta) > _LONGEST_MEMOIZED:
+        return None
+    found = _read_texts(a, alpha, d, theta, number, reader.vocabulary, reader.angle_unit)
+    if found is None or found.symbols > reader.budget.symbols:
+        return None
+    reader.budget.symbols -= found.symbols
+    return found.entries
+
+
+class _MemoizedRow(NamedTuple):
+    """The entries of a row, and the number of symbols that were read."""
+
+    entries: tuple[Entry, ...]
+    symbols: int
+
+
+@lru_cache(maxsize=_MEMOIZED)
+def _read_texts(
+    a: str,
+    alpha: str,
+    d: str,
+    theta: str,
+    number: int | None,
+    vocabulary: Vocabulary,
+    angle_unit: AngleUnit,
+) -> _MemoizedRow | None:
+    budget = WorkBudget(repairs=0)
+    reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
+    entries = read_row((a, alpha, d, theta), number, reader)
+    # Rows that need repairs are not memoized: each submission must pay for its own repairs.
+    is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
+    return _MemoizedRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None
