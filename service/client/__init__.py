@@ -7,7 +7,7 @@ GraderClientError         a call failed
 """
 
 from service.catalogue import FeedbackLevel
-from service.client.asynchronous import AsyncGraderClient
+from service.client.clients import AsyncGraderClient, GraderClient
 from service.client.errors import (
     GraderClientError,
     RequestRefusedError,
@@ -15,7 +15,6 @@ from service.client.errors import (
     UnexpectedAnswerError,
 )
 from service.client.retries import Retries
-from service.client.synchronous import GraderClient
 from service.contract.exercises import ExerciseSummary, ExerciseView
 from service.contract.grading import GradeResult
 from service.contract.preview import PreviewAnswer

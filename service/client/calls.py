@@ -1,4 +1,7 @@
-"""The calls of the service: how requests are built, and how answers are read."""
+"""The calls of the service: how requests are built, and how answers are read.
+
+The clients make their methods from these functions: a method sends the call and returns its result.
+"""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -15,7 +18,7 @@ from service.client.errors import UnexpectedAnswerError
 from service.contract.exercises import ExerciseList, ExerciseSummary, ExerciseView
 from service.contract.grading import GradeManyResponse, GradeResult
 from service.contract.preview import PreviewAnswer, PreviewRequest
-from service.expressions import AngleUnit
+from service.expressions import AngleUnit, Kind
 from service.formats.documents.json import read_report
 from service.grading import Report
 from service.submissions.body import MAX_SUBMISSIONS, ExerciseSubmission, GradeRequest
@@ -64,32 +67,51 @@ class HttpCall(Generic[T]):
             ) from error
 
 
-def listing() -> HttpCall[list[ExerciseSummary]]:
-    """Return the call that lists the exercises."""
+def exercises() -> HttpCall[list[ExerciseSummary]]:
+    """Return the exercises of the service."""
     return HttpCall("v1/exercises", _exercises)
 
 
-def showing(exercise: str) -> HttpCall[ExerciseView]:
-    """Return the call that reads an exercise."""
+def exercise(exercise: str) -> HttpCall[ExerciseView]:
+    """Return the exercise with this id as students see it."""
     return HttpCall(_path(exercise), ExerciseView.model_validate_json)
 
 
-def submission(
-    answers: Mapping[str, Any], angle_unit: AngleUnit, feedback: FeedbackLevel | None, *, echo: bool
-) -> GradeRequest:
-    """Return the body of a request to grade. Raises pydantic.ValidationError, a ValueError."""
+def grade(
+    exercise: str,
+    answers: Mapping[str, Any],
+    *,
+    angle_unit: AngleUnit = "radians",
+    feedback: FeedbackLevel | None = None,
+    echo: bool = False,
+    idempotency_key: str | None = None,
+) -> HttpCall[Report]:
+    """Grade answers to the parts of an exercise, given by part id; return the report.
+
+    Calls with the same ``idempotency_key`` are one submission for the service. By default, each
+    call is a new submission; its retries are not. Raises pydantic.ValidationError, a ValueError.
+    """
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
-    return GradeRequest.model_validate(fields | {"echo": echo})
+    body = encoded(GradeRequest.model_validate(fields | {"echo": echo}))
+    return HttpCall(f"{_path(exercise)}/grade", read_report, body, idempotency_key or _new_key())
 
 
-def grading(exercise: str, request: GradeRequest, idempotency_key: str | None) -> HttpCall[Report]:
-    """Return the call that grades answers to an exercise."""
-    return HttpCall(
-        f"{_path(exercise)}/grade", read_report, encoded(request), idempotency_key or _new_key()
+def preview(
+    text: str,
+    *,
+    exercise: str | None = None,
+    part: str | None = None,
+    angle_unit: AngleUnit = "radians",
+    quantity: Kind = "number",
+) -> HttpCall[PreviewAnswer]:
+    """Return how the service reads a text, or why it cannot read it."""
+    request = PreviewRequest(
+        text=text, exercise=exercise, part=part, angle_unit=angle_unit, quantity=quantity
     )
+    return HttpCall("v1/preview", PreviewAnswer.model_validate_json, encoded(request))
 
 
-def grading_many(
+def grade_many(
     submissions: Iterable[ExerciseSubmission],
 ) -> Iterator[HttpCall[list[GradeResult]]]:
     """Yield as few calls as the service's limits allow to grade all submissions."""
@@ -101,11 +123,6 @@ def grading_many(
         waiting.append(content)
     if waiting:
         yield HttpCall("v1/grade", _results, _together(waiting))
-
-
-def previewing(request: PreviewRequest) -> HttpCall[PreviewAnswer]:
-    """Return the call that previews how a text is read."""
-    return HttpCall("v1/preview", PreviewAnswer.model_validate_json, encoded(request))
 
 
 def encoded(body: BaseModel) -> bytes:

@@ -4,8 +4,12 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from itertools import islice
+from functools import partial
+from itertools import chain
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+
+from service.cli.running.threads import mapped_in_threads
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -45,52 +49,28 @@ def mapped(
     if jobs == 1:
         yield map(function, items)
         return
-    with _workers(function, jobs) as workers:
-        yield _in_order(workers, items)
-
-
-def _in_order(workers: Sequence["Connection"], items: Sequence[_Item]) -> Iterator[Any]:
-    """Give chunks to idle workers; yield the results in order."""
-    from multiprocessing.connection import wait
-
     chunks = (items[i : i + _CHUNK] for i in range(0, len(items), _CHUNK))
-    numbered = enumerate(chunks)
-    idle, busy = list(workers), dict["Connection", int]()
-    done: dict[int, list[Any]] = {}
-    following = 0
-    while True:
-        # Limit the finished chunks that wait in memory for a slow one.
-        ahead = 2 * len(workers) - len(busy) - len(done)
-        for i, chunk in islice(numbered, max(0, min(len(idle), ahead))):
-            worker = idle.pop()
-            _send(worker, chunk)
-            busy[worker] = i
-        if not busy and not done:
-            return
-        for worker in cast("list[Connection]", wait(list(busy))):
-            done[busy.pop(worker)] = _received(worker)
-            idle.append(worker)
-        while following in done:
-            yield from done.pop(following)
-            following += 1
+    with (
+        _workers(function, jobs) as workers,
+        mapped_in_threads(partial(_results, workers), chunks, jobs) as results,
+    ):
+        yield chain.from_iterable(results)
 
 
-def _send(worker: "Connection", chunk: Sequence[Any]) -> None:
+def _results(idle: "SimpleQueue[Connection]", chunk: Sequence[Any]) -> list[Any]:
+    """Let an idle worker compute the results of a chunk."""
+    worker = idle.get()
     try:
         worker.send(chunk)
-    except OSError as error:
-        raise WorkerLostError from error
-
-
-def _received(worker: "Connection") -> list[Any]:
-    try:
         return cast("list[Any]", worker.recv())
     except (EOFError, OSError) as error:
         raise WorkerLostError from error
+    finally:
+        idle.put(worker)
 
 
 @contextmanager
-def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connection"]]:
+def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator["SimpleQueue[Connection]"]:
     """Start worker processes and yield connections to them; kill them at the end."""
     # Import here: a single process needs none of this.
     from multiprocessing import get_context, resource_tracker
@@ -100,11 +80,13 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
     if os.name == "posix":
         # Otherwise the first process would start it, and unblock the signals while doing so.
         resource_tracker.ensure_running()
-    processes, connections = [], []
+    processes = []
+    # Not closed here: a thread may still read. The last reference closes it.
+    connections: SimpleQueue[Connection] = SimpleQueue()
     try:
         for _ in range(jobs):
             ours, theirs = context.Pipe()
-            connections.append(ours)
+            connections.put(ours)
             process = context.Process(target=_work, args=(theirs, function), daemon=True)
             try:
                 with _signals_blocked():
@@ -120,8 +102,6 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
             process.kill()
         for process in processes:
             process.join()
-        for connection in connections:
-            connection.close()
 
 
 @contextmanager

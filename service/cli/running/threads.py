@@ -2,11 +2,12 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future
-from contextlib import contextmanager, suppress
-from queue import Empty, SimpleQueue
-from threading import Thread
-from typing import TypeVar
+from contextlib import contextmanager
+from itertools import islice
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from multiprocessing.pool import AsyncResult
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -18,51 +19,19 @@ def mapped_in_threads(
 ) -> Iterator[Iterator[Result]]:
     """Yield an iterator over the results in the order of the items, with few of them in memory.
 
-    At the end of the context, waiting items are dropped, and running ones are not waited for: the
-    threads of an executor would delay the end of the program.
+    At the end of the context, waiting items are dropped, and running ones are not waited for.
     """
-    tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
-    for _ in range(jobs):
-        Thread(target=_work, args=(tasks,), daemon=True).start()
-    try:
-        yield _in_order(tasks, function, items, 2 * jobs)
-    finally:
-        with suppress(Empty):
-            while True:
-                tasks.get_nowait()
-        for _ in range(jobs):
-            tasks.put(None)
+    # Import here: most runs need no threads. ThreadPoolExecutor would delay the end of the program
+    # until its threads end; the threads of this pool are daemons.
+    from multiprocessing.pool import ThreadPool
+
+    with ThreadPool(jobs) as pool:
+        yield _in_order((pool.apply_async(function, (item,)) for item in items), 2 * jobs)
 
 
-def _in_order(
-    tasks: "SimpleQueue[Callable[[], None] | None]",
-    function: Callable[[Item], Result],
-    items: Iterable[Item],
-    ahead: int,
-) -> Iterator[Result]:
-    waiting: deque[Future[Result]] = deque()
-    for item in items:
-        future: Future[Result] = Future()
-        tasks.put(_task(function, item, future))
-        waiting.append(future)
-        if len(waiting) > ahead:
-            yield waiting.popleft().result()
+def _in_order(begun: Iterator["AsyncResult[Result]"], ahead: int) -> Iterator[Result]:
+    """Wait for the results one by one, with ``ahead`` of them begun."""
+    waiting = deque(islice(begun, ahead))
     while waiting:
-        yield waiting.popleft().result()
-
-
-def _task(
-    function: Callable[[Item], Result], item: Item, future: Future[Result]
-) -> Callable[[], None]:
-    def run() -> None:
-        try:
-            future.set_result(function(item))
-        except Exception as error:  # noqa: BLE001 -- raised by future.result()
-            future.set_exception(error)
-
-    return run
-
-
-def _work(tasks: "SimpleQueue[Callable[[], None] | None]") -> None:
-    while (task := tasks.get()) is not None:
-        task()
+        yield waiting.popleft().get()
+        waiting.extend(islice(begun, 1))

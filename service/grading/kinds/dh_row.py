@@ -22,9 +22,14 @@ from service.grading.misconception import diagnosed
 from service.grading.numerics.comparison import Match, entry_matches
 from service.grading.part import Grading, Judged
 from service.grading.reading.entry import MISSING, Entry
-from service.grading.reading.tables.row_text import NamedCell, in_one_line, named_cells, says_none
+from service.grading.reading.tables.cells import (
+    NamedCell,
+    canonical_table,
+    in_one_line,
+    named_cells,
+    says_none,
+)
 from service.grading.reading.tables.table import IS_ANGLE, StudentRow, read_table
-from service.grading.reading.tables.table_json import canonical_table
 from service.grading.report import CellReport, Verdict, row_report
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh_row import row

@@ -1,1 +1,1 @@
-"""JSON or pasted text -> entries."""
+"""Read answers: JSON or pasted text -> entries."""

@@ -1,7 +1,7 @@
-"""Joint variables that a robot does not have: theta3 where joint 3 slides, theta0.
+"""Names of joint variables that a robot does not have, such as theta0, or theta3 if joint 3 slides.
 
-A student who counts the joints from 0, or the turning joints by themselves, writes them in a table.
-They are names with one meaning, and wrong; not a text that cannot be read.
+Students write them if they count the joints from 0, or revolute and prismatic joints separately.
+A cell with such a name is wrong, but not unreadable.
 """
 
 from collections.abc import Iterable, Iterator
@@ -12,15 +12,15 @@ from service.expressions import Expression, Symbol, Vocabulary
 from service.grading.numerics.samples import Samples
 
 _LETTERS: Final = "thetad"
-# No joint has such an index, so that no shorthand names an absent variable.
-_BEYOND: Final = 1000
+# Larger than every joint number, so that no shorthand (such as c1) means an absent variable.
+_FIRST_ABSENT_JOINT: Final = 1000
 
 
 @lru_cache(maxsize=256)
 def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
-    """The vocabulary with the usual names of joints from 0 on, as far as they mean nothing in it.
+    """Return the vocabulary plus the usual names of joint variables, from 0 on, that it lacks.
 
-    ``d2`` is such a name only where some joint slides: elsewhere it is an unknown length.
+    Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
     """
     if not vocabulary.joints:
         return vocabulary
@@ -33,18 +33,18 @@ def _absent(index: int, vocabulary: Vocabulary) -> Iterator[Symbol]:
     known = vocabulary.by_name
     others = [name for name in (f"th{index}", f"q{index}") if name not in known]
     if f"theta{index}" not in known:
-        joint = _BEYOND + 2 * index
+        joint = _FIRST_ABSENT_JOINT + 2 * index
         yield Symbol(f"theta{index}", "angle", tuple(others), joint=joint)
     if vocabulary.sliding and f"d{index}" not in known:
-        yield Symbol(f"d{index}", "length", joint=_BEYOND + 2 * index + 1)
+        yield Symbol(f"d{index}", "length", joint=_FIRST_ABSENT_JOINT + 2 * index + 1)
 
 
 def joint_counted(name: str) -> int:
-    """The number of the joint that the canonical name of such a variable counts, from 0 on."""
+    """Return the joint number in the canonical name of an absent variable: 3 for theta3."""
     return int(name.lstrip(_LETTERS))
 
 
 def absent_names(expressions: Iterable[Expression | None], samples: Samples) -> set[str]:
-    """The canonical names of the variables in the expressions that the robot does not have."""
+    """Return the canonical names of all absent variables in the expressions."""
     used: set[str] = set().union(*(each.symbols for each in expressions if each is not None))
     return used.difference(samples.values)

@@ -1,4 +1,4 @@
-"""A cell as handed in -> an entry, and entries -> their numbers at the samples."""
+"""Read a submitted cell as an entry, and evaluate entries at the samples."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,21 +27,23 @@ from service.grading.report import Verdict
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
 
-# Textbooks mark the joint variable so in every table: six notes on it would hide the others.
+# Notes that a table does not show: textbooks mark every joint variable with a star, and six notes
+# on that would hide the others.
 EXPECTED_IN_TABLES = frozenset({"joint_marker"})
 
-# The errors on a name that may be the variable of a joint that the robot does not have.
+# The codes of errors on a name that may be an absent joint variable (``absent_variables``).
 _UNKNOWN_NAMES = frozenset({"unknown_joint", "unknown_symbol"})
 
-# Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
+# The largest absolute values. No robot is larger, and a larger angle has no precise digits left
+# after whole turns are removed.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One cell as read: an expression, or why there is none.
+    """One cell as read: an expression, or the reason why it cannot be read.
 
-    Where nothing could be read, ``verdict`` says why; else it is yet to be found.
+    Without an expression, ``verdict`` is MISSING or UNREADABLE; with one it is not known yet.
     """
 
     expression: Expression | None
@@ -50,15 +52,15 @@ class Entry:
 
     @property
     def readable(self) -> bool:
-        """Whether there is an expression to be judged."""
+        """True if the cell has an expression."""
         return self.expression is not None
 
 
 @dataclass(frozen=True, slots=True)
 class Reader:
-    """Reads the cells of one submission. Copies with another angle unit share the budget.
+    """Reads the cells of one submission. Copies with another angle unit share the work budget.
 
-    ``length_unit`` is the one unit of all lengths of the exercise, None where there are several.
+    ``length_unit`` is the unit of all lengths of the exercise, None if they have several units.
     """
 
     vocabulary: Vocabulary
@@ -75,16 +77,16 @@ class Reader:
         angle_unit: AngleUnit,
         budget: WorkBudget | None = None,
     ) -> Self:
-        """The reader of a submission to an exercise."""
+        """Return a reader for a submission to an exercise."""
         units = {variable.unit for variable in exercise.variables if variable.kind == "length"}
         unit = units.pop() if len(units) == 1 else None
         return cls(exercise.vocabulary, samples, angle_unit, unit, budget or WorkBudget())
 
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
-        """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable.
+        """Return the entry for a JSON value. Never raises: any bad value is an unreadable entry.
 
-        ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable,
-        and where the variable of a joint that the robot does not have is a wrong one.
+        ``in_table`` is for cells of a DH table. There, a star may mark the joint variable, and an
+        absent joint variable is wrong instead of unreadable.
         """
         budget = self.budget
         symbols = 1
@@ -110,7 +112,7 @@ class Reader:
         except ExpressionError as error:
             budget.charge_repair(raw, error.tried)
             is_unknown = in_table and error.code in _UNKNOWN_NAMES
-            # Its symbols are read again.
+            # The second reading is charged too.
             is_unknown = is_unknown and budget.charge_reading(symbols)
             absent = self._in_absent_variables(raw, quantity) if is_unknown else None
             if absent is None:
@@ -118,12 +120,12 @@ class Reader:
             expression = absent
         if not expression.notes:
             return Entry(expression)
-        untold = self._untold(expression) if in_table else frozenset()
-        told = (note for note in expression.notes if note.code not in untold)
-        return Entry(expression, findings=tuple(map(from_note, told)))
+        hidden = self._hidden_notes(expression) if in_table else frozenset()
+        shown = (note for note in expression.notes if note.code not in hidden)
+        return Entry(expression, findings=tuple(map(from_note, shown)))
 
     def _in_absent_variables(self, raw: str | int | float, quantity: Kind) -> Expression | None:
-        """The expression in joint variables that the robot does not have, if it is one."""
+        """Read a text that may contain absent joint variables; return None if that fails, too."""
         vocabulary = with_absent_variables(self.vocabulary)
         try:
             return read(
@@ -132,18 +134,17 @@ class Reader:
         except ExpressionError:
             return None
 
-    def _untold(self, expression: Expression) -> frozenset[str]:
-        """The codes of notes that are not told of a cell of a table."""
+    def _hidden_notes(self, expression: Expression) -> frozenset[str]:
+        """Return the codes of the notes that are not shown on a cell of a table."""
         known = with_absent_variables(self.vocabulary).by_name
         joints = [known[name].joint for name in expression.symbols]
         return EXPECTED_IN_TABLES if len(joints) - joints.count(None) < 2 else frozenset()
 
 
 def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: Samples) -> Numbers:
-    """The values of entries at the samples, ``(entries, SAMPLES)``.
+    """Return the values of entries at the samples, ``(entries, SAMPLES)``.
 
-    NaN where an entry has none: nothing could be read, or it is undefined or beyond all bounds
-    there.
+    A value is NaN if the entry could not be read, or is undefined or out of bounds at the sample.
     """
     expressions = [entry.expression for entry in entries]
     found = evaluate_all(expressions, samples.values, samples.memo)
@@ -156,7 +157,7 @@ def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: 
 
 @lru_cache(maxsize=256)
 def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
-    """The largest value of each quantity, ``(quantities, 1)``."""
+    """Return the largest absolute value of each quantity, ``(quantities, 1)``."""
     return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
 
@@ -171,12 +172,12 @@ MISSING = Entry(
     (reading_error("missing", "Nothing is written here; if the value is zero, write 0."),),
 )
 
-# One of several entries that cannot be read together, the first of which says why.
+# Several entries may be unreadable for one reason: the first has the message, the others are this.
 UNREADABLE = Entry(None, Verdict.UNREADABLE)
 
 
 def unreadable(finding: Finding) -> Entry:
-    """The entry for something that cannot be read, and why."""
+    """Return an unreadable entry with its reason."""
     return Entry(None, Verdict.UNREADABLE, (finding,))
 
 
@@ -198,5 +199,5 @@ def _from_error(error: ExpressionError) -> Finding:
 
 
 def from_note(note: Note) -> Finding:
-    """A note on how a text was read, as a finding."""
+    """Return a note on how a text was read, as a finding."""
     return reading_note(note.code, note.message, note.span)

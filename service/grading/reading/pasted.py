@@ -1,4 +1,4 @@
-"""Pasted text: its refusals as findings, and the places of its cells in the whole text."""
+"""Read the grids in pasted texts; convert grid errors and spans for reports."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,18 +20,18 @@ from service.grids import (
 
 
 def pasted_grid(text: str, reader: Reader) -> Grid:
-    """The table or matrix in a pasted text.
+    """Return the table or matrix in a pasted text.
 
-    Raises GridError where there is none, and where the texts of a submission are too long.
+    Raises GridError if there is none, or if the pasted texts of a submission are too long.
     """
     _charge(text, reader)
     return read_grid(text)
 
 
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
-    """The DH table of a robot that a pasted script describes; None for any other text.
+    """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError where its table is not certain, and as ``pasted_grid``.
+    Raises GridError if the script's table is ambiguous, or if the pasted texts are too long.
     """
     robot = read_robot(text)
     if robot is not None:
@@ -40,7 +40,7 @@ def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
 
 
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
-    """The matrices in a pasted text, each with its name. Raises GridError as ``pasted_grid``."""
+    """Return the matrices in a pasted text, with their names. Raises GridError, see pasted_grid."""
     _charge(text, reader)
     return read_grids(text)
 
@@ -54,13 +54,13 @@ def _charge(text: str, reader: Reader) -> None:
 
 
 def from_grid_error(error: GridError) -> Finding:
-    """The finding that a pasted text is no table or matrix."""
+    """Return the finding that a pasted text is not a table or matrix."""
     code = "wrong_shape" if error.code == "no_grid" else error.code
     return Finding(code, error.message, span=error.span, reading=True)
 
 
 def placed(entry: Entry, cell: GridCell) -> Entry:
-    """The entry with its spans moved from the cell to the text that it was pasted in."""
+    """Return the entry with its spans counted in the whole pasted text instead of in the cell."""
     if not entry.findings:
         return entry
     findings = tuple(
@@ -71,12 +71,12 @@ def placed(entry: Entry, cell: GridCell) -> Entry:
 
 
 def place_of(cells: Sequence[GridCell]) -> tuple[int, int]:
-    """The place of cells that stand side by side, in the whole text."""
+    """Return the span of neighbouring cells in the whole text."""
     return cells[0].whole[0], max(cells[0].whole[1], cells[-1].whole[1])
 
 
 def quoted(text: str) -> str:
-    """A cell's text, so that it can be quoted in a message."""
+    """Return a cell's text, shortened and in quotes, for use in a message."""
     shown = "".join(filter(str.isprintable, text))
     short = shown if len(shown) <= 30 else shown[:29] + "…"
     return f"`{short}`" if shown == text else f"`{short}` (with an invisible character in it)"

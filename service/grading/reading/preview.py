@@ -1,4 +1,4 @@
-"""The preview of a pasted table or matrix: the reading of each cell, without a grading."""
+"""Preview a pasted table or matrix: how each cell is read, without grading it."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -25,7 +25,7 @@ from service.kinematics.chain import COLUMNS
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """The reason why a text or a cell cannot be read, and the repaired cell, if one is near."""
+    """The reason why a text or a cell cannot be read, and a repaired text if there is one."""
 
     code: str
     message: str
@@ -35,13 +35,13 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class CellPreview:
-    """The reading of one cell as normal text, LaTeX and MathML; or the problem with it.
+    """How one cell is read, as plain text, LaTeX and MathML; or the problem with it.
 
     ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
-    the column's number. ``span`` is the cell's [from, to) in the pasted text, ``typed`` what stands
-    there, and ``entry`` what is to be written in the cell alone for the same reading: below a
-    header with a unit that is another text. A cell left empty is neither read nor a problem. A cell
-    beyond the work budget has no LaTeX and no MathML.
+    the column's number. ``span`` is the cell's [from, to) in the pasted text, and ``typed`` the
+    text there. ``entry`` has the same meaning when it is typed into a single field; it differs from
+    ``typed`` if the column's header has a unit. An empty cell has neither a reading nor a problem.
+    A cell beyond the work budget has no LaTeX and no MathML.
     """
 
     row: str
@@ -59,9 +59,9 @@ class CellPreview:
 
 @dataclass(frozen=True, slots=True)
 class PastedPreview:
-    """The reading of a pasted text: its rows, or the problem with it as a whole.
+    """How a pasted text is read: its rows, or the problem with the whole text.
 
-    Rows stand in the order in which they are graded, the columns of a table as a, alpha, d, theta.
+    Rows are in the order in which they are graded; columns of a table are a, alpha, d, theta.
     All spans are [from, to) in the pasted text.
     """
 
@@ -71,17 +71,17 @@ class PastedPreview:
 
     @property
     def ok(self) -> bool:
-        """Whether every cell that holds something was read."""
+        """True if every cell that is not empty could be read."""
         return self.problem is None and not any(cell.problem for row in self.rows for cell in row)
 
 
 def preview_pasted(
     text: str, exercise: Exercise, part: str, angle_unit: AngleUnit = "radians"
 ) -> PastedPreview:
-    """The reading of ``text`` as the answer to a part, exactly as grading reads it.
+    """Read ``text`` as the answer to a part, exactly as grading reads it.
 
-    The part says whether a table is pasted, a matrix or several. A matrix of any size is read:
-    grading checks the size. Raises LookupError for a part that does not exist.
+    The part decides whether the text is a table, a matrix or several matrices. The size of a
+    matrix is checked only by grading. Raises LookupError for a part that does not exist.
     """
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, text), angle_unit)
@@ -104,10 +104,10 @@ def preview_entries(
     part: str,
     angle_unit: AngleUnit = "radians",
 ) -> tuple[CellPreview, ...]:
-    """The readings of single entries of a part, each with what is asked for there.
+    """Read single entries of a part; each is a text and the quantity expected there.
 
-    They share one work budget, as the entries of a submission do, and have empty labels. Raises
-    LookupError for a part that does not exist.
+    They share one work budget, as the entries of a submission do. The previews have empty labels.
+    Raises LookupError for a part that does not exist.
     """
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, part), angle_unit)
@@ -168,14 +168,14 @@ def _table(text: str, reader: Reader) -> PastedPreview:
 
 
 def _alone(text: str, header: Header, reader: Reader) -> str:
-    """The text of a cell that is read below a header with a unit, for the same reading alone."""
+    """Return the text that is read alone as ``text`` is read below a header with a unit."""
     if header.angle_unit == "radians" and reader.angle_unit == "degrees":
         return _TERM.sub(r"\1rad", text)
     return text
 
 
 def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
-    """The rows of all matrices, with labels such as A2.3."""
+    """Return the rows of all matrices, with labels such as A2.3."""
     grids, findings = grids_in_order(text, labels, reader)
     rows: list[tuple[CellPreview, ...]] = []
     notes = list(_notes(findings))
@@ -193,7 +193,7 @@ def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview
 def _rows(
     grid: Grid, quantity: Kind, reader: Reader, name: str = ""
 ) -> tuple[tuple[CellPreview, ...], ...]:
-    """The rows of a matrix of any size."""
+    """Return the previewed rows of a matrix of any size."""
     return tuple(
         tuple(
             _cell(
@@ -217,7 +217,7 @@ def _cell(entry: Entry, cell: GridCell, place: tuple[str, str], budget: WorkBudg
 
 
 def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
-    """The preview of a cell that is still empty, with the entry that was read from it."""
+    """Return the preview ``empty`` filled with the reading of its cell."""
     if not empty.typed:
         return empty
     if entry.expression is None:
@@ -240,7 +240,7 @@ def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
     )
 
 
-# A number that is a term by itself, and not 0.
+# A number, other than 0, that is a whole term of a sum.
 _TERM: Final = re.compile(
     r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
 )

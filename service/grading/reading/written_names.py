@@ -1,7 +1,7 @@
-"""Values with a name in front (y = l1 s1): their order by these names, or what is wrong with one.
+"""Order values that have names, such as y = l1 s1, by these names, or report a wrong name.
 
-A name may have several places where the textbooks differ, or none. The values are put into another
-order only where each that is written names one place of its own.
+A name may have several places if textbooks differ, or none. The values are reordered only if each
+value that is not empty names exactly one place, and no two name the same.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -13,16 +13,17 @@ from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry
 from service.grading.reading.pasted import quoted
 
-# The places that a name may have, from 0; None where the name says nothing of a place.
+# The places that a name may have, counted from 0; None if the name does not imply a place.
 Places: TypeAlias = tuple[int, ...] | None
-# The places of each of several names.
+# A function that returns the places of each of several names.
 PlacesOf: TypeAlias = Callable[[Sequence[LeftSide | None], Vocabulary], list[Places]]
 
 
 class Arrangement(NamedTuple):
-    """``order`` has the number of the value that stands in each place.
+    """The order of named values, or the findings on wrong names.
 
-    ``misnamed`` says by number which values name another place, where no order puts that right.
+    ``order`` has, for each place, the index of its value. ``misnamed`` maps the index of each value
+    with a wrong name to its finding; it is empty if reordering makes all names right.
     """
 
     order: tuple[int, ...]
@@ -30,12 +31,12 @@ class Arrangement(NamedTuple):
 
     @property
     def by_name(self) -> bool:
-        """Whether the values stand in another order than they were written in."""
+        """True if the values were reordered by their names."""
         return not self.misnamed
 
 
 def name_of(value: object, vocabulary: Vocabulary) -> LeftSide | None:
-    """The name in front of a value, if it is an equation."""
+    """Return the left side of a value such as ``y = l1 s1``; None if it is not an equation."""
     if not isinstance(value, str) or len(value) > LIMITS.characters:
         return None
     return left_side(value, vocabulary)
@@ -44,9 +45,9 @@ def name_of(value: object, vocabulary: Vocabulary) -> LeftSide | None:
 def arranged(
     values: Sequence[object], labels: Sequence[str], places_of: PlacesOf, vocabulary: Vocabulary
 ) -> Arrangement | None:
-    """What the names of values say of their order; None where they contradict nothing.
+    """Return the arrangement of values by their names; None if no name contradicts its place.
 
-    ``labels`` say what is asked for in each place; there are as many values.
+    ``labels`` are the expected names, one for each value.
     """
     names = [name_of(value, vocabulary) for value in values]
     if not any(names):
@@ -64,7 +65,10 @@ def arranged(
 
 
 def _order(places: Sequence[Places], written: Sequence[bool]) -> tuple[int, ...] | None:
-    """The value for each place, those that are not written in the places that are left."""
+    """Return the index of the value for each place; empty values get the places that are left.
+
+    Return None if a value that is not empty does not name exactly one free place.
+    """
     found: dict[int, int] = {}
     for i, is_written in enumerate(written):
         allowed = places[i]
@@ -81,15 +85,15 @@ def _is_written(value: object) -> bool:
 
 
 def misnamed_value(name: LeftSide, asked: str) -> Finding:
-    """The finding that a value has the name of another than the one that is asked for."""
+    """Return the finding that a value has another name than the expected one."""
     message = f"This is named {quoted(name.name)}, but {asked} is asked for here."
     return reading_error("misnamed_value", message, name.span)
 
 
 def with_order_note(entries: Sequence[Entry], what: str) -> tuple[Entry, ...]:
-    """Entries that were put in order, with one note on it in place of those on their equations.
+    """Return reordered entries with a note on the order in place of the notes on equations.
 
-    The note has no place in a text: it is told once for all of them.
+    The note has no span, so that the report shows it once for all entries.
     """
     note = reading_note("ordered_by_names", f"{what} were ordered by their names.")
     return tuple(

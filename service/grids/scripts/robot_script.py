@@ -55,6 +55,12 @@ _ASSIGNMENT: Final = re.compile(
     r"(?:\.(?P<property>\w{1,30}))?\s*=(?!=)\s*"
 )
 _APPENDED: Final = re.compile(r"(?P<name>[A-Za-z_]\w{0,60})\.append\s?\(")
+# Statements that change a list of links, or multiply a parameter and so on.
+_ALTERED: Final = re.compile(
+    r"(?:del\s{1,9}(?P<deleted>[A-Za-z_]\w{0,60})|(?P<name>[A-Za-z_]\w{0,60})"
+    r"(?:\.(?:reverse|pop|insert|remove|clear|sort|extend)\s?\(|[^=]{0,40}?[-+*/]=(?!=)))"
+)
+_LINKS: Final = re.compile(r"links\s?=(?!=)\s*")
 _SHOWS: Final = frozenset({"print", "disp", "display"})
 _DECLARES: Final = re.compile(r"(?:\w{1,20}\.)?(?:symbols|Symbol|sym|syms|var)\s?\(")
 _NAME: Final = re.compile(r"[A-Za-z]\w*")
@@ -147,6 +153,8 @@ class _Script:
                 statement,
             )
         found = _ASSIGNMENT.match(text)
+        if self._alters(text):
+            raise _unclear(statement)
         if changes:
             self._change(statement, found)
         elif found:
@@ -169,12 +177,19 @@ class _Script:
             raise _unclear(statement)
         elif has_call or found["property"]:
             return
+        elif name in self.names.links and self.robot is None and value.text:
+            raise _unclear(statement)
         elif number := _number(found):
             self.names.name_element(name, number, value)
         elif number is None:
             self.names.name_value(name, value)
             if not _is_declared(name, value.text):
                 self.given.append(GivenValue(name, value.text, statement))
+
+    def _alters(self, text: str) -> bool:
+        """True if a statement changes known links in a way that is not followed here."""
+        found = _ALTERED.match(text)
+        return found is not None and (found["name"] or found["deleted"]) in self.names.links
 
     def _change(self, statement: SourceText, found: re.Match[str] | None) -> None:
         """Set a parameter of a link: ``L(2).offset = pi/2``."""
@@ -218,7 +233,10 @@ class _Script:
         call = split_call(source)
         if call is None or call[0] not in _ROBOTS:
             return False
-        first, *rest = arguments(call[1]) or [call[1]]
+        given = arguments(call[1]) or [call[1]]
+        first, *rest = sorted(given, key=lambda each: _LINKS.match(each.text) is None)
+        if keyword := _LINKS.match(first.text):
+            first = first.cut(keyword.end(), len(first.text))
         words = {unquoted(each).text for each in rest}
         names = {each.text.partition("=")[0].strip() for each in rest if "=" in each.text}
         if frames := [each for each in rest if _names_frame(each)]:

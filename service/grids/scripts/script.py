@@ -16,6 +16,8 @@ _ENDS: Final = ";,\n\r\x85\u2028\u2029"
 _BLOCK: Final = re.compile(r"[ \t]*(%\{|%\}|\"\"\"|''')?")
 _CALL: Final = re.compile(r"(?:[A-Za-z_]\w{0,60}\.){0,4}([A-Za-z_]\w{0,60})[ \t]*\(")
 _SHOWN: Final = 40
+# Blanks other than those of ASCII and the ends of lines: web pages have them in programs.
+_BLANK: Final = re.compile(r"[^\S\x00-\x20\x85\u2028\u2029]")
 
 
 def statements(source: SourceText) -> list[SourceText]:
@@ -23,6 +25,7 @@ def statements(source: SourceText) -> list[SourceText]:
 
     Raises GridError for unbalanced brackets, and for more brackets than ``GRID_LIMITS`` allow.
     """
+    source = SourceText(_BLANK.sub(" ", source.text), source.starts, source.ends, source.at)
     plain = without_remarks(_without_blocks(without_prompts(source)))
     if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
         raise unread_script(

@@ -8,11 +8,11 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError, too_many_rows
 from service.grids.cutting.limits import GRID_LIMITS
-from service.grids.cutting.pairs import split
+from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
-from service.grids.scripts.robot_links import RobotLink, read_link, vector_link
-from service.grids.scripts.script import excerpt, unread_script
+from service.grids.scripts.robot_links import LINK_CLASSES, RobotLink, read_link, vector_link
+from service.grids.scripts.script import excerpt, split_call, unread_script
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
 NAMED: Final = re.compile(
@@ -100,13 +100,13 @@ class ScriptNames:
                 return in_order(known, source)
             one = known.get(int(named["index"]) + (named["bracket"] == "["))
             return [one] if one else None
-        if source.text[:1] not in {"[", "{"} or source.text[-1:] not in {"]", "}"}:
+        if source.text[:1] not in CLOSES or strict_pairs(source)[0] != len(source.text):
             return None
         inside = source.cut(1, len(source.text) - 1)
         pieces = [piece for piece in split(inside, ",; \t\n\r") if piece.text]
         links: list[RobotLink] = []
         for piece in pieces[: _MOST_ROWS + 1]:
-            found = self.links_of(piece) if piece.text[0] not in "[{" else None
+            found = self.links_of(piece) if piece.text[0] not in CLOSES else None
             if found is None:
                 return None
             links += found
@@ -129,7 +129,7 @@ class ScriptNames:
         if name in self._matrices:
             return self._matrices[name]
         source = self._values.get(name, source)
-        if not (source.text.startswith("[") and source.text.endswith("]")):
+        if source.text[:1] != "[" or strict_pairs(source)[0] != len(source.text):
             return None
         rows, notes = matlab.rows(source.cut(1, len(source.text) - 1))
         self.notes += notes
@@ -139,12 +139,25 @@ class ScriptNames:
         return stripped
 
     def links_of_matrix(self, source: SourceText, *, modified: bool) -> list[RobotLink] | None:
-        """Return the links of ``SerialLink([theta d a alpha; …])``; None if there is no matrix."""
+        """Return the links of ``SerialLink([theta d a alpha; …])``.
+
+        Return None if there is no matrix, or if it lists links that are not all known.
+        """
         rows = self._matrix(source)
-        if not rows:
+        if not rows or any(map(self._lists_links, rows)):
             return None
         check_count(rows, source)
         return [vector_link(row, _line_of(row), modified=modified) for row in rows]
+
+    def _lists_links(self, row: list[SourceText]) -> bool:
+        """True if the cells of a row are links: L1 L2 L3 L4 are not θ, d, a and α."""
+        named = [NAMED.fullmatch(cell.text) for cell in row]
+        if any(each["name"] in self.links for each in named if each):
+            return True
+        if any((call := split_call(cell)) and call[0] in LINK_CLASSES for cell in row):
+            return True
+        stems = {(each := NUMBERED.fullmatch(cell.text)) and each[1] for cell in row}
+        return all(named) and len(stems) == 1 < len(row) and None not in stems
 
 
 def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:

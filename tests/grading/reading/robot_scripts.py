@@ -1,10 +1,10 @@
-"""Writers of scripts for robotics toolboxes from the tables of the textbooks' robots."""
+"""Write a textbook robot's table as a script for a robotics toolbox."""
 
 from tests.grading.support.robots import COLUMNS, Robot, in_pi
 
 
 def cells(robot: Robot) -> list[dict[str, str]]:
-    """The cells of each row with the joint variable left to the toolbox."""
+    """Return the cells of each row without the joint variable, which the toolbox adds."""
     found = []
     for row in robot.rows:
         named = dict(zip(COLUMNS, row, strict=True))
@@ -14,7 +14,7 @@ def cells(robot: Robot) -> list[dict[str, str]]:
 
 
 def in_matlab(robot: Robot) -> str:
-    """Vectors [θ d a α σ] of MATLAB's toolbox."""
+    """Return a script with vectors [θ d a α σ] for MATLAB's toolbox."""
     lines = [
         f"L({i}) = Link([{row['theta'] or 0} {row['d'] or 0} {row['a']} {row['alpha']} "
         f"{int(not row['d'])}]);"
@@ -24,7 +24,7 @@ def in_matlab(robot: Robot) -> str:
 
 
 def by_name(robot: Robot) -> str:
-    """Links of MATLAB's toolbox with names, all in the call that makes the robot."""
+    """Return a script with links by named parameters, all in one call of MATLAB's toolbox."""
     lines = []
     for row in cells(robot):
         given = ", ".join(f"'{name}', {cell}" for name, cell in row.items() if cell)
@@ -33,7 +33,7 @@ def by_name(robot: Robot) -> str:
 
 
 def in_python(robot: Robot) -> str:
-    """The classes of the toolbox for Python."""
+    """Return a script with the classes of the toolbox for Python."""
     lines = []
     for row in cells(robot):
         kind = "Revolute" if row["d"] else "Prismatic"
@@ -43,7 +43,7 @@ def in_python(robot: Robot) -> str:
 
 
 def of_bodies(robot: Robot) -> str:
-    """Joints of MATLAB's Robotics System Toolbox."""
+    """Return a script with the joints of MATLAB's Robotics System Toolbox."""
     lines = []
     for i, row in enumerate(cells(robot), 1):
         kind = "revolute" if row["d"] else "prismatic"
@@ -54,7 +54,7 @@ def of_bodies(robot: Robot) -> str:
 
 
 def by_column(robot: Robot) -> str:
-    """A dictionary of columns, which names its joint variables."""
+    """Return a dictionary of columns that contains the joint variables."""
     columns = ((name, i) for i, name in enumerate(COLUMNS))
     lists = ", ".join(
         f"'{name}': [{', '.join(_value(name, row[i]) for row in robot.rows)}]"

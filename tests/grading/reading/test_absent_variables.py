@@ -5,7 +5,7 @@ import pytest
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
 from service.grading.reading.absent_variables import joint_counted, with_absent_variables
 
-# R P R, with a length that bears the name of a joint variable.
+# An RPR arm with a length that has the usual name of a joint variable.
 WORDS = Vocabulary(
     [
         joint_variable(1),
@@ -35,7 +35,7 @@ def test_names(text: str, name: str, joint: int) -> None:
 
 
 @pytest.mark.parametrize("text", ["q1", "d2", "q2", "d3", "theta3"])
-def test_what_the_robot_has_keeps_its_meaning(text: str) -> None:
+def test_declared_names_keep_their_meaning(text: str) -> None:
     assert read(text, with_absent_variables(WORDS)).symbols == read(text, WORDS).symbols
 
 
@@ -45,7 +45,7 @@ def test_other_names_stay_unknown(text: str) -> None:
         read(text, with_absent_variables(WORDS))
 
 
-def test_where_no_joint_slides_d1_is_a_length() -> None:
+def test_d1_is_a_length_if_no_joint_slides() -> None:
     with pytest.raises(ExpressionError):
         read("d1", with_absent_variables(TURNING))
 

@@ -1,4 +1,4 @@
-"""The star behind a joint variable, in graded answers: expected in a table's cell, else told."""
+"""The star after a joint variable: no note in a cell of a table, a note in other answers."""
 
 from collections.abc import Mapping
 

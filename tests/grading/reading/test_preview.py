@@ -1,4 +1,4 @@
-"""What is understood of a pasted table or matrix, cell by cell, before it is graded."""
+"""The preview of a pasted table or matrix, cell by cell, before it is graded."""
 
 from collections.abc import Mapping
 
@@ -38,7 +38,7 @@ def test_a_table_cell_by_cell(arm: Exercise) -> None:
     assert shown.rows[1][1].text == "180deg"
 
 
-def test_a_problem_has_its_place_and_the_repair(arm: Exercise) -> None:
+def test_a_problem_has_its_span_and_the_repair(arm: Exercise) -> None:
     cell = preview_pasted(TABLE, arm, "table").rows[1][0]
     assert cell.problem is not None
     assert (cell.problem.code, cell.problem.suggestion) == ("trailing_operator", "l3")
@@ -46,7 +46,7 @@ def test_a_problem_has_its_place_and_the_repair(arm: Exercise) -> None:
     assert (cell.text, cell.latex, cell.mathml, cell.symbols) == ("", "", "", ())
 
 
-def test_an_empty_cell_is_neither(arm: Exercise) -> None:
+def test_an_empty_cell_has_neither_a_reading_nor_a_problem(arm: Exercise) -> None:
     cell = preview_pasted(TABLE, arm, "table").rows[2][0]
     assert (cell.typed, cell.text, cell.problem) == ("", "", None)
 

@@ -39,7 +39,7 @@ def test_a_script_gets_full_marks_and_fills_the_same_rows(
     assert full_marks(graded(exercise, table([cell.entry for cell in row] for row in preview.rows)))
 
 
-def test_a_script_is_in_radians_whatever_the_numbers_on_the_page_are(
+def test_a_script_is_in_radians_regardless_of_the_submission(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     exercise = catalogue[SCARA.exercise]
@@ -55,7 +55,7 @@ def test_a_script_is_in_radians_whatever_the_numbers_on_the_page_are(
     assert full_marks(graded(exercise, entries, "degrees"))
 
 
-def test_the_links_of_the_other_convention_are_told(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_script_in_the_other_convention_gets_a_message(catalogue: Mapping[str, Exercise]) -> None:
     text = in_matlab(RRRP).replace("]);", "], 'modified');")
     report = graded(catalogue[RRRP.exercise], text)
     assert full_marks(report)
@@ -74,6 +74,6 @@ def test_a_slip_is_found_in_its_link(catalogue: Mapping[str, Exercise]) -> None:
     assert wrong == [("2", "alpha")]
 
 
-def test_a_script_is_no_matrix(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_script_is_not_a_matrix(catalogue: Mapping[str, Exercise]) -> None:
     report = part(handed_in(catalogue[RRRP.exercise], {"pose": in_matlab(RRRP)}), "pose")
     assert report.verdict is Verdict.UNREADABLE

@@ -1,4 +1,4 @@
-"""Values with names in front: put in the order of these, or unreadable where they contradict."""
+"""Values with names are ordered by them, or unreadable if the names contradict each other."""
 
 import time
 from collections.abc import Mapping
@@ -39,7 +39,7 @@ def euler(sequence: str, expected: str, axes: str = "moving") -> str:
 
 
 def only(report: PartReport, code: str) -> None:
-    """The report has this one code, once."""
+    """Assert that the report has this code, once, and no other code."""
     messages = [*report.feedback]
     for row in report.rows:
         messages += (*row.feedback, *(each for cell in row.cells for each in cell.feedback))
@@ -73,7 +73,7 @@ def test_named_coordinates_are_put_in_order(answer: object, make_exercise: Make)
     assert (note.message, note.span) == ("The values were ordered by their names.", None)
 
 
-def test_a_named_value_that_was_left_off_is_missing_where_it_belongs(make_exercise: Make) -> None:
+def test_an_omitted_named_value_is_missing_in_its_place(make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), ["z = 2 l", None, "x = l"])
     assert not_correct(report) == {("2", "1"): Verdict.MISSING}
 
@@ -81,7 +81,7 @@ def test_a_named_value_that_was_left_off_is_missing_where_it_belongs(make_exerci
 @pytest.mark.parametrize(
     ("answer", "messages"),
     [
-        # Not all have a name, so nobody can say where the rest belongs.
+        # Not all values have a name, so the order of the others is ambiguous.
         (
             ["y = k l", "l", "z = 2 l"],
             {"1": "This is named `y`, but x is asked for here."},
@@ -94,7 +94,7 @@ def test_a_named_value_that_was_left_off_is_missing_where_it_belongs(make_exerci
         ("l\nz = k l\n2 l", {"2": "This is named `z`, but y is asked for here."}),
     ],
 )
-def test_a_contradicting_name_is_never_read_silently(
+def test_a_contradicting_name_gets_a_message(
     answer: object, messages: Mapping[str, str], make_exercise: Make
 ) -> None:
     report = graded(make_exercise(POINT), answer)
@@ -110,12 +110,12 @@ def test_a_contradicting_name_is_never_read_silently(
             assert answer[slice(*message.span)] == "z ="
 
 
-def test_a_coordinate_that_is_not_asked_for_is_named(make_exercise: Make) -> None:
+def test_an_unexpected_coordinate_is_named(make_exercise: Make) -> None:
     report = graded(make_exercise(PLANE), ["l", "z = k l"])
     assert not_correct(report) == {("2", "1"): Verdict.UNREADABLE}
 
 
-def test_a_named_zero_behind_two_values_is_left_aside(make_exercise: Make) -> None:
+def test_a_named_zero_after_two_values_is_ignored(make_exercise: Make) -> None:
     for answer in (
         ["x = l", "y = k l", "z = 0"],
         "x = l, y = k l, z = 0",
@@ -143,18 +143,18 @@ def test_other_names_are_read_with_one_note(answer: object, make_exercise: Make)
 
 
 @pytest.mark.parametrize("phi", ["φ", r"\phi", "phi", r"\varphi", "Phi"])
-def test_components_go_by_the_names_that_the_exercise_has(phi: str, make_exercise: Make) -> None:
-    """The bare 30 is read as an angle in degrees, though it stands where a length is asked for."""
+def test_components_are_ordered_by_the_names_in_the_exercise(phi: str, make_exercise: Make) -> None:
+    """The bare 30 is read as an angle in degrees, although it is in the place of a length."""
     answer = [f"{phi} = phi + 30", "p_y = k l", "px = l"]
     report = graded(make_exercise(POSTURE), answer, "degrees")
     assert full_marks(report), report
     only(report, "ordered_by_names")
 
 
-def test_a_bare_coordinate_says_which_of_two_vectors_it_is_of_to_nobody(
+def test_a_bare_coordinate_of_two_vectors_is_ambiguous(
     make_exercise: Make,
 ) -> None:
-    """Of (v_x, v_y, ω_x, ω_y) the full names are known, and no x alone."""
+    """In (v_x, v_y, ω_x, ω_y) the full names are known, but a bare x is ambiguous."""
     exercise = make_exercise(TWIST)
     full = ["omega_x = 3", "ω_y = 4", "vx = 1", "v_{y} = 2"]
     assert full_marks(graded(exercise, full))
@@ -188,7 +188,7 @@ def test_named_angles_are_put_in_order(exercise: str, answer: object, make_exerc
         (euler("XYZ", '["phi", "psi", "1"]', "fixed"), ("gamma", "beta", "alpha")),
     ],
 )
-def test_names_that_textbooks_share_out_otherwise_move_nothing(
+def test_names_that_textbooks_use_differently_move_nothing(
     exercise: str, names: tuple[str, ...], make_exercise: Make
 ) -> None:
     values = ("phi", "psi", "1")
@@ -227,7 +227,7 @@ def with_row(number: int, *cells: object) -> list[list[object]]:
         with_row(1, "d_1 = 0", r"\alpha_{1} = 90deg", "θ₁ = theta1", "a(1) = R"),
         with_row(2, "q2 = theta2", "d2 = 0", "a_{i} = L1", "α_i = 0"),
         with_row(3, "offset = 0", "twist = 0", "length = L2", "angle = theta3"),
-        # In the modified convention a and α have the index of the row before.
+        # In the modified convention a and α have the index of the previous row.
         with_row(3, "d_3 = 0", "alpha_2 = 0", "a_2 = L2", "theta_3 = theta3"),
         [
             ["d_0 = 0", "a_0 = R", "alpha_0 = 90deg", "theta_0 = theta1"],
@@ -248,7 +248,7 @@ def test_named_cells_are_put_in_their_columns(answer: object, make_exercise: Mak
     assert "equation" not in all_codes(report)
 
 
-def test_names_of_several_rows_are_told_once(make_exercise: Make) -> None:
+def test_names_in_several_rows_get_one_note(make_exercise: Make) -> None:
     answer = [[f"theta{i + 1} = {row[3]}", *row[:3]] for i, row in enumerate(RIGHT)]
     named = [[row[0], f"a = {row[1]}", f"alpha = {row[2]}", f"d = {row[3]}"] for row in answer]
     report = graded(make_exercise(TABLE), named)
@@ -281,7 +281,7 @@ def test_names_of_several_rows_are_told_once(make_exercise: Make) -> None:
         ),
     ],
 )
-def test_the_name_of_another_cell_makes_a_cell_unreadable(
+def test_a_cell_with_the_name_of_another_is_unreadable(
     answer: object, place: tuple[str, str], sentence: str, make_exercise: Make
 ) -> None:
     report = graded(make_exercise(TABLE), answer)
@@ -307,7 +307,7 @@ def test_other_names_in_a_table_are_read_with_one_note(answer: object, make_exer
 
 
 def test_a_wrong_variable_keeps_its_own_message(make_exercise: Make) -> None:
-    """θ2 = θ2 in row 1 says the same on both sides: the slip is the variable's."""
+    """The slip in θ2 = θ2 in row 1 is the variable, not the name."""
     report = graded(make_exercise(TABLE), with_row(1, "R", "90deg", "0", "theta2 = theta2"))
     assert cell(report, "1", "theta").verdict is Verdict.INCORRECT
 
@@ -320,7 +320,7 @@ MATRIX = one_part(
 
 
 def matrix_with(first: str) -> list[list[str]]:
-    """The right matrix with this text as the entry in row 1, column 2."""
+    """Return the right matrix with this text as the entry in row 1, column 2."""
     return [["1", first, "3"], ["4", "5", "6"], ["7", "8", "9"]]
 
 
@@ -340,7 +340,7 @@ def test_a_name_that_fits_an_entry_is_read(name: str, make_exercise: Make) -> No
 @pytest.mark.parametrize(
     "name", ["T(2,1)", "r21", "r_{32}", r"\mathbf{R}_{13}", "T[1][0]", "A_1(3,3)", "h_{2,2}"]
 )
-def test_the_index_of_another_entry_makes_one_unreadable(name: str, make_exercise: Make) -> None:
+def test_an_entry_with_the_index_of_another_is_unreadable(name: str, make_exercise: Make) -> None:
     exercise = make_exercise(MATRIX)
     rows = matrix_with(f"{name} = 2")
     pasted = "\n".join(" ; ".join(row) for row in rows)
@@ -354,25 +354,25 @@ def test_the_index_of_another_entry_makes_one_unreadable(name: str, make_exercis
         )
 
 
-def test_a_declared_name_is_no_index(make_exercise: Make) -> None:
+def test_a_declared_name_is_not_an_index(make_exercise: Make) -> None:
     setting = '[symbols]\na21 = { kind = "length", description = "a length" }\n'
     exercise = one_part("matrix", 'quantity = "number"\nexpected = [["1", "2"]]', setting)
     assert full_marks(graded(make_exercise(exercise), [["1", "a21 = 2"]]))
 
 
 @pytest.mark.parametrize("gap", [" " * 7900, "\n" * 7900, " \t" * 3950])
-def test_a_name_full_of_blanks_is_read_at_once(gap: str, make_exercise: Make) -> None:
-    """A pattern that tried every way to share out the blanks would take seconds."""
+def test_a_name_with_many_blanks_is_read_in_linear_time(gap: str, make_exercise: Make) -> None:
+    """A pattern that backtracks over the blanks would take seconds."""
     answer = matrix_with(f"r_1{gap}_2 = 2")
     start = time.thread_time()
     graded(make_exercise(MATRIX), answer)
     assert time.thread_time() - start < 0.5
 
 
-# --- notes that are told once
+# --- notes that are shown once
 
 
-def test_notes_whose_words_are_enough_are_told_once(catalogue: Mapping[str, Exercise]) -> None:
+def test_notes_that_need_no_span_are_shown_once(catalogue: Mapping[str, Exercise]) -> None:
     answer = ["A1 c1 + A2 c12 + A1 - a1", "A1 s1 + A2 s12"]
     report = part(handed_in(catalogue["planar-rr"], {"position": answer}), "position")
     assert full_marks(report), report
@@ -383,7 +383,7 @@ def test_notes_whose_words_are_enough_are_told_once(catalogue: Mapping[str, Exer
         assert note.span is None
 
 
-def test_a_note_on_one_cell_stays_there_with_its_place(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_note_on_one_cell_keeps_its_span(catalogue: Mapping[str, Exercise]) -> None:
     answer = ["x = a1 c1 + a2 c12", "a1 s1 + a2 s12"]
     report = part(handed_in(catalogue["planar-rr"], {"position": answer}), "position")
     [note] = cell(report, "1", "1").feedback
@@ -404,7 +404,7 @@ def test_an_object_and_lines_with_colons_are_read_by_name(
     assert full_marks(graded(make_exercise(POINT), answer))
 
 
-def test_an_object_may_leave_a_value_off(make_exercise: Make) -> None:
+def test_an_object_may_omit_a_value(make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), {"z": "2 l", "x": "l"})
     assert [row.verdict for row in report.rows] == [
         Verdict.CORRECT,
@@ -416,7 +416,7 @@ def test_an_object_may_leave_a_value_off(make_exercise: Make) -> None:
 @pytest.mark.parametrize(
     "answer", [{}, {"u": "l", "y": "k l"}, {"x": "l", "p_x": "l"}, dict.fromkeys("xyzw", "l")]
 )
-def test_keys_without_a_place_of_their_own_are_refused(answer: object, make_exercise: Make) -> None:
+def test_keys_that_share_a_place_are_refused(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), answer)
     assert report.verdict is Verdict.UNREADABLE
     assert all_codes(report) == {"wrong_shape"}

@@ -2,11 +2,13 @@
 
 import tomllib
 from pathlib import Path
+from random import Random
 from typing import Final
 
 import pytest
 
 from service.grids import GridError, RobotTable, read_robot
+from tests.grids.scripts.drawn_scripts import draw_script
 
 SCRIPTS: Final = tomllib.loads(
     Path(__file__).with_name("robot_scripts.toml").read_text(encoding="utf-8")
@@ -14,6 +16,7 @@ SCRIPTS: Final = tomllib.loads(
 JOINT: Final = "j1 = rigidBodyJoint('j1','revolute');"
 PLACED: Final = "setFixedTransform(j1,[0 0 q1 0],'dh')"
 THIRTEEN: Final = "\n".join(f"L({i})=Link([0 0 1 0]);" for i in range(1, 14))
+LISTED: Final = "L = [RevoluteDH(a=a1), RevoluteDH(a=a2)]"
 UNREAD: Final = "unread_script"
 CASES: Final = [(convention, name) for convention in SCRIPTS for name in SCRIPTS[convention]]
 
@@ -34,6 +37,22 @@ def test_each_link_is_a_row(convention: str, name: str) -> None:
     found = table(case["script"])
     assert rows(found) == case["rows"]
     assert (found.convention, found.has_headers) == (convention, False)
+
+
+@pytest.mark.parametrize("blank", [" ", "\u00a0", "\u2009"], ids=["plain", "no-break", "thin"])
+@pytest.mark.parametrize(
+    "count", [40, pytest.param(2000, marks=pytest.mark.campaign)], ids=["few", "many"]
+)
+def test_drawn_scripts_in_python_are_read_exactly(blank: str, count: int) -> None:
+    random = Random(7)
+    for _ in range(count):
+        drawn = draw_script(random)
+        text = drawn.text.replace(", ", f",{blank}")
+        found = table(text)
+        assert [["".join(cell.text.split()) for cell in row] for row in found.grid.rows] == [
+            ["".join(cell.split()) for cell in row] for row in drawn.rows
+        ], text
+        assert found.convention == drawn.convention
 
 
 def test_a_dictionary_of_columns_keeps_its_headers() -> None:
@@ -75,6 +94,15 @@ def test_a_note_lists_letters_with_assigned_numbers() -> None:
         (f"{JOINT}\nsetFixedTransform(j1,[0 0 0 pi/2],'dh')", UNREAD, "pi/2"),
         ("setFixedTransform(j1,[a1 0 d1 0],'dh')", UNREAD, None),
         ("setFixedTransform(j1,trvec2tform([0 0 1]))", UNREAD, None),
+        # lists of links that are not all in the text, or change afterwards
+        ("L1=Link([0 0 a1 0]);\nr=SerialLink([L1 L2 L3 L4])", UNREAD, "[L1 L2 L3 L4]"),
+        ("r = SerialLink([L(1) L(2) L(3) L(4)])", UNREAD, "[L(1) L(2) L(3) L(4)]"),
+        ("r = DHRobot([RevoluteDH(), B, C, D])", UNREAD, "[RevoluteDH(), B, C, D]"),
+        ("r = DHRobot([RevoluteDH()] + [RevoluteDH()])", UNREAD, "[RevoluteDH()] + [RevoluteDH()]"),
+        (f"{LISTED}\nL.reverse()", UNREAD, "L.reverse()"),
+        (f"{LISTED}\ndel L[0]", UNREAD, "del L[0]"),
+        (f"{LISTED}\nL = L[1:]", UNREAD, "L = L[1:]"),
+        (f"{LISTED}\nL[0].a *= 2", UNREAD, "L[0].a *= 2"),
         # the joint's type
         ("L1 = Link('a', 1, 'alpha', 0);", UNREAD, "Link('a', 1, 'alpha', 0)"),
         ("L1 = Link('theta', 0, 'd', 1);", UNREAD, "Link('theta', 0, 'd', 1)"),

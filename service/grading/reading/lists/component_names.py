@@ -1,4 +1,4 @@
-"""The names of a list's values, such as x, p_y, φ or pitch -> the places that they may have."""
+"""Find the places in a list that names such as x, p_y, φ or pitch may mean."""
 
 import re
 import unicodedata
@@ -16,11 +16,11 @@ _STYLE: Final = re.compile(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)(?![a-z])|\\begin\{[a-z]+\*?\}"
     r"|\b(?:let|const|var|double|float|auto)\s"
 )
-# The arguments of x(q1, q2) are no part of its name.
+# The name of x(q1, q2) is x, without the arguments.
 _ARGUMENTS: Final = re.compile(r"[(\[][^()\[\]]*[^\W\d][^()\[\]]*[)\]]")
 _GREEK: Final = re.compile(f"[{greek.CLASS}]")
 _WORD: Final = re.compile(r"[a-z]+|[0-9]+")
-# x, p_x, px, x_e, x_{ee}; but xy is no coordinate.
+# x, p_x, px, x_e, x_{ee}, but not xy.
 _COORDINATE: Final = re.compile(
     r"(?:[a-w]|pos)?([xyz])|([xyz])(?:e|ee|ef|eff|end|p|o|n|t|tcp|tip|tool)"
 )
@@ -29,9 +29,10 @@ _NO_MARKS: Final = str.maketrans("", "", "{}$*^' ")
 
 @dataclass(frozen=True, slots=True)
 class ListNames:
-    """The names in a list: ``labels`` say what is asked for in each place, of which quantity.
+    """The names that the values of a list may have: ``labels`` are the expected ones, in order.
 
-    ``places`` has the names by their key, ``coordinates`` those that end in x, y or z.
+    ``quantities`` are those of the values. ``places`` maps keys of names to places, ``coordinates``
+    does so for x, y and z.
     """
 
     labels: tuple[str, ...]
@@ -40,10 +41,10 @@ class ListNames:
     coordinates: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     def places_of(self, names: Sequence[LeftSide | None], vocabulary: Vocabulary) -> list[Places]:
-        """The places that each of these names may have; None where a name tells none."""
+        """Return the places that each name may have; None for a name that does not imply any."""
         words = [_words(name.name) if name else [] for name in names]
         letters = [letter for each in words if (letter := _coordinate(each))]
-        # x_1 and y_1 are those of frame 1, but x_1 and x_2 the first and the second of something.
+        # x_1 and y_1 are coordinates in frame 1, but x_1 and x_2 are numbered values.
         of_frames = 1 < len(letters) == len(set(letters))
         return [
             self._places(name.name, each, self.quantities[i], vocabulary, of_frames=of_frames)
@@ -75,7 +76,7 @@ class ListNames:
 
 @lru_cache(maxsize=256)
 def names_of_coordinates(letters: str) -> ListNames:
-    """The names of a point's coordinates, which are asked for in the order of ``letters``."""
+    """Return the names of a point's coordinates, expected in the order of ``letters``."""
     lengths: tuple[Kind, ...] = tuple("length" for _ in letters)
     return ListNames((*letters,), lengths, coordinates=_by_letter(letters))
 
@@ -84,7 +85,7 @@ def names_of_coordinates(letters: str) -> ListNames:
 def names_of_components(
     components: tuple[tuple[str, Kind], ...], vocabulary: Vocabulary
 ) -> ListNames:
-    """The names of the components of a vector, as an exercise has them, with their quantities."""
+    """Return the names of the components of a vector, given as (name, quantity) by the exercise."""
     names = tuple(name for name, _ in components)
     keys: dict[str, list[int]] = {}
     for i, name in enumerate(names):
@@ -93,7 +94,7 @@ def names_of_components(
             keys.setdefault(key, []).append(i)
     letters = [_coordinate(_words(name)) for name in names]
     known = [letter for letter in letters if letter]
-    # Of (v_x, ω_x) nobody can say which is meant by x; and one z alone is no point.
+    # In (v_x, ω_x) x is ambiguous, and a single z is not a point.
     is_point = len(known) > 1 and len(set(known)) == len(known)
     return ListNames(
         names,
@@ -105,10 +106,10 @@ def names_of_components(
 
 @lru_cache(maxsize=256)
 def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
-    """The names of three angles about the axes ``turns``, about fixed axes or moving ones.
+    """Return the names of three angles about the axes ``turns``, which are fixed or moving.
 
-    Textbooks differ on α, γ about fixed axes, on φ, ψ about three different axes, and on roll and
-    yaw: these may stand at either end.
+    Textbooks order α, γ (about fixed axes), φ, ψ (about three different axes), and roll and yaw
+    differently. So these names may be first or last.
     """
     is_euler = turns[0] == turns[2]
     inner, outer = (1,), (0, 2)
@@ -128,21 +129,21 @@ def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
 
 
 def _by_letter(letters: Iterable[str | None]) -> dict[str, tuple[int, ...]]:
-    """The places of x, y and z, none for one that is not asked for."""
+    """Return the places of x, y and z in ``letters``, an empty tuple for an absent one."""
     listed = list(letters)
     return {axis: tuple(i for i, each in enumerate(listed) if each == axis) for axis in "xyz"}
 
 
 def _is_another(symbol: Symbol, quantity: Kind) -> bool:
-    """Whether a declared symbol is of another quantity: θ1 where a length is asked for."""
+    """True if a declared symbol has another quantity, such as θ1 if a length is expected."""
     return quantity != "number" and symbol.kind != "number" and symbol.kind != quantity
 
 
 def _words(name: str) -> list[str]:
-    """The words and numbers of a name in small letters, with Greek letters by their names."""
+    """Return the words and numbers of a name in small letters, Greek letters spelled out."""
     plain = _GREEK.sub(lambda found: f" {greek.NAMES[found[0]]} ", _plain(name)).lower()
     words = _WORD.findall(plain.replace("\\var", "\\"))
-    # A script in front names the frame: {}^0 p_x.
+    # A leading superscript is a frame: {}^0 p_x.
     return words[1:] if len(words) > 1 and words[0].isdigit() else words
 
 
@@ -151,17 +152,17 @@ def _key(words: Sequence[str]) -> str:
 
 
 def _plain(name: str) -> str:
-    """A name without styles and arguments."""
+    """Return a name without styles and arguments."""
     return unicodedata.normalize("NFKC", _ARGUMENTS.sub(" ", _STYLE.sub(" ", name)))
 
 
 def _symbol(name: str, vocabulary: Vocabulary) -> Symbol | None:
-    """The declared symbol of this name."""
+    """Return the declared symbol with this name, if there is one."""
     plain = _plain(name)
     return vocabulary.by_name.get(normal_form(plain.translate(_NO_MARKS)))
 
 
 def _coordinate(words: Sequence[str]) -> str | None:
-    """The one coordinate that a name has: x of p_x and of x_e."""
+    """Return the coordinate in a name, x for p_x and x_e; None unless there is exactly one."""
     found = [match[1] or match[2] for word in words if (match := _COORDINATE.fullmatch(word))]
     return found[0] if len(found) == 1 else None

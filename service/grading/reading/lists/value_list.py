@@ -1,4 +1,4 @@
-"""A list of values as handed in, JSON or pasted text -> its entries and their numbers."""
+"""Read a list of values, from JSON or pasted text, as entries and their numbers."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,7 +19,7 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True, slots=True)
 class StudentValues:
-    """A list of values as read: entries, and numbers ``(n, SAMPLES)``, NaN where there are none."""
+    """A list of values as read: entries, and numbers ``(n, SAMPLES)``, NaN if unreadable."""
 
     entries: list[Entry]
     quantities: Sequence[Kind]
@@ -27,11 +27,11 @@ class StudentValues:
 
     @property
     def expressions(self) -> list[Expression | None]:
-        """The expressions of the values; None where nothing could be read."""
+        """The expressions of the values; None for a value that could not be read."""
         return [entry.expression for entry in self.entries]
 
 
-# What may stand behind the values asked for: the third coordinate of a point in the plane, and the
+# Figures that may follow the expected values: the third coordinate of a point in the plane, or the
 # 1 of homogeneous coordinates.
 Tail = tuple[str, ...]
 PLANAR: Final[Tail] = ("0",)
@@ -41,18 +41,18 @@ HOMOGENEOUS: Final[Tail] = ("1",)
 def read_list(
     answer: object, names: ListNames, reader: Reader, tails: Sequence[Tail] = ()
 ) -> StudentValues:
-    """The values of a list, one for each of the ``names`` asked for.
+    """Read a list of values, one for each of the expected ``names``.
 
-    A list may also be a column (a list of lists of one), a row in a list of its own, or pasted
-    text. Values that were left off at the end are missing. Values with names in front, as in
-    y = l1 s1, are put into the order of these; one with the name of another place is unreadable.
-    One of the ``tails`` may stand behind them, as in [x, y, 0]: it is left aside, with a note.
-    Raises UnreadableAnswerError where there is no list of the length asked for.
+    A list may also be a column (a list of lists with one value each), a row within a list, or
+    pasted text. Omitted values at the end are missing. Values with names, such as y = l1 s1, are
+    ordered by them; a value with the name of another place is unreadable. One of the ``tails`` may
+    follow the values, as in [x, y, 0]; it is ignored, with a note.
+    Raises UnreadableAnswerError if there is no list of the expected length.
     """
     if isinstance(answer, dict):
         answer = _by_keys(answer, names, reader)
     if isinstance(answer, str):
-        # Of the same length, so that a place in the text stays where it is.
+        # Both replacements keep the length, so that spans stay valid.
         answer = _NAME_WITH_COLON.sub(r"\1=", answer)
         entries = _pasted(_in_round_brackets(answer), names, reader, tails)
     else:
@@ -62,9 +62,9 @@ def read_list(
 
 
 def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
-    """The values of an object in the order that is asked for, by their keys: {"x": …, "y": …}.
+    """Return the values of an object such as {"x": …, "y": …} in the expected order.
 
-    Raises UnreadableAnswerError where a key has not exactly one place of its own.
+    Raises UnreadableAnswerError unless each key has exactly one place, and no two the same.
     """
     count = len(names.quantities)
     if not 0 < len(answer) <= count:
@@ -82,12 +82,12 @@ def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> 
     return values
 
 
-# A value to be read, and what becomes of its entry: a cell's is moved to its place in the text.
+# A value to be read, and a function that moves the spans of its entry to the whole pasted text.
 _Written = tuple[object, Callable[[Entry], Entry]]
 
 
 def _read(written: Sequence[_Written], names: ListNames, reader: Reader) -> list[Entry]:
-    """The entries of values as they were written, in the order of their names if they have any."""
+    """Return the entries of values, in the order of their names if they have any."""
     quantities = names.quantities
     written = [*written, *[_LEFT_OFF] * (len(quantities) - len(written))]
     raws = [raw for raw, _ in written]
@@ -126,16 +126,16 @@ def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Ta
 def _left_aside(
     values: Sequence[object], count: int, reader: Reader, tails: Sequence[Tail]
 ) -> Tail:
-    """The tail behind ``count`` values; none where no tail is all that stands there."""
-    behind = values[count:]
+    """Return the tail that follows ``count`` values; empty unless exactly one of ``tails`` does."""
+    following = values[count:]
     for tail in tails:
-        if len(tail) == len(behind) and all(map(partial(_is, reader), behind, tail)):
+        if len(tail) == len(following) and all(map(partial(_is_figure, reader), following, tail)):
             return tail
     return ()
 
 
-def _is(reader: Reader, raw: object, figure: str) -> bool:
-    """Whether a value is this figure; a 0 may have a name in front: z = 0."""
+def _is_figure(reader: Reader, raw: object, figure: str) -> bool:
+    """True if a value is the figure "0" or "1"; a 0 may have a name, as in z = 0."""
     if isinstance(raw, str):
         plain = _LATEX_BLANK.sub("", raw)
         name = name_of(plain, reader.vocabulary) if figure == "0" else None
@@ -146,14 +146,14 @@ def _is(reader: Reader, raw: object, figure: str) -> bool:
 def _with_notes(
     entries: Sequence[Entry], left_aside: Sequence[tuple[str, tuple[int, int] | None]]
 ) -> list[Entry]:
-    """The entries with notes on the last of them: which figures behind it were left aside."""
+    """Return the entries; the last one gets notes on the ignored figures that follow it."""
     *before, last = entries
     notes = [replace(_LEFT_ASIDE[figure], span=span) for figure, span in left_aside]
     return [*before, replace(last, findings=(*last.findings, *notes))]
 
 
 def _flat(answer: object) -> list[object]:
-    """The values of a list, of a column or of a single row; none for anything else."""
+    """Return the values of a list, of a column or of a single row; [] for anything else."""
     if not isinstance(answer, list):
         return []
     if len(answer) == 1 and isinstance(answer[0], list):
@@ -164,7 +164,7 @@ def _flat(answer: object) -> list[object]:
 
 
 def _in_round_brackets(text: str) -> str:
-    """The text with round brackets for <l1 c1, l1 s1>; each character stays at its place."""
+    """Replace angle brackets, as in <l1 c1, l1 s1>, by round ones without moving a character."""
     found = _IN_ANGLE_BRACKETS.fullmatch(text)
     if not found:
         return text
@@ -181,7 +181,7 @@ def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) 
     except GridError as error:
         entries = None
         if error.code in _OF_TABLES:
-            entries = _taken_apart(text, names, reader, tails)
+            entries = _split_values(text, names, reader, tails)
         if entries is None:
             raise UnreadableAnswerError(_from_grid_error(error, count)) from error
         return entries
@@ -189,7 +189,7 @@ def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) 
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
     left_aside = _left_aside([cell.text for cell in cells], count, reader, tails)
     if not is_list or len(cells) > count + len(left_aside):
-        entries = None if is_list else _taken_apart(text, names, reader, tails)
+        entries = None if is_list else _split_values(text, names, reader, tails)
         if entries is None:
             raise UnreadableAnswerError(_wrong_shape(count, len(cells) if is_list else 0))
         return entries
@@ -199,12 +199,12 @@ def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) 
     return _with_notes(entries, [*zip(left_aside, places, strict=True)])
 
 
-def _taken_apart(
+def _split_values(
     text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]
 ) -> list[Entry] | None:
-    """The values of a text with one on each line, or with semicolons or commas between them.
+    """Read the values of a text, one on each line or separated by semicolons or commas.
 
-    None where there are not as many as asked for, or nothing can be read of any.
+    Return None if their number is not the expected one, or none of them can be read.
     """
     count = len(names.quantities)
     for pieces in (_lines(text), _split(text, ";"), _split(text, ",")):
@@ -221,12 +221,12 @@ def _taken_apart(
 
 
 def _stripped(at: int, piece: str) -> tuple[int, str]:
-    """A piece of text without the blanks around it, and its place without them."""
+    """Return the start and text of a piece without the blanks around it."""
     return at + len(piece) - len(piece.lstrip()), piece.strip()
 
 
 def _lines(text: str) -> Iterator[tuple[int, str]]:
-    """The lines of a text, each with the place where it begins."""
+    """Yield the start and text of each line."""
     at = 0
     for line in text.splitlines(keepends=True):
         yield at, line.rstrip("\r\n")
@@ -234,9 +234,9 @@ def _lines(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
-    """The pieces between separators, each with its place; brackets around all are left out.
+    """Yield the start and text of each piece between separators, without the outer brackets.
 
-    No pieces where [c1 -s1, 0] might be three values, as in MATLAB.
+    Yield nothing for a text such as [c1 -s1, 0], which has three values in MATLAB.
     """
     start, end = _inside(text)
     if text[:start].strip() == "[" and _NEW_VALUE.search(text):
@@ -251,7 +251,7 @@ def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
 
 
 def _inside(text: str) -> tuple[int, int]:
-    """The [start, end) of what stands in the brackets around all of a text; else of the text."""
+    """Return the [start, end) inside the brackets around a whole text, or of the trimmed text."""
     start, end = len(text) - len(text.lstrip()), len(text.rstrip())
     depth = 0
     for at in range(start, end):
@@ -262,7 +262,7 @@ def _inside(text: str) -> tuple[int, int]:
 
 
 def _shifted(entry: Entry, by: int) -> Entry:
-    """The entry with its spans counted from the start of the whole text."""
+    """Return the entry with all spans moved by ``by`` characters."""
     findings = tuple(
         replace(finding, span=(finding.span[0] + by, finding.span[1] + by))
         if finding.span
@@ -272,20 +272,20 @@ def _shifted(entry: Entry, by: int) -> Entry:
     return replace(entry, findings=findings)
 
 
-# A name at the begin of a line, with a colon behind it: "x: l1 c1".
+# A name and a colon at the start of a line: "x: l1 c1".
 _NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
 
-# A vector in angle brackets: before it, the opening one, the values, the closing one, behind it.
+# A vector in angle brackets. Groups: blanks, opening bracket, values, closing bracket, blanks.
 _IN_ANGLE_BRACKETS = re.compile(
     r"(\s*)(<|⟨|\\langle(?![A-Za-z]))([^<>⟨⟩|]+)(>|⟩|\\rangle(?![A-Za-z]))(\s*)"
 )
 
 _LATEX_BLANK = re.compile(r"\\(?:q?quad(?![A-Za-z])|[,;:! ])")
 
-# A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
+# A blank and a sign directly before a value: in MATLAB's brackets a new value begins there.
 _NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
 
-# Refusals that speak of tables, and the sentence that a list gets in their place.
+# The codes of errors whose messages are about tables, and the sentence for a list instead.
 _OF_TABLES = {
     "no_grid": "",
     "named_values": "",
@@ -307,7 +307,10 @@ _LEFT_ASIDE = {
 
 
 def _wrong_shape(count: int, found: int) -> Finding:
-    """The finding that an answer is no such list; ``found`` counts the values of one too long."""
+    """Return the finding that an answer is not a list of ``count`` values.
+
+    ``found`` is the number of values if there are too many, else 0.
+    """
     return reading_error(
         "wrong_shape",
         f"Write a list of {counted(count)}{f'; yours has {found}' if found else ''}.",
@@ -315,7 +318,7 @@ def _wrong_shape(count: int, found: int) -> Finding:
 
 
 def _from_grid_error(error: GridError, count: int) -> Finding:
-    """The finding that a pasted text is no list, without a word of rows and columns."""
+    """Return the finding that a pasted text is not a list; it does not mention rows and columns."""
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding

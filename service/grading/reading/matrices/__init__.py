@@ -1,1 +1,1 @@
-"""Matrices and screw axes as handed in -> entries."""
+"""Read submitted matrices and screw axes as entries."""

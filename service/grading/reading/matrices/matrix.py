@@ -1,4 +1,4 @@
-"""A matrix as handed in, nested lists or pasted text -> its entries and their values."""
+"""Read a submitted matrix, nested lists or pasted text, as entries and their values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -28,7 +28,7 @@ Quantities = Sequence[Sequence[Kind]]
 class StudentMatrix:
     """A matrix as read: its entries and their values ``(rows, columns, SAMPLES)``.
 
-    A value is NaN where the entry has none.
+    A value is NaN if its entry is unreadable or undefined.
     """
 
     entries: list[list[Entry]]
@@ -37,31 +37,30 @@ class StudentMatrix:
 
     @property
     def expressions(self) -> list[Expression | None]:
-        """The expressions of the entries, row by row; None where nothing could be read."""
+        """The expressions of the entries, row by row; None for an unreadable entry."""
         return [entry.expression for row in self.entries for entry in row]
 
     def values_at(self, samples: Samples) -> Numbers:
-        """The values at other samples."""
+        """Return the values at other samples."""
         return matrix_values(self.entries, self.quantities, samples)
 
 
 def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
-    """The matrix in a nested list or a pasted text, with one entry for each quantity.
+    """Read the matrix in a nested list or a pasted text, with one entry for each quantity.
 
-    Rows that were left off at the end are missing. A row of the wrong length is unreadable: nobody
-    can say which entry is which. Raises UnreadableAnswerError where there are no rows at
-    all, or too many.
+    Omitted rows at the end are missing. A row of the wrong length is unreadable, because its
+    entries are ambiguous. Raises UnreadableAnswerError if there are no rows at all, or too many.
     """
     return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
 
 
 def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> StudentMatrix:
-    """The matrix in a pasted grid. Raises UnreadableAnswerError where it has another size."""
+    """Read the matrix in a pasted grid. Raises UnreadableAnswerError if it has another size."""
     return matrix_of_entries(_of_grid(grid, quantities, reader), quantities, reader)
 
 
 def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) -> StudentMatrix:
-    """One of several matrices that cannot be read: the first entry says why."""
+    """Return an unreadable matrix; its first entry has the finding."""
     entries = [_unreadable_row(None, kinds) for kinds in quantities]
     entries[0] = _unreadable_row(finding, quantities[0])
     return matrix_of_entries(entries, quantities, reader)
@@ -70,13 +69,13 @@ def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) 
 def matrix_of_entries(
     entries: list[list[Entry]], quantities: Quantities, reader: Reader
 ) -> StudentMatrix:
-    """The matrix of these rows; those that were left off at the end are missing."""
+    """Return the matrix with these rows; omitted rows at the end are missing."""
     entries = [*entries, *([MISSING] * len(row) for row in quantities[len(entries) :])]
     return StudentMatrix(entries, quantities, matrix_values(entries, quantities, reader.samples))
 
 
 def matrix_values(entries: list[list[Entry]], quantities: Quantities, samples: Samples) -> Numbers:
-    """The values of a matrix's entries, ``(rows, columns, SAMPLES)``; NaN where there are none."""
+    """Return the values of a matrix's entries, ``(rows, columns, SAMPLES)``; NaN if unreadable."""
     flat = entry_values(list(chain(*entries)), list(chain(*quantities)), samples)
     return flat.reshape(len(entries), len(quantities[0]), -1)
 
@@ -99,7 +98,7 @@ def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[En
 
 
 def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:
-    """The entry in a place; unreadable where it is named after another."""
+    """Return the entry in a place; unreadable if it has the name of another place."""
     i, j = place
     entry = reader.read(raw, quantities[i][j])
     if entry.findings:
@@ -112,7 +111,7 @@ def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: 
 def _of_wrong_size(
     found: str, quantities: Quantities, span: tuple[int, int] | None = None
 ) -> Finding:
-    """The finding on a matrix of the size ``found``, "" where there is none."""
+    """Return the finding on a matrix of the size ``found``, which is "" if there is no matrix."""
     size = f"; yours is {found}" if found else ""
     message = f"Write {len(quantities)} rows with {len(quantities[0])} entries each{size}."
     return reading_error("wrong_shape", message, span)
@@ -121,14 +120,17 @@ def _of_wrong_size(
 def _of_wrong_length(
     found: int | None, wanted: int, span: tuple[int, int] | None = None
 ) -> list[Entry]:
-    """The row of ``found`` entries, None where it is no list."""
+    """Return an unreadable row that has ``found`` entries instead of ``wanted``.
+
+    ``found`` is None if the row is not a list.
+    """
     counted = "" if found is None else f"; it has {found}"
     message = f"Write {wanted} entries in this row{counted}."
     return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
 
 
 def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[Entry]:
-    """Unreadable entries; the first says why, so that it is told once."""
+    """Return a row of unreadable entries; only the first has the finding, so it is shown once."""
     first = unreadable(finding) if finding else UNREADABLE
     return [first, *[UNREADABLE] * (len(cells) - 1)]
 

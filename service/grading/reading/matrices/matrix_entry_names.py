@@ -1,4 +1,4 @@
-"""Names in front of a matrix's entries (T(1,4) = l1 c1, r_12 = -s1): the entries they name."""
+"""Names of matrix entries, as in T(1,4) = l1 c1 and r_12 = -s1, and the entries they mean."""
 
 import re
 import unicodedata
@@ -9,8 +9,8 @@ from service.expressions.vocabulary.symbols import normal_form
 from service.grading.feedback import Finding
 from service.grading.reading.written_names import misnamed_value, name_of
 
-# Letters of whole matrices: a p_12 or l_12 is no entry of one. Frames may stand at the letter where
-# the index is in brackets: T_0^4(1,4).
+# Letters that name matrices; p_12 and l_12 are not matrix entries. If the index is in brackets, the
+# letter may have frames: T_0^4(1,4).
 _LETTER: Final = r"\\?(?:[a-z]+\s*\{\s*)?(?<![a-z])[aghjmrt]\s*\}?"
 _GLUED: Final = re.compile(rf"{_LETTER}_?\{{?\s*([1-9])\s*,?\s*([1-9])\s*\}}?")
 _IN_BRACKETS: Final = re.compile(
@@ -22,9 +22,10 @@ _IN_BRACKETS: Final = re.compile(
 def misnamed_entry(
     raw: object, place: tuple[int, int], size: tuple[int, int], vocabulary: Vocabulary
 ) -> Finding | None:
-    """The finding that a value is named after another entry than that in ``place``, from 0.
+    """Return the finding that a value has the name of an entry in another place than ``place``.
 
-    ``size`` is the matrix's, in rows and columns. Indices in square brackets may count from 0.
+    ``place`` counts from 0; ``size`` is the matrix's rows and columns. Indices in square brackets
+    may count from 0.
     """
     name = name_of(raw, vocabulary)
     if name is None or normal_form(name.name) in vocabulary.by_name:
@@ -37,7 +38,7 @@ def misnamed_entry(
 
 
 def _places_of(name: LeftSide) -> list[tuple[int, int]]:
-    """The entries that a name may mean, counted from 0."""
+    """Return the entries that a name may mean, counted from 0."""
     plain = unicodedata.normalize("NFKC", name.name).lower()
     found = _GLUED.fullmatch(plain) or _IN_BRACKETS.fullmatch(plain)
     if found is None:

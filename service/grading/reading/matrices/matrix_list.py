@@ -1,4 +1,4 @@
-"""Several matrices in one pasted text -> matrices, in the order of the links in their names."""
+"""Read several matrices in one pasted text, and order them by the link numbers in their names."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -27,11 +27,10 @@ from service.grids import Grid, GridError, NamedGrid, SourceText, read_grids
 def read_matrices(
     text: str, labels: Sequence[str], quantities: Quantities, reader: Reader
 ) -> list[StudentMatrix]:
-    """The matrices of a pasted text, one for each label; those that are not there are missing.
+    """Read the matrices of a pasted text, one for each label; absent ones have missing entries.
 
-    Matrices go by their names, where they have any. One that cannot be read costs only itself.
-    Raises UnreadableAnswerError where the text holds no matrices, or it cannot be told which is
-    which.
+    Matrices are identified by their names, if they have any. An unreadable one affects only itself.
+    Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
     """
     if not text.strip():
         return [matrix_of_entries([], quantities, reader) for _ in labels]
@@ -43,9 +42,9 @@ def read_matrices(
 def grids_in_order(
     text: str, labels: Sequence[str], reader: Reader
 ) -> tuple[list[Grid | GridError | None], list[Finding]]:
-    """The grid for each label, or why it cannot be read, or None; and notes on the order.
+    """Return the grid for each label (an error if unreadable, None if absent), and notes on it.
 
-    Raises UnreadableAnswerError as ``read_matrices`` does.
+    Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
     """
     try:
         grids = pasted_grids(text, reader)
@@ -64,9 +63,9 @@ def grids_in_order(
 def places_in_list(
     answer: Sequence[object], labels: Sequence[str]
 ) -> tuple[list[int], list[Finding]]:
-    """The place of each matrix of a list, by the names in front of those that are texts; and notes.
+    """Return the place of each matrix of a list, by the names in those that are texts; and notes.
 
-    Raises UnreadableAnswerError where the names contradict each other.
+    Raises UnreadableAnswerError if the names contradict each other.
     """
     places = [*range(len(answer))]
     named = [_named(each) for each in answer]
@@ -84,7 +83,7 @@ def places_in_list(
 
 
 def _named(answer: object) -> NamedGrid | None:
-    """One matrix of a list with the name in front of it; None where nothing is written."""
+    """Return a matrix of a list with its name; None if the matrix is empty."""
     nameless = NamedGrid(SourceText.of(""), GridError("no_grid", "", (0, 0)))
     if not isinstance(answer, str):
         return None if answer is None else nameless
@@ -97,14 +96,14 @@ def _named(answer: object) -> NamedGrid | None:
 
 
 def _noted_once(grids: list[Grid | GridError | None]) -> list[Grid | GridError | None]:
-    """The grids, of which only the first with a note has it."""
-    told: set[str] = set()
+    """Return the grids with each note only on the first grid that has it."""
+    noted: set[str] = set()
     found: list[Grid | GridError | None] = []
     for each in grids:
         grid = each
         if isinstance(grid, Grid):
-            grid = replace(grid, notes=tuple(n for n in grid.notes if n.code not in told))
-            told |= {note.code for note in grid.notes}
+            grid = replace(grid, notes=tuple(n for n in grid.notes if n.code not in noted))
+            noted |= {note.code for note in grid.notes}
         found.append(grid)
     return found
 
@@ -121,7 +120,7 @@ def _matrix(grid: Grid | GridError | None, quantities: Quantities, reader: Reade
 
 
 def with_notes(matrix: StudentMatrix, notes: Sequence[Finding]) -> StudentMatrix:
-    """The matrix with notes on its first entry."""
+    """Return the matrix with notes on its first entry."""
     [first, *row], *rows = matrix.entries
     entry = replace(first, findings=(*first.findings, *notes))
     return replace(matrix, entries=[[entry, *row], *rows])
@@ -130,7 +129,7 @@ def with_notes(matrix: StudentMatrix, notes: Sequence[Finding]) -> StudentMatrix
 def _places(
     grids: Sequence[NamedGrid], labels: Sequence[str]
 ) -> tuple[list[int | None], list[Finding]]:
-    """The place of each matrix, from 0, None for one that is left aside; and notes on them."""
+    """Return the place of each matrix, from 0, None for an ignored one; and notes on the places."""
     texts, count = [each.name.text for each in grids], len(labels)
     changed = [is_changed(text) for text in texts]
     products = [is_product(text) and not is_changed(text) for text in texts]
@@ -167,7 +166,7 @@ def _places(
 def _without_values(
     grids: Sequence[NamedGrid], labels: Sequence[str], reader: Reader
 ) -> tuple[list[NamedGrid], list[Finding]]:
-    """The matrices without what is none: theta1 = pi/2, A1*A2 = T; and notes on that."""
+    """Remove assignments that are not matrices, such as theta1 = pi/2, and return notes on them."""
     matrices = [each for each in grids if not _is_value(each, reader)]
     notes = [_left_aside(each, _asked_for(labels)) for each in grids if _is_value(each, reader)]
     return matrices, notes
@@ -181,7 +180,7 @@ def _is_value(each: NamedGrid, reader: Reader) -> bool:
 
 
 def _asked_for(labels: Sequence[str]) -> str:
-    """The matrices that are asked for: "A1 and A2", "A1 to A6"."""
+    """Return the names of the expected matrices: "A1 and A2", "A1 to A6"."""
     between = "and" if len(labels) == 2 else "to"
     return f"A{labels[0]} {between} A{labels[-1]}"
 

@@ -1,7 +1,7 @@
-r"""Screw axes as handed in, pasted or as JSON -> a row of six numbers (ω; v) for each joint.
+r"""Read submitted screw axes, pasted or JSON, as a row of six numbers (ω; v) for each joint.
 
-They come as the rows of one matrix, as its columns, as vectors with names (``S1 = […]``), in
-halves (``w1 = […], v1 = […]``), or in a table with a column for ω and one for v.
+Students write them as the rows or the columns of one matrix, as named vectors (``S1 = […]``), as
+named halves (``w1 = […], v1 = […]``), or as a table with a column for ω and one for v.
 """
 
 import re
@@ -18,13 +18,13 @@ from service.grids import Grid, GridCell, GridError, SourceText
 WIDTH: Final = 6
 _HALF: Final = 3
 
-# A transposed vector is the same axis. What is hidden becomes blanks: places stay as typed.
+# A transposed vector is the same axis. Its mark is replaced by blanks, so that spans stay valid.
 _TRANSPOSED: Final = re.compile(
     r"(?<=[\])}])[ \t]*(?:\^[ \t]*(?:\{[ \t]*)?(?:\\(?:top|intercal)(?![A-Za-z])"
     r"|(?:\\(?:mathrm|mathsf|text)[ \t]*\{?[ \t]*)?T(?![A-Za-z]))[ \t]*\}{0,2}"
     r"|\.T(?!\w)|\.?'|\.transpose\(\))"
 )
-# Numbers in round or curly brackets behind a name: S1 = (0, 0, 1, 0, 0, 0).
+# Numbers in round or curly brackets after a name: S1 = (0, 0, 1, 0, 0, 0).
 _BRACKETED: Final = re.compile(
     r"(?<=[=:])([ \t]*)[({]((?:[^(){}\[\]]|\([^(){}\[\]]{0,60}\)){1,400})[)}]"
 )
@@ -32,7 +32,7 @@ _COMMA: Final = re.compile(r",")
 _STYLE: Final = re.compile(r"\\(?:hat|vec|bar|tilde|bm|boldsymbol|mathbf|mathrm|mathit|text)")
 _OMEGA: Final = re.compile(r"\\?omega|[ωw]")
 _VELOCITY: Final = re.compile(r"v")
-# The names of both in a header that begins otherwise: "axis ω", "angular velocity".
+# The names of ω and v within a longer header: "axis ω", "angular velocity".
 _IN_HEADER: Final = (
     re.compile(r"omega|ω|angular|(?<![a-z])w(?![a-z])"),
     re.compile(r"linear|(?<![a-z])v(?![a-z])"),
@@ -40,10 +40,10 @@ _IN_HEADER: Final = (
 
 
 def screw_grid(text: str, count: int, reader: Reader) -> Grid:
-    """The ``count`` axes in a pasted text, each a row of six cells.
+    """Return the ``count`` axes in a pasted text, each a row of six cells.
 
-    Vectors go by the numbers in their names, where they have any. A matrix that is none of these is
-    returned as it is. Raises GridError where there is none.
+    Vectors are ordered by the numbers in their names, if they have any. A matrix of another form is
+    returned unchanged. Raises GridError if there is no matrix.
     """
     plain = _plain(text)
     try:
@@ -62,9 +62,9 @@ def screw_grid(text: str, count: int, reader: Reader) -> Grid:
 
 
 def screw_rows(answer: object, count: int) -> object:
-    """The rows of an answer in JSON; what is none of the ways to write axes stays as it is.
+    """Return the rows of a JSON answer; an answer of another form is returned unchanged.
 
-    Halves stand in an axis as [ω, v] or {"omega": ω, "v": v}. A single axis may come without a list
+    An axis may have its halves as [ω, v] or {"omega": ω, "v": v}. A single axis needs no list
     around it.
     """
     if isinstance(answer, dict):
@@ -89,7 +89,7 @@ def _is_table(rows: Sequence[object], width: int) -> bool:
 
 
 def _one_axis(axis: object) -> object:
-    """An axis whose halves may stand in lists of their own."""
+    """Return an axis as a flat list; its halves may be separate lists."""
     if isinstance(axis, Mapping):
         halves = {_half(str(name)): half for name, half in axis.items()}
         axis = [halves[0], halves[1]] if len(axis) == 2 and halves.keys() == {0, 1} else axis
@@ -115,15 +115,16 @@ def _of_columns(grid: Grid) -> Grid:
 
 
 def columns_as_axes(grid: Grid) -> Note:
-    """The note that the columns of a matrix are the axes."""
+    """Return the note that the columns of a matrix were read as the axes."""
     place = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
     return Note("columns_as_axes", "The columns were read as the axes.", place)
 
 
 def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
-    """The axes of a table with the vector ω in one column and v in another.
+    """Return the axes of a table with the vector ω in one column and v in another.
 
-    Rows with numbers in front go by them. None where a header names another vector, such as q.
+    Rows are ordered by their numbers, if they have any. Return None if a header names another
+    vector, such as q.
     """
     rows = [[(cell, _vector_in(cell)) for cell in row] for row in grid.rows]
     header = None if any(vector for _, vector in rows[0]) else rows.pop(0)
@@ -148,7 +149,7 @@ def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
 
 
 def _half_of_column(name: str) -> int | None:
-    """The half that a header names: 0 for ω, 1 for v, None for anything else."""
+    """Return the half that a header names: 0 for ω, 1 for v, None for anything else."""
     half = _half(name)
     if half is None:
         plain = name.lower()
@@ -158,7 +159,7 @@ def _half_of_column(name: str) -> int | None:
 
 
 def _vector_in(cell: GridCell) -> list[GridCell]:
-    """The three cells of a vector in one cell, (0, 0, 1); none in any other."""
+    """Return the three cells of a vector in one cell, such as (0, 0, 1); [] for any other cell."""
     if cell.text[:1] not in ("(", "[") or cell.text[-1:] not in (")", "]"):
         return []
     numbers = cell.cut(1, len(cell.text) - 1).split(_COMMA)
@@ -166,7 +167,7 @@ def _vector_in(cell: GridCell) -> list[GridCell]:
 
 
 def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
-    """The axes in a text of several vectors: one for each axis, or its halves ω and v."""
+    """Return the axes in a text with several vectors: one for each axis, or its halves ω and v."""
     try:
         found = pasted_grids(text, reader)
     except GridError:
@@ -196,7 +197,7 @@ def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
 
 
 def _cells(grid: Grid) -> list[GridCell]:
-    """The cells of a vector, or of a matrix with the rows ω and v; none of any other matrix."""
+    """Return the cells of a vector, or of a matrix with the rows ω and v; [] for other matrices."""
     heights, widths = len(grid.rows), {len(row) for row in grid.rows}
     if heights == 1 or widths == {1} or (heights == 2 and widths == {_HALF}):
         return [cell for row in grid.rows for cell in row]
@@ -206,7 +207,7 @@ def _cells(grid: Grid) -> list[GridCell]:
 def _placed(
     names: Sequence[str], vectors: Sequence[Sequence[GridCell]], count: int
 ) -> list[Sequence[GridCell]] | None:
-    """The vector of each axis, empty cells where there is none; None where names contradict."""
+    """Return the vector of each axis, empty cells for an absent one; None if names contradict."""
     places = _places(names, count)
     if places is None:
         return None
@@ -216,7 +217,7 @@ def _placed(
 
 
 def _places(names: Sequence[str], count: int) -> list[int] | None:
-    """The place of each name from 0, by its number; as they stand where none has a name."""
+    """Return the place of each name from 0, by its number; in the given order if all are empty."""
     if not names or len(names) > count:
         return None
     if not any(names):
@@ -227,7 +228,7 @@ def _places(names: Sequence[str], count: int) -> list[int] | None:
 
 
 def _half(name: str) -> int | None:
-    r"""0 for a name of ω, 1 for one of v, such as \hat{\omega}_1, w2, v_3; None for any other."""
+    r"""Return 0 for a name of ω, 1 for one of v (\hat{\omega}_1, w2, v_3), None for any other."""
     plain = _STYLE.sub("", name).lstrip("{ $").lower()
     if _OMEGA.match(plain):
         return 0

@@ -1,1 +1,1 @@
-"""DH tables as handed in -> rows of entries."""
+"""Read submitted DH tables as rows of entries."""

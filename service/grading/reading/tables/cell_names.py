@@ -1,4 +1,4 @@
-"""Names in front of the cells of DH rows (d = 0, theta_1 = q1): the columns and rows they name."""
+"""Names in cells of DH rows, such as d = 0 and theta_1 = q1, and the columns and rows they mean."""
 
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -19,12 +19,12 @@ from service.grading.reading.written_names import (
 from service.kinematics.chain import COLUMNS
 
 _LABELS: Final = tuple(SHOWN[column] for column in COLUMNS)
-# In the modified convention these have the index of the row before.
+# The parameters that the modified convention numbers one less than their row.
 _SHIFTED: Final = frozenset({"a", "alpha"})
 
 
 def arranged_row(cells: Sequence[object], vocabulary: Vocabulary) -> Arrangement | None:
-    """What the names in the four cells of a row say of their columns; None for nothing amiss."""
+    """Arrange the four cells of a row by their names; None if no name contradicts its column."""
     return arranged(cells, _LABELS, _columns_of, vocabulary)
 
 
@@ -34,9 +34,9 @@ def _columns_of(names: Sequence[LeftSide | None], _: Vocabulary) -> list[Places]
 
 
 def first_number(rows: Sequence[Sequence[object]], vocabulary: Vocabulary) -> int | None:
-    """The number of the first of these rows: 1, or 0 where its θ or d is named so.
+    """Return the number of the first row: 0 if its θ or d has the index 0, else 1.
 
-    None for a row alone, which may be that of any joint.
+    Return None for a single row, which may belong to any joint.
     """
     if len(rows) < 2:
         return None
@@ -54,29 +54,29 @@ def row_entries(
     placed: Callable[[int, Entry], Entry],
     vocabulary: Vocabulary,
 ) -> tuple[Entry, ...]:
-    """The entries of a row with this number, whose cells were put in order as ``found`` says.
+    """Return the entries of row ``number``, whose ``cells`` were arranged as in ``found``.
 
-    ``read`` gives the entry of the cell in a column, ``placed`` an entry with spans in that cell
-    as one with spans in the whole text.
+    ``read`` returns the entry of a column. ``placed`` moves the spans of an entry from its cell to
+    the whole text.
     """
     entries: list[Entry] = []
     for column, cell in enumerate(cells):
         wrong = found.misnamed.get(column) if found else None
         entry = unreadable(wrong) if wrong else read(column)
         if wrong is None and number is not None and entry.findings:
-            wrong = _of_another_row(cell, COLUMNS[column], entry, number, vocabulary)
+            wrong = _names_another_row(cell, COLUMNS[column], entry, number, vocabulary)
         entries.append(placed(column, unreadable(wrong)) if wrong else entry)
     if found is None or not found.by_name:
         return tuple(entries)
     return with_order_note(entries, "The cells of a row")
 
 
-def _of_another_row(
+def _names_another_row(
     cell: object, column: str, entry: Entry, number: int, vocabulary: Vocabulary
 ) -> Finding | None:
-    """The finding that a cell is named after another row: θ2 = … in row 1.
+    """Return the finding that a cell has the name of another row, such as θ2 = … in row 1.
 
-    A cell that holds the variable it is named after says the same on both sides.
+    Return None for a cell such as θ2 = θ2, which contains the variable that it is named after.
     """
     name = name_of(cell, vocabulary)
     named = named_parameter(name.name) if name else None

@@ -1,4 +1,4 @@
-"""The headers of a pasted DH table: which parameter a column holds, and in which unit."""
+"""Read the headers of a pasted DH table: the parameter in a column, and its unit."""
 
 import re
 import unicodedata
@@ -14,11 +14,11 @@ QUANTITIES: Final[Mapping[str, Kind]] = {
     "a": "length", "alpha": "angle", "d": "length", "theta": "angle",
 }  # fmt: skip
 
-# Names for these columns, as they are written in a message.
+# The names of the columns in messages.
 SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 _LONGEST: Final = 60
-# Signs and letters that NFKC leaves alone, or turns into others.
+# Characters that NFKC leaves alone, or replaces by wrong ones.
 _SIGNS: Final = str.maketrans(
     {"⍺": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
 )
@@ -32,7 +32,7 @@ _SHIFTED: Final = re.compile(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\
 _WORD: Final = re.compile(r"[a-z]+~?|#|[^\sa-z#]")
 _GLUED: Final = re.compile(r"(a|r|d|q|th|alpha|theta)([ijkn]~?)")
 _INDEX: Final = re.compile(r"[ijkn]~?")
-# The number of a row behind the name of a parameter: θ_1, a_{2}, d(3); but not a_{i-1}.
+# The number of a row after the name of a parameter: θ_1, a_{2}, d(3); but not a_{i-1}.
 _NUMBER: Final = re.compile(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
 _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
 _DIGITS_OR_OPERATORS: Final = re.compile(r"[0-9+\-*/=^]")
@@ -51,7 +51,7 @@ METRES: Final[Mapping[str, float]] = {
 }
 _UNIT_NAMES: Final = "|".join(sorted((*_ANGLE_UNITS, *METRES), key=len, reverse=True))
 _BRACKETED_UNIT: Final = re.compile(rf"[(\[]\s{{0,4}}(?:in\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
-# "in" before the unit is a word; alone at the end it would be one unit too many.
+# "in" before a unit is a preposition, not inches.
 _TRAILING_UNIT: Final = re.compile(
     rf"(?:[\s,;:/_]|(?<=[^a-z]))(?:in\s)?({_UNIT_NAMES})\s{{0,4}}$|(°)\s{{0,4}}$"
 )
@@ -74,10 +74,10 @@ _ASIDE: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """``column`` is a, alpha, d, theta, "label", or "aside" for a column of no DH table.
+    """The meaning of a header.
 
-    ``unit`` is as written, but in small letters. ``shifted`` tells that the index is one less than
-    the row's, as in a_{i-1}.
+    ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored. ``unit`` is
+    in small letters. ``shifted`` is true if the index is one less than the row's, as in a_{i-1}.
     """
 
     column: str
@@ -86,24 +86,24 @@ class Header:
 
     @property
     def angle_unit(self) -> AngleUnit | None:
-        """The unit of the angles below, where the header names one."""
+        """The unit of angles in the header, if there is one."""
         return _ANGLE_UNITS.get(self.unit)
 
     @property
     def metres(self) -> float | None:
-        """The unit in metres, where the header names a unit of length."""
+        """The length unit in the header, in metres, if there is one."""
         return METRES.get(self.unit)
 
 
 class NamedParameter(NamedTuple):
-    """A parameter by its name: its column, and the number of its row where the name has one."""
+    """The column of a parameter, and the number of its row if its name has one."""
 
     column: str
     row: int | None
 
 
 def named_parameter(name: str) -> NamedParameter | None:
-    r"""The DH parameter that a name is: a, \alpha_1, θ₁, d_{i}; None for another name."""
+    r"""Return the DH parameter with a name such as a, \alpha_1, θ₁, d_{i}; None for other names."""
     plain = unicodedata.normalize("NFKC", name[: _LONGEST + 1])
     number = _NUMBER.search(plain)
     header = read_header(plain[: number.start()] if number else plain)
@@ -113,9 +113,9 @@ def named_parameter(name: str) -> NamedParameter | None:
 
 
 def read_header(text: str) -> Header | None:
-    r"""The header in a cell, in any of its spellings; None for a cell that is none.
+    r"""Return the header in a cell, in any spelling; None if the cell is not a header.
 
-    ``a``, ``a_{i-1}``, ``α_i (deg)``, ``link length [mm]``, ``$\theta_i$``, ``joint``, ``#``.
+    Examples: ``a``, ``a_{i-1}``, ``α_i (deg)``, ``link length [mm]``, ``$\theta_i$``, ``#``.
     """
     if len(text) > _LONGEST:
         return None
@@ -147,7 +147,7 @@ def _decided(
     found: set[str], terms: set[str], unit: str, indices: list[str], *, places: bool
 ) -> Header | None:
     if "alpha" in found | terms:
-        # "twist angle" is one thing.
+        # "angle" in "twist angle" does not mean θ.
         terms = terms - {"theta"}
     if len(found | terms) == 1:
         [column] = found | terms
@@ -158,13 +158,13 @@ def _decided(
 
 
 def is_wordy(text: str) -> bool:
-    """Whether a cell might be a header: a word or a name, and no number or formula."""
+    """True if a cell might be a header: a word or a name, but not a number or formula."""
     plain, _ = _plain(text[:_LONGEST])
     return bool(plain.strip()) and _DIGITS_OR_OPERATORS.search(plain) is None
 
 
 def _plain(text: str) -> tuple[str, str]:
-    """The header in small plain letters without its unit, and the unit; ``~`` stands for -1."""
+    """Return the header in small plain letters without its unit, ``~`` for -1; and the unit."""
     plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS).lower()
     plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
     plain = plain.replace("α", " alpha ").replace("θ", " theta ")

@@ -1,4 +1,4 @@
-"""Lengths below a header that names another unit than the exercise's: mm where it has metres."""
+"""Convert lengths below a header with another unit than the exercise's, such as mm for metres."""
 
 from dataclasses import replace
 
@@ -13,17 +13,17 @@ from service.grading.reading.tables.column_headers import METRES, Header
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
-    """The entry, which was written in the header's unit, in the exercise's.
+    """Convert an entry from the header's unit to the exercise's.
 
-    A number is converted. A letter stands for a length, whatever it is measured in, so what is
-    made of letters alone stays as it is. Where the two are mixed, or the exercise's unit is not
-    known, the entry is unreadable: nobody can say what the number is.
+    Numbers are converted. Letters mean lengths in any unit, so formulas of letters alone stay
+    unchanged. If a formula mixes both, or the exercise's unit is unknown, the entry is unreadable,
+    because the number is ambiguous.
     """
     expression = entry.expression
     if expression is None:
         return entry
     if expression.symbols:
-        return _of_letters(entry, expression, header, reader)
+        return _checked_formula(entry, expression, header, reader)
     value = expression.evaluate({})
     if np.all(value == 0):
         return entry
@@ -43,7 +43,7 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
 
 
 def _times(tree: Node, factor: float) -> Node:
-    """The tree times ``factor``: dividing by 1000 is exact where multiplying by 0.001 is not."""
+    """Return the tree times ``factor``; for 0.001 divide by 1000, which is exact."""
     divisor = round(1 / factor)
     if divisor > 1 and abs(divisor * factor - 1) < SAME_FACTOR:
         by = Number(float(divisor), str(divisor), tree.end, tree.end)
@@ -52,8 +52,11 @@ def _times(tree: Node, factor: float) -> Node:
     return Binary("*", tree, by, tree.start, tree.end)
 
 
-def _of_letters(entry: Entry, expression: Expression, header: Header, reader: Reader) -> Entry:
-    """The entry where all its lengths are letters: then it doubles when they all double."""
+def _checked_formula(entry: Entry, expression: Expression, header: Header, reader: Reader) -> Entry:
+    """Return the entry if it doubles with all its letters, else an unreadable one.
+
+    An entry that does not double contains a length in numbers.
+    """
     values = reader.samples.values
     lengths = [symbol.name for symbol in reader.vocabulary.symbols if symbol.kind == "length"]
     doubled = {**values, **{name: 2 * values[name] for name in lengths if name in values}}
@@ -68,5 +71,5 @@ def _of_letters(entry: Entry, expression: Expression, header: Header, reader: Re
 
 
 def _without(header: Header) -> str:
-    """The advice to do without the header's unit."""
+    """Return the advice to remove the unit from the header."""
     return f"Delete `{header.unit}` from the header, and write lengths as the exercise does."

@@ -1,4 +1,4 @@
-"""A pasted DH table -> its rows and their entries. Spans are places in the text as pasted."""
+"""Read a pasted DH table as rows of entries. Spans count in the whole pasted text."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -29,8 +29,8 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    A row of the wrong length has a ``problem``, and each of its cells is the whole row. ``named``
-    tells how the names in the cells gave them another order, or contradict it.
+    A row of the wrong length has a ``problem``, and all its cells are the same one. ``named`` is
+    the arrangement of the cells by their names, None if no name contradicts its column.
     """
 
     cells: tuple[GridCell, ...]
@@ -39,7 +39,7 @@ class PastedRow:
 
     @property
     def texts(self) -> list[str]:
-        """What is written in the cells."""
+        """The texts of the cells."""
         return [cell.text for cell in self.cells]
 
 
@@ -47,8 +47,8 @@ class PastedRow:
 class PastedTable:
     """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
 
-    ``is_named`` says that the columns have headers, or names in a script. ``convention`` is the one
-    that a script names.
+    ``is_named`` is true if the columns have headers, or names in a script. ``convention`` is the
+    one in a script.
     """
 
     rows: tuple[PastedRow, ...]
@@ -59,17 +59,17 @@ class PastedTable:
 
 
 def read_pasted_table(text: str, reader: Reader) -> PastedTable:
-    """The rows of a pasted DH table; see ``table_of``. Raises GridError where it is none."""
+    """Read the rows of a pasted DH table; see ``table_of``. Raises GridError if there is none."""
     robot = pasted_robot(text, reader)
     return table_of_robot(robot, reader) if robot else table_of(pasted_grid(text, reader), reader)
 
 
 def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
-    """The rows of a pasted DH table.
+    """Read the rows of a pasted DH table.
 
-    Columns go by their headers, in any order; without headers there must be four, or five with
-    the rows' numbers in front, in ``order``. Rows go by their labels, where they have
-    any. Raises GridError where it cannot be told which column is which.
+    Columns are identified by their headers. Without headers there must be four columns in
+    ``order``, or five with the row numbers first. Rows are ordered by their labels, if they have
+    any. Raises GridError if the columns cannot be identified.
     """
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
@@ -98,9 +98,9 @@ def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> Past
 
 
 def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
-    """The rows of the robot that a script describes; the angles of its links are in radians.
+    """Return the DH rows of the robot in a script; the angles of its links are in radians.
 
-    Raises GridError as ``table_of``, where the table has headers.
+    Raises GridError if the table has headers that cannot be identified.
     """
     if robot.has_headers:
         return table_of(robot.grid, reader)
@@ -116,7 +116,7 @@ def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
 
 
 def _has_parameters_in_rows(grid: Grid) -> bool:
-    """Whether a, α, d and θ are the names of rows; a row of the joints' numbers may stand above."""
+    """True if the rows are named a, α, d and θ; a row of joint numbers may precede them."""
     rows = grid.rows[len(grid.rows) - len(COLUMNS) :]
     if len(grid.rows) > len(COLUMNS) + 1 or len({len(row) for row in grid.rows}) > 1:
         return False
@@ -125,14 +125,14 @@ def _has_parameters_in_rows(grid: Grid) -> bool:
 
 
 def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
-    """The table with its rows as columns, and the note on it."""
+    """Return the transposed table, and the note on that."""
     message = "The parameters stand in rows, so each column was read as the row of a joint."
     note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
     return replace(grid, rows=tuple(zip(*grid.rows, strict=True))), (note,)
 
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
-    """The entries of each row."""
+    """Return the entries of each row."""
     first = first_number([row.texts for row in table.rows], reader.vocabulary)
     return [
         _row_entries(row, None if first is None else first + i, table.headers, reader)
@@ -157,7 +157,7 @@ def _row_entries(
 
 
 def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
-    """One cell of a table, in the unit that its header names."""
+    """Return the entry of one cell, which is in the unit of its header."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
     entry = reader.read(cell.text, QUANTITIES[column], in_table=True)
@@ -167,9 +167,9 @@ def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry
 
 
 def _found_headers(row: Sequence[GridCell], reader: Reader) -> list[Header | None] | None:
-    """The header in each cell of the first row; None where the row holds values.
+    """Return the header in each cell of the first row; None if the row holds values.
 
-    A name such as ``a`` may be a header or a declared length: the row's other cells decide.
+    A name such as ``a`` may be a header or a declared length; the other cells of the row decide.
     """
     found = [read_header(cell.text) for cell in row]
     cells = [cell for cell in row if cell.text]
@@ -270,7 +270,7 @@ def _convention_hint(
 def _columns_in_order(
     grid: Grid, order: Sequence[str]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
-    """The columns of a table without headers."""
+    """Return the columns of a table without headers, the column of labels if any, and findings."""
     width = max(map(len, grid.rows))
     has_labels = width == len(COLUMNS) + 1 and all(is_label(row[0].text) for row in grid.rows)
     if width != len(COLUMNS) and not has_labels:

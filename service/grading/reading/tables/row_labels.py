@@ -1,4 +1,4 @@
-"""The rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector."""
+"""Order the rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector."""
 
 import re
 import unicodedata
@@ -18,9 +18,9 @@ _END: Final = frozenset(
 
 
 def label_place(text: str) -> int | None:
-    """The place of a row by its label: its number, or behind all numbers; None for none.
+    """Return the number in a row's label, LAST for an end effector; None if it is not a label.
 
-    ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
+    Examples: ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
     """
     if len(text) > _LONGEST:
         return None
@@ -37,14 +37,14 @@ def label_place(text: str) -> int | None:
 
 
 def is_label(text: str) -> bool:
-    """Whether a cell of a table without headers is the number of its row."""
+    """True if a cell is the label of a row."""
     return label_place(text) is not None
 
 
 def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
-    """The places of the rows in the order of their labels, with the findings on it.
+    """Return the indices of the rows in the order of their labels, and the findings on the order.
 
-    Rows keep their order where a label has no place. Raises GridError where two have one label.
+    Rows keep their order if one has no label. Raises GridError if two have the same label.
     """
     typed = list(range(len(labels)))
     places = [label_place(label.text) for label in labels]

@@ -1,4 +1,4 @@
-"""A DH table as handed in, JSON or pasted text -> its rows and their numbers."""
+"""Read a submitted DH table, JSON or pasted text, as rows and their numbers."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,6 +14,12 @@ from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.entry import Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, pasted_grid, pasted_robot
 from service.grading.reading.tables.cell_names import first_number
+from service.grading.reading.tables.cells import (
+    canonical_table,
+    has_unnamed_columns,
+    memoized_row,
+    read_row,
+)
 from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.reading.tables.pasted_table import (
     PastedTable,
@@ -21,8 +27,6 @@ from service.grading.reading.tables.pasted_table import (
     table_of,
     table_of_robot,
 )
-from service.grading.reading.tables.row_entries import read_row, remembered_row
-from service.grading.reading.tables.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity, Verdict
 from service.grading.work_budget import MAX_SYMBOLS_AGAIN, WorkBudget
 from service.grids import GridError
@@ -46,8 +50,8 @@ CONVENTION_NAMES: Mapping[str, Convention] = {
 class StudentRow:
     """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, SAMPLES)``.
 
-    A number is NaN where a cell could not be read. Where ``values`` are what rounded angles stand
-    for, ``as_written`` are those that were written.
+    A number is NaN if its cell could not be read. If rounded angles were made exact in ``values``,
+    ``as_written`` has the numbers as written.
     """
 
     entries: tuple[Entry, ...]
@@ -56,44 +60,44 @@ class StudentRow:
 
     @property
     def is_exact(self) -> bool:
-        """Whether the values are those that were written."""
+        """True if the values are the numbers as written."""
         return self.as_written is None
 
     @property
     def handed_in(self) -> Table:
-        """The numbers as they were handed in."""
+        """The numbers as written."""
         return self.values if self.as_written is None else self.as_written
 
     @property
     def expressions(self) -> list[Expression | None]:
-        """The expressions of the cells; None where nothing could be read."""
+        """The expressions of the cells; None for a cell that could not be read."""
         return [entry.expression for entry in self.entries]
 
     @property
     def has_decimal(self) -> bool:
-        """Whether a decimal stands in any cell."""
+        """True if any cell contains a decimal."""
         for entry in self.entries:
             if entry.expression is not None and entry.expression.has_decimal:
                 return True
         return False
 
     def values_at(self, samples: Samples) -> Table:
-        """The numbers at other samples, as they were handed in."""
+        """Return the numbers as written, at other samples."""
         return np.asarray(_values([self.entries], samples)[0])
 
     @property
     def is_zero(self) -> bool:
-        """Whether the row moves nothing: all four cells are read and are 0."""
+        """True if the row moves nothing: all four cells are readable and 0."""
         return not self.values.any()
 
 
 @dataclass(frozen=True, slots=True)
 class StudentTable:
-    """A table as read: its rows, and the numbers of all of them, ``(rows, 4, SAMPLES)``.
+    """A table as read: its rows and their numbers ``(rows, 4, SAMPLES)``.
 
-    ``convention`` is what the answer itself says, if it says so. ``reread`` reads its columns in
-    another order: where nothing but their order says what they hold, or where the cells are
-    ``named``, typed one by one under the heads of a grid.
+    ``convention`` is the one that the answer names, if it names one. ``reread`` reads the table
+    with its columns in another order. It is None if the columns of a pasted table have headers.
+    ``named`` is true if the cells were typed one by one into the columns of a grid.
     """
 
     rows: tuple[StudentRow, ...]
@@ -104,7 +108,7 @@ class StudentTable:
     named: bool = False
 
 
-# Reads a table with its columns in another order of "a", "alpha", "d" and "theta".
+# A function that reads a table with its columns in another order of "a", "alpha", "d", "theta".
 Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 
 
@@ -115,14 +119,14 @@ def read_table(
     *,
     empty_is_zero: bool = False,
 ) -> StudentTable:
-    """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
+    """Read a table ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
-    pasted text. Columns without names are in ``order``. A cell that is empty or holds a dash alone
-    is missing, or 0 with ``empty_is_zero`` where anything is written in its row.
+    The answer may have one of the other shapes in ``cells``, and it or its rows may be pasted
+    text. Columns without names are in ``order``. A cell that is empty or a dash is missing; with
+    ``empty_is_zero`` it is 0 if another cell of its row is not empty.
 
-    Raises UnreadableAnswerError where the answer has no rows at all; a row or cell that cannot be
-    read costs only itself.
+    Raises UnreadableAnswerError if the answer has no rows at all. An unreadable row or cell affects
+    only itself.
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
@@ -146,7 +150,7 @@ def read_table(
         if not is_unnamed:
             again = {"rows": [_under_other_names(row, other) for row in rows]}
         try:
-            return read_table(again, _afresh(reader), other, empty_is_zero=empty_is_zero)
+            return read_table(again, _with_own_budget(reader), other, empty_is_zero=empty_is_zero)
         except UnreadableAnswerError:
             return StudentTable((), _NO_ROWS, None)
 
@@ -154,23 +158,23 @@ def read_table(
 
 
 def _under_other_names(row: object, other: Sequence[str]) -> object:
-    """A row whose cells, in the order a, α, d, θ, are named in another order."""
+    """Return the row with its values, in the order a, α, d, θ, under the names in ``other``."""
     if not isinstance(row, Mapping):
         return row
     return {name: row.get(column) for name, column in zip(other, COLUMNS, strict=True)}
 
 
-def _afresh(reader: Reader) -> Reader:
-    """The reader with a budget of its own, for a table that is read in another order.
+def _with_own_budget(reader: Reader) -> Reader:
+    """Return the reader with a separate budget, for reading a table in another column order.
 
-    What this costs must not be missing for the parts that follow. A table that is too long for it
-    has no rows in another order.
+    This work must not reduce the budget of the parts that follow. A table beyond the separate
+    budget has no rows in another order.
     """
     return replace(reader, budget=WorkBudget(MAX_SYMBOLS_AGAIN))
 
 
 def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
-    """The pasted table, without rows for blanks alone. Raises UnreadableAnswerError."""
+    """Read a pasted table; a blank text has no rows. Raises UnreadableAnswerError."""
     if not text.strip():
         return StudentTable((), _NO_ROWS, None)
     try:
@@ -188,9 +192,9 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
         return _table(rows, convention, pasted.findings, reader)
 
     def reread(other: Sequence[str]) -> StudentTable:
-        afresh = _afresh(reader)
+        separate = _with_own_budget(reader)
         try:
-            return read(table_of(grid, afresh, other), afresh)
+            return read(table_of(grid, separate, other), separate)
         except GridError:
             return StudentTable((), _NO_ROWS, None)
 
@@ -199,7 +203,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
 
 
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:
-    """The row with its empty cells alike, whether they are blank or hold a dash."""
+    """Return the row with one and the same entry for all empty cells and dashes."""
     if all(entry.readable for entry in row):
         return row
     empty = [entry.verdict is Verdict.MISSING or _is_dash(entry) for entry in row]
@@ -227,7 +231,7 @@ def _table(
     return StudentTable(rows, values, convention, findings, reread, named)
 
 
-# The cells of a table that are blank or hold a dash: the message is one for all of them.
+# The entry for blank cells and dashes: they share one message.
 EMPTY = Entry(
     None,
     Verdict.MISSING,
@@ -249,12 +253,12 @@ ZERO = Entry(
     ),
 )
 
-# A number that was computed stands for a cell that was read.
+# The entry of a cell whose number was computed instead of read.
 COMPUTED = Entry(read_expression(0, Vocabulary([])))
 
 
 def computed_row(values: Table) -> StudentRow:
-    """A row as if somebody had handed in these numbers, ``(4, SAMPLES)``."""
+    """Return a row with the numbers ``(4, SAMPLES)``, as if a student had submitted them."""
     return StudentRow((COMPUTED,) * len(COLUMNS), values)
 
 
@@ -290,7 +294,7 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
 
 
 def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
-    """The entries of each row."""
+    """Return the entries of each row."""
     cells = [_cells(row) for row in rows]
     first = first_number(cells, reader.vocabulary)
     return [
@@ -300,22 +304,22 @@ def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
 
 
 def _cells(row: object) -> list[object]:
-    """The values of a, α, d, θ; a finding where nobody can say what the value is."""
+    """Return the values of a, α, d, θ in a row; a finding for a value that is ambiguous."""
     if row is None:
         return [None] * len(COLUMNS)
     if not isinstance(row, Mapping):
         return [_NOT_VALUES] * len(COLUMNS)
-    # A value under an unknown name must not pass for a missing one.
+    # A row with an unknown name has values that were not read: its other cells are not missing.
     absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
     return [row.get(column, absent) for column in COLUMNS]
 
 
 def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
-    known = remembered_row(cells, number, reader)
+    known = memoized_row(cells, number, reader)
     return read_row(cells, number, reader) if known is None else known
 
 
-# An object is answered with the one that is asked for, a list or a single value in words.
+# The message for a JSON object shows the expected object; the one for a list or a value uses words.
 _NO_TABLE = reading_error(
     "wrong_shape", 'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.'
 )
@@ -327,10 +331,10 @@ _NOT_VALUES = reading_error("wrong_shape", "Write the four values a, α, d, θ i
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
-    """The numbers of the rows at other samples, as they were handed in: ``(rows, 4, samples)``."""
+    """Return the numbers of the rows as written, at other samples: ``(rows, 4, samples)``."""
     return _values([row.entries for row in rows], samples)
 
 
 def values_of(rows: Sequence[StudentRow]) -> Table:
-    """The numbers of the rows, ``(rows, 4, SAMPLES)``; NaN where a cell could not be read."""
+    """Return the numbers of the rows, ``(rows, 4, SAMPLES)``; NaN for an unreadable cell."""
     return np.array([row.values for row in rows])

@@ -1,4 +1,4 @@
-"""Lists of values: how they are written, and what is said to what is none."""
+"""Lists of values in all shapes, and the messages on answers that are not lists."""
 
 import pytest
 
@@ -32,7 +32,7 @@ POINT = one_part(
         r"\begin{bmatrix} l \\ k \\ 0 \end{bmatrix}",
     ],
 )
-def test_a_third_zero_is_left_aside_and_said_to_be(answer: object, make_exercise: Make) -> None:
+def test_a_third_zero_is_ignored_with_a_note(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), answer)
     assert full_marks(report), report
     assert [row.label for row in report.rows] == ["1", "2"]
@@ -76,7 +76,7 @@ def test_any_other_third_value_is_refused(answer: object, make_exercise: Make) -
     ],
 )
 def test_products_may_be_written_with_blanks(text: str, make_exercise: Make) -> None:
-    """Where only one reading has as many values as are asked for, it is that one."""
+    """If only one reading has the expected number of values, that one is taken."""
     vector = one_part(
         "vector",
         """components = [
@@ -100,7 +100,7 @@ def test_products_may_be_written_with_blanks(text: str, make_exercise: Make) -> 
         ("1 2 3\n4 5\n6 7", "ambiguous_columns"),
     ],
 )
-def test_what_is_no_list_is_not_told_of_tables(text: str, code: str, make_exercise: Make) -> None:
+def test_messages_on_lists_do_not_mention_tables(text: str, code: str, make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), text)
     assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {code})
     [message] = report.feedback
@@ -110,11 +110,11 @@ def test_what_is_no_list_is_not_told_of_tables(text: str, code: str, make_exerci
 
 
 @pytest.mark.parametrize("answer", [[["l"], ["k"], ["l"]], [["l", "k"], ["l", "k"]], [["l"], []]])
-def test_lists_in_a_list_are_no_list_of_values(answer: object, make_exercise: Make) -> None:
+def test_nested_lists_are_refused(answer: object, make_exercise: Make) -> None:
     assert all_codes(graded(make_exercise(POINT), answer)) == {"wrong_shape"}
 
 
-def test_equations_in_a_list_are_read_with_a_note_each(make_exercise: Make) -> None:
+def test_equations_in_a_list_are_read_with_notes(make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), "x = l\ny = k")
     assert not_correct(report) == {}
     assert all_codes(report) == {"equation"}

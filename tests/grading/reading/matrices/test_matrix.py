@@ -1,4 +1,4 @@
-"""Matrices pasted as text: every format, SymPy's own prints, sizes that do not fit."""
+"""Matrices pasted as text: every format, prints of SymPy, wrong sizes."""
 
 from collections.abc import Mapping
 from functools import reduce
@@ -44,7 +44,7 @@ def test_each_format_gets_full_marks(name: str, arm: Exercise) -> None:
 
 
 def exact_pose(robot: Robot) -> Any:
-    """The product of the textbooks' link matrices (SHV eq. 3.10; Craig eq. 3.6)."""
+    """Return the product of the textbooks' link matrices (SHV eq. 3.10; Craig eq. 3.6)."""
 
     def symbol(text: str) -> Any:
         name = text.removesuffix("*")
@@ -90,7 +90,7 @@ ALONE = {
 
 @together("exercise", POSES)
 @together("name", PRINTS)
-def test_a_print_falls_into_the_entries_printed_alone(exercise: str, name: str) -> None:
+def test_a_printed_matrix_has_the_entries_printed_one_by_one(exercise: str, name: str) -> None:
     matrix = POSES[exercise]
     rows = read_grid(PRINTS[name](matrix)).rows
     expected = [[ALONE[name](entry) for entry in matrix.row(i)] for i in range(4)]
@@ -106,7 +106,7 @@ def test_a_print_gets_full_marks(
     assert full_marks(report), not_correct(report)
 
 
-def test_spans_are_places_in_the_pasted_text(arm: Exercise) -> None:
+def test_spans_count_in_the_pasted_text(arm: Exercise) -> None:
     text = r"T = \begin{bmatrix} 1 & 2 & 3 & l_1 + foo \\ 1 & 2 & 3 & (4 \end{bmatrix}"
     report = pasted(arm, text)
     for place, marked in {("1", "4"): "foo", ("2", "4"): "("}.items():
@@ -125,7 +125,7 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
 
 
-def test_a_row_of_another_length_costs_that_row(arm: Exercise) -> None:
+def test_a_row_of_the_wrong_length_affects_only_itself(arm: Exercise) -> None:
     text = FORMATS["CSV"]([*POSE[:3], ["0", "0", "1"]])
     report = pasted(arm, text)
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.UNREADABLE]
@@ -145,7 +145,9 @@ def test_a_row_of_another_length_costs_that_row(arm: Exercise) -> None:
         (FORMATS["CSV"]([*POSE, ["0", "0", "0", "1"]]), "5 × 4"),
     ],
 )
-def test_another_size_is_refused_and_told(text: str, size: str, arm: Exercise) -> None:
+def test_a_matrix_of_the_wrong_size_is_refused_with_both_sizes(
+    text: str, size: str, arm: Exercise
+) -> None:
     report = pasted(arm, text)
     assert (report.verdict, report.points, report.rows) == (Verdict.UNREADABLE, 0.0, ())
     [feedback] = report.feedback
@@ -162,12 +164,12 @@ def test_another_size_is_refused_and_told(text: str, size: str, arm: Exercise) -
         ("[c1 -s1, 0; s1 c1, 0]", "mixed_separators"),
     ],
 )
-def test_what_is_no_matrix_is_refused(text: str, code: str, arm: Exercise) -> None:
+def test_a_text_without_a_matrix_is_refused(text: str, code: str, arm: Exercise) -> None:
     report = pasted(arm, text)
     assert (report.verdict, [feedback.code for feedback in report.feedback]) == (
         Verdict.UNREADABLE, [code],
     )  # fmt: skip
 
 
-def test_nothing_pasted_is_missing(arm: Exercise) -> None:
+def test_an_empty_paste_is_missing(arm: Exercise) -> None:
     assert pasted(arm, " \n").verdict is Verdict.MISSING

@@ -1,4 +1,4 @@
-"""All link transforms of an arm in one text: which is which, and what cannot be read."""
+"""All link transforms of an arm in one text: their places, and unreadable ones."""
 
 from collections.abc import Mapping
 
@@ -16,7 +16,7 @@ A2 = "[c2 -s2 0 a2*c2; s2 c2 0 a2*s2; 0 0 1 0; 0 0 0 1]"
 
 @pytest.fixture
 def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
-    """Two turning joints, and the tool in the frame of the second link."""
+    """Two revolute joints; the tool frame is that of the second link."""
     return catalogue["planar-rr"]
 
 
@@ -42,7 +42,7 @@ def pasted(arm: Exercise, answer: object) -> PartReport:
         (f"T12 = {A1}\nT23 = {A2}", {"matrix_names"}),
     ],
 )
-def test_full_marks_with_a_note_where_the_order_is_another(
+def test_matrices_in_another_order_get_full_marks_and_a_note(
     text: str, notes: set[str], arm: Exercise
 ) -> None:
     report = pasted(arm, text)
@@ -64,7 +64,9 @@ def test_full_marks_with_a_note_where_the_order_is_another(
         (f"A1 = {A1[:-1]}\nA2 = {A2}", "unbalanced_bracket", "["),
     ],
 )
-def test_what_cannot_be_told_is_refused(text: str, code: str, marked: str, arm: Exercise) -> None:
+def test_matrices_that_cannot_be_identified_are_refused(
+    text: str, code: str, marked: str, arm: Exercise
+) -> None:
     report = pasted(arm, text)
     [feedback] = report.feedback
     assert (report.verdict, feedback.code) == (Verdict.UNREADABLE, code)
@@ -81,7 +83,7 @@ def test_what_cannot_be_told_is_refused(text: str, code: str, marked: str, arm: 
         ([f"T12 = {A1}", f"T23 = {A2}"], {"matrix_names"}),
     ],
 )
-def test_a_list_of_texts_goes_by_their_names(
+def test_texts_in_a_list_are_ordered_by_their_names(
     answer: list[str], notes: set[str], arm: Exercise
 ) -> None:
     report = pasted(arm, answer)
@@ -102,7 +104,7 @@ def test_a_list_of_texts_under_the_wrong_names_is_wrong(arm: Exercise) -> None:
         ([f"A1 = {A1}", f"A5 = {A2}"], "unknown_matrix"),
     ],
 )
-def test_names_in_a_list_that_contradict_are_refused(
+def test_contradicting_names_in_a_list_are_refused(
     answer: list[str], code: str, arm: Exercise
 ) -> None:
     report = pasted(arm, answer)
@@ -110,12 +112,12 @@ def test_names_in_a_list_that_contradict_are_refused(
     assert (report.verdict, feedback.code, feedback.span) == (Verdict.UNREADABLE, code, None)
 
 
-def test_a_product_stands_in_the_place_of_no_link(arm: Exercise) -> None:
+def test_a_product_is_not_a_link(arm: Exercise) -> None:
     report = pasted(arm, f"A1 = {A1}\nA1*A2 = {A2}")
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 4 + [Verdict.MISSING] * 4
 
 
-def test_one_matrix_that_cannot_be_read_costs_itself(arm: Exercise) -> None:
+def test_an_unreadable_matrix_affects_only_itself(arm: Exercise) -> None:
     for answer in (f"A1 = {A1}\nA2 = {A2}'", [A1, f"{A2}'"]):
         report = pasted(arm, answer)
         assert [row.verdict for row in report.rows] == (
@@ -126,22 +128,22 @@ def test_one_matrix_that_cannot_be_read_costs_itself(arm: Exercise) -> None:
         assert 0 < report.points < report.max_points
 
 
-def test_a_matrix_of_another_size_costs_itself(arm: Exercise) -> None:
+def test_a_matrix_of_the_wrong_size_affects_only_itself(arm: Exercise) -> None:
     report = pasted(arm, f"A1 = {A1}\nA2 = [1 2; 3 4]")
     assert codes(cell(report, "A2.1", "1")) == ["wrong_shape"]
     assert report.rows[0].verdict is Verdict.CORRECT
 
 
-def test_a_matrix_that_is_not_there_is_missing(arm: Exercise) -> None:
+def test_an_absent_matrix_is_missing(arm: Exercise) -> None:
     report = pasted(arm, f"A2 = {A2}")
     assert [row.verdict for row in report.rows] == [Verdict.MISSING] * 4 + [Verdict.CORRECT] * 4
 
 
-def test_nothing_pasted_is_missing(arm: Exercise) -> None:
+def test_an_empty_paste_is_missing(arm: Exercise) -> None:
     assert pasted(arm, " \n").verdict is Verdict.MISSING
 
 
-def test_a_span_is_a_place_in_the_whole_text(arm: Exercise) -> None:
+def test_a_span_counts_in_the_whole_text(arm: Exercise) -> None:
     text = f"A1 = {A1}\nA2 = {A2.replace('a2*s2', 'foo')}"
     [feedback] = cell(pasted(arm, text), "A2.2", "4").feedback
     assert feedback.span is not None
@@ -157,7 +159,7 @@ def test_the_preview_has_the_rows_of_the_report(arm: Exercise) -> None:
     assert "matrix_order" in {note.code for note in shown.notes}
 
 
-def test_the_preview_tells_what_cannot_be_read(arm: Exercise) -> None:
+def test_the_preview_shows_unreadable_cells(arm: Exercise) -> None:
     [*rows, last] = preview_pasted(f"A1 = {A1}\nA2 = {A2}'", arm, "links").rows
     assert len(rows) == 4
     assert [(each.row, each.problem.code) for each in last if each.problem] == [
@@ -168,7 +170,7 @@ def test_the_preview_tells_what_cannot_be_read(arm: Exercise) -> None:
     assert problem.code == "duplicate_matrix"
 
 
-def test_a_note_on_the_reading_is_told_once(arm: Exercise) -> None:
+def test_a_note_on_the_reading_is_shown_once(arm: Exercise) -> None:
     report = pasted(arm, f"A1 = {A1}\nA2 = {A2}")
     told = [code for row in report.rows for each in row.cells for code in codes(each)]
     assert told == ["blank_before_sign"]

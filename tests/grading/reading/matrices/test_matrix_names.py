@@ -1,4 +1,4 @@
-"""The places that the names of link transforms give, as textbooks and programs write them."""
+"""Names of link transforms in textbooks and programs, and the places that they mean."""
 
 import pytest
 
@@ -28,7 +28,7 @@ def places(names: str, count: int) -> list[int | None]:
         "T01 | T12 | T_{2,tool}", "T01 | T02 | T03", "T12 | T23 | T34", "H10 | H21 | H32",
     ],
 )  # fmt: skip
-def test_three_names_in_order(names: str) -> None:
+def test_three_names_mean_the_links_in_order(names: str) -> None:
     assert places(names, 3) == [1, 2, 3]
 
 
@@ -49,11 +49,11 @@ def test_three_names_in_order(names: str) -> None:
         ("A1*A2*A3", 3, [None]),
     ],
 )
-def test_other_names(names: str, count: int, expected: list[int | None]) -> None:
+def test_names_mean_these_places(names: str, count: int, expected: list[int | None]) -> None:
     assert places(names, count) == expected
 
 
-def test_names_that_count_from_zero_are_told_from_those_that_do_not() -> None:
+def test_names_may_count_from_zero_or_from_one() -> None:
     def unusual(*names: str) -> str:
         return places_of([indices_of(name) for name in names], len(names))[1]
 

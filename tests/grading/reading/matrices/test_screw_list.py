@@ -62,7 +62,7 @@ def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
 
 @pytest.mark.parametrize("header", ["ω | q", "q | ω", "v | s", "ω | ω"])
 def test_a_table_of_other_vectors_is_not_read(header: str, rpr: Exercise) -> None:
-    """No point on an axis is taken for v, nor v for ω."""
+    """A point on an axis is not read as v, and v is not read as ω."""
     rows = "| (0,0,0) | (0,0,1) |\n| (1,0,0) | (0,0,0) |\n| (0,L1,0) | (0,0,1) |"
     report = part(handed_in(rpr, {PART: f"| {header} |\n|---|---|\n{rows}"}), PART)
     assert report.verdict is Verdict.UNREADABLE
@@ -76,7 +76,7 @@ def test_every_way_of_writing_is_read(answer: Any, rpr: Exercise) -> None:
 
 
 @pytest.mark.parametrize("text", COLUMNS.values(), ids=COLUMNS)
-def test_axes_may_stand_in_columns(text: str, rpr: Exercise) -> None:
+def test_axes_may_be_columns(text: str, rpr: Exercise) -> None:
     report = part(handed_in(rpr, {PART: text}), PART)
     assert full_marks(report), report
     assert all_codes(report) - {"blank_before_sign", "blank_columns"} == {"columns_as_axes"}
@@ -93,7 +93,7 @@ def test_the_preview_has_the_same_rows(text: str, rpr: Exercise) -> None:
     ]
 
 
-def test_an_axis_that_is_not_there_is_missing(rpr: Exercise) -> None:
+def test_an_absent_axis_is_missing(rpr: Exercise) -> None:
     report = part(handed_in(rpr, {PART: "S1 = [0 0 1 0 0 0]; S3 = [0 0 1 0 -L1 0]"}), PART)
     assert {(row, verdict) for (row, _), verdict in not_correct(report).items()} == {
         ("2", Verdict.MISSING)
@@ -110,6 +110,6 @@ def test_an_axis_that_is_not_there_is_missing(rpr: Exercise) -> None:
         "S1 = [0 0 1]\nS2 = [0 0 0 1 0 0]",
     ],
 )
-def test_what_nobody_can_place_is_refused(text: str, rpr: Exercise) -> None:
+def test_ambiguous_axes_are_refused(text: str, rpr: Exercise) -> None:
     report = part(handed_in(rpr, {PART: text}), PART)
     assert report.verdict == Verdict.UNREADABLE

@@ -1,4 +1,4 @@
-"""A corpus of header spellings."""
+"""Spellings of headers and the columns and units that they mean."""
 
 import pytest
 
@@ -37,7 +37,7 @@ CASES = [(text, column) for column, texts in SPELLINGS.items() for text in texts
 
 
 @together(("text", "column"), CASES)
-def test_spelling(text: str, column: str) -> None:
+def test_a_spelling_means_this_column(text: str, column: str) -> None:
     assert read_header(text) == Header(column)
     assert read_header(f"  {text}\u00a0") == Header(column)
 
@@ -49,12 +49,12 @@ SHIFTED = [
 
 
 @pytest.mark.parametrize("text", SHIFTED)
-def test_a_lower_index_is_seen(text: str) -> None:
+def test_an_index_one_lower_is_recognized(text: str) -> None:
     assert read_header(text) == Header("a", shifted=True)
 
 
 @pytest.mark.parametrize("text", ["α_{i-1}", r"\alpha_{i-1}", "alphai-1", "alpha(i-1)", "α i-1"])
-def test_a_lower_index_of_alpha(text: str) -> None:
+def test_an_index_of_alpha_one_lower_is_recognized(text: str) -> None:
     assert read_header(text) == Header("alpha", shifted=True)
 
 
@@ -119,5 +119,5 @@ def test_units_of_lengths(text: str, column: str, metres: float) -> None:
         "q1*", "=", "a=", "90deg", "\x00", "\ud800",
     ],
 )  # fmt: skip
-def test_what_is_no_header(text: str) -> None:
+def test_other_texts_are_not_headers(text: str) -> None:
     assert read_header(text) is None

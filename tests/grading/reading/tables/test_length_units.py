@@ -1,4 +1,4 @@
-"""Units in the headers of a pasted table: honoured where that is safe, refused where it is not."""
+"""Units in the headers of a pasted table: converted if that is safe, else refused."""
 
 from collections.abc import Callable
 
@@ -55,7 +55,7 @@ def length_unit(exercise: Exercise) -> str | None:
     return Reader.of(exercise, draw(exercise, ""), "radians").length_unit
 
 
-def test_the_unit_of_an_exercise(make_exercise: Maker, arm: Exercise) -> None:
+def test_a_reader_has_the_length_unit_of_its_exercise(make_exercise: Maker, arm: Exercise) -> None:
     assert length_unit(arm) == "m"
     assert length_unit(make_exercise(ARM.replace("UNIT", "mm"))) == "mm"
     assert length_unit(make_exercise(ARM.replace("UNIT", "m", 1).replace("UNIT", "mm"))) is None
@@ -81,7 +81,7 @@ def test_a_number_is_converted(head: str, cell: str, metres: float, arm: Exercis
 
 @pytest.mark.parametrize("head", ["a [mm]", "a (m)"])
 @pytest.mark.parametrize("cell", ["l1", "2*l1 - l2/3", "l1*cos(q1)", "sqrt(l1^2 + l2^2)", "-l2"])
-def test_letters_are_lengths_whatever_the_unit(head: str, cell: str, arm: Exercise) -> None:
+def test_letters_are_not_converted(head: str, cell: str, arm: Exercise) -> None:
     [first, _] = read(arm, table(head, cell)).rows
     [plain, _] = read(arm, table("a", cell)).rows
     assert first.entries[0].readable
@@ -101,7 +101,7 @@ def test_a_number_among_letters_is_refused(cell: str, arm: Exercise) -> None:
     assert read(arm, table("a (m)", cell)).rows[0].entries[0].readable
 
 
-def test_a_conversion_is_told(arm: Exercise) -> None:
+def test_a_conversion_gets_a_note(arm: Exercise) -> None:
     [first, second] = read(arm, table("a [mm]", "250")).rows
     [finding] = first.entries[0].findings
     assert (finding.code, finding.hint) == (
@@ -110,7 +110,7 @@ def test_a_conversion_is_told(arm: Exercise) -> None:
     assert second.entries[0].findings == ()
 
 
-def test_an_exercise_of_several_units_cannot_convert(make_exercise: Maker) -> None:
+def test_an_exercise_with_several_units_converts_nothing(make_exercise: Maker) -> None:
     exercise = make_exercise(ARM.replace("UNIT", "m", 1).replace("UNIT", "mm"))
     [first, second] = read(exercise, table("a [mm]", "250")).rows
     assert first.entries[0].verdict is Verdict.UNREADABLE
@@ -149,7 +149,7 @@ def test_without_a_unit_the_submission_decides(arm: Exercise) -> None:
 
 
 def test_a_name_may_be_a_header_or_a_declared_length(make_exercise: Maker) -> None:
-    """The row a, alpha, d, q is a header even where all four are symbols; a, 0, d, q is not."""
+    """The row a, alpha, d, q is a header even if all four are symbols; a, 0, d, q is not."""
     text = ARM.replace("UNIT", "m").replace("l1", "a").replace("l2", "d")
     exercise = make_exercise(text)
     plain = "0.25, 90deg, a, q1\nd, 0, 0, q2 - 90deg"

@@ -41,7 +41,7 @@ def infos(report: PartReport) -> list[str]:
 @together("robot", ROBOTS)
 @together("spelling", SPELLINGS)
 @together("name", TABLES)
-def test_a_table_with_headers(
+def test_a_table_with_headers_gets_full_marks(
     name: str, spelling: str, robot: Robot, catalogue: Mapping[str, Exercise]
 ) -> None:
     text = TABLES[name]([SPELLINGS[spelling][1], *rows(robot, spelling)])
@@ -52,7 +52,7 @@ def test_a_table_with_headers(
 
 @together("robot", ROBOTS)
 @together("name", FORMATS)
-def test_a_table_without_headers(
+def test_a_table_without_headers_gets_full_marks(
     name: str, robot: Robot, catalogue: Mapping[str, Exercise]
 ) -> None:
     for text_rows in (rows(robot, "pi"), [row[1:] for row in rows(robot, "deg")]):
@@ -62,7 +62,9 @@ def test_a_table_without_headers(
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
-def test_columns_and_rows_in_any_order(robot: Robot, catalogue: Mapping[str, Exercise]) -> None:
+def test_columns_and_rows_may_be_in_any_order(
+    robot: Robot, catalogue: Mapping[str, Exercise]
+) -> None:
     lines = [[row[4], row[0], row[3], row[2], row[1]] for row in reversed(rows(robot, "pi"))]
     text = TABLES["CSV"]([["q", "joint", "offset", "link twist", "link length"], *lines])
     report = pasted(catalogue[robot.exercise], text)
@@ -77,7 +79,7 @@ def table_of(lines: Sequence[str]) -> str:
 RRRP_LINES = ["l2, 0, l1, q1*", "l3, 180deg, 0, q2*", "0, 0, l4, q3*", "0, 0, q4*, 0"]
 
 
-def test_spans_are_places_in_the_pasted_text(catalogue: Mapping[str, Exercise]) -> None:
+def test_spans_count_in_the_pasted_text(catalogue: Mapping[str, Exercise]) -> None:
     text = table_of([*RRRP_LINES[:2], "0, 0, l4 + foo, q3*", "0, , q4, 0"])
     report = pasted(catalogue[RRRP.exercise], text)
     assert not_correct(report) == {("3", "d"): Verdict.UNREADABLE, ("4", "alpha"): Verdict.MISSING}
@@ -86,7 +88,7 @@ def test_spans_are_places_in_the_pasted_text(catalogue: Mapping[str, Exercise]) 
     assert text[slice(*unknown.span)] == "foo"
 
 
-def test_a_row_of_another_length_costs_that_row(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_row_of_the_wrong_length_affects_only_itself(catalogue: Mapping[str, Exercise]) -> None:
     text = table_of([*RRRP_LINES[:3], "0, q4, 0"])
     report = pasted(catalogue[RRRP.exercise], text)
     assert [row.points for row in report.rows] == about(points(RRRP, report.max_points, [3] * 4))
@@ -96,7 +98,9 @@ def test_a_row_of_another_length_costs_that_row(catalogue: Mapping[str, Exercise
     assert text[slice(*feedback.span)] == "0, q4, 0"
 
 
-def test_a_decimal_comma_is_named_and_costs_its_cell(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_decimal_comma_is_named_and_affects_only_its_cell(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     text = "a;alpha;d;theta\nl2;0;l1;q1\nl3;3,14159;0;q2\n0;0;l4;q3\n0;0;q4;0"
     report = pasted(catalogue[RRRP.exercise], text)
     assert not_correct(report) == {("2", "alpha"): Verdict.UNREADABLE}
@@ -109,7 +113,7 @@ def test_the_rows_of_an_object_may_be_pasted(catalogue: Mapping[str, Exercise]) 
 
 
 @pytest.mark.parametrize("text", ["", "  \n "])
-def test_nothing_pasted_is_missing(text: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_an_empty_paste_is_missing(text: str, catalogue: Mapping[str, Exercise]) -> None:
     assert pasted(catalogue[RRRP.exercise], text).verdict is Verdict.MISSING
 
 
@@ -133,7 +137,7 @@ def test_nothing_pasted_is_missing(text: str, catalogue: Mapping[str, Exercise])
         ("<table><tr><td colspan=2>a", "spanning_cell", "colspan=2"),
     ],
 )
-def test_no_table_is_unreadable_as_a_whole(
+def test_a_text_without_a_table_is_unreadable_as_a_whole(
     text: str, code: str, marked: str | None, catalogue: Mapping[str, Exercise]
 ) -> None:
     report = pasted(catalogue[RRRP.exercise], text)
@@ -151,7 +155,7 @@ def test_an_unknown_header_is_named(catalogue: Mapping[str, Exercise]) -> None:
 
 
 @pytest.mark.parametrize("extra", ["type", "Joint variable", "comment"])
-def test_a_column_of_no_dh_table_is_left_aside(
+def test_a_column_of_another_quantity_is_ignored(
     extra: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     lines = [f"{line}, R" for line in RRRP_LINES]
@@ -180,7 +184,7 @@ def test_labels(labels: list[str], notes: list[str], catalogue: Mapping[str, Exe
     assert infos(report) == notes
 
 
-def test_indices_hint_at_a_convention_and_decide_nothing(
+def test_indices_of_headers_do_not_decide_the_convention(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     text = "\n".join(["a_{i-1}, α_{i-1}, d_i, θ_i", *RRRP_LINES])

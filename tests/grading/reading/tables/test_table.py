@@ -1,4 +1,4 @@
-"""Empty cells and dashes in a table, and parameters that stand in its rows."""
+"""Empty cells and dashes in a table, and tables with one parameter in each row."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -38,7 +38,7 @@ def graded(exercise: Exercise, answer: object) -> PartReport:
 
 
 def as_zero(exercise: Exercise) -> Exercise:
-    """The exercise with empty cells counted as 0."""
+    """Return the exercise with the rule that empty cells count as 0."""
     parts = tuple(
         each.model_copy(update={"empty_cells": "zero"}) if isinstance(each, DhTableSpec) else each
         for each in exercise.parts
@@ -47,7 +47,7 @@ def as_zero(exercise: Exercise) -> Exercise:
 
 
 @pytest.mark.parametrize("sign", SIGNS)
-def test_empty_cells_are_told_once_for_the_table(
+def test_empty_cells_get_one_message_for_the_table(
     catalogue: Mapping[str, Exercise], sign: str
 ) -> None:
     rows = with_empty(sign)
@@ -70,7 +70,7 @@ def test_blanks_and_dashes_in_one_table_are_one_slip(catalogue: Mapping[str, Exe
 
 
 @pytest.mark.parametrize("sign", SIGNS)
-def test_where_the_exercise_says_so_they_are_0(
+def test_empty_cells_are_0_if_the_exercise_says_so(
     catalogue: Mapping[str, Exercise], sign: str
 ) -> None:
     report = graded(as_zero(catalogue["scara"]), table(with_empty(sign)))
@@ -86,7 +86,7 @@ def test_0_where_the_joint_variable_belongs_is_wrong(catalogue: Mapping[str, Exe
     assert not_correct(report) == {("4", "theta"): Verdict.INCORRECT}
 
 
-def test_a_row_in_which_nothing_is_written_is_not_zeros(catalogue: Mapping[str, Exercise]) -> None:
+def test_an_empty_row_is_not_a_row_of_zeros(catalogue: Mapping[str, Exercise]) -> None:
     rows = [*SCARA[:3], ("", "", "-", "")]
     report = graded(as_zero(catalogue["scara"]), table(rows))
     assert set(not_correct(report).values()) == {Verdict.MISSING}
@@ -111,7 +111,7 @@ def test_parameters_in_rows(catalogue: Mapping[str, Exercise]) -> None:
         assert full_marks(graded(catalogue["scara"], {"rows": rows}))
 
 
-def test_a_list_for_each_parameter(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_table_may_have_a_list_for_each_parameter(catalogue: Mapping[str, Exercise]) -> None:
     assert full_marks(graded(catalogue["scara"], PARAMETERS))
     greek = dict(zip(("θ_i", "d_i", "α_i", "a_i"), reversed(PARAMETERS.values()), strict=True))
     assert full_marks(graded(catalogue["scara"], greek))
@@ -126,15 +126,17 @@ def test_a_list_for_each_parameter(catalogue: Mapping[str, Exercise]) -> None:
         [["a", "a1"], ["alpha", "0", "0"], ["d", "0"], ["theta", "theta1"]],
     ],
 )
-def test_lists_that_make_no_table(catalogue: Mapping[str, Exercise], answer: object) -> None:
+def test_lists_of_other_shapes_are_not_tables(
+    catalogue: Mapping[str, Exercise], answer: object
+) -> None:
     report = graded(catalogue["scara"], answer)
     assert report.points == 0
 
 
-def test_a_long_table_is_not_all_read_again(
+def test_a_long_table_is_not_read_twice(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Its first row is read twice, for it might be one of headers."""
+    """The first row is read twice, because it might be a row of headers."""
     exercise = catalogue["planar-rrr"]
     for cell, rows in (("q1", 3), ("q1" + "+0" * 60, 2)):
         reader = Reader.of(exercise, draw(exercise, cell), "degrees")

@@ -1,11 +1,18 @@
-"""The JSON shapes that people send tables in."""
+"""The cells of a table: its JSON shapes, and memoized rows."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
-from service.grading.reading.tables import table_json
-from service.grading.reading.tables.table_json import canonical_table
+from service.catalogue import Exercise
+from service.expressions import AngleUnit
+from service.grading.feedback import Finding
+from service.grading.numerics.samples import draw
+from service.grading.reading.entry import Entry, Reader
+from service.grading.reading.tables import cells as reading_cells
+from service.grading.reading.tables.cells import canonical_table, memoized_row, read_row
+from service.grading.work_budget import WorkBudget
 from tests.grading.support.submitting import table
 
 # Craig, Introduction to Robotics, the planar two-link arm in the standard convention.
@@ -43,11 +50,11 @@ def named(keys: str, rows: list[list[Any]]) -> list[dict[str, Any]]:
         [{"note": "base", **TABLE["rows"][0]}, {"why": "?", **TABLE["rows"][1]}],
     ],
 )
-def test_a_table_in_each_shape(answer: object) -> None:
+def test_a_table_in_each_shape_is_converted(answer: object) -> None:
     assert canonical_table(answer) == TABLE
 
 
-def test_what_is_said_besides_the_rows_stays() -> None:
+def test_fields_besides_the_rows_are_kept() -> None:
     answer = {"rows": ROWS, "convention": "modified"}
     assert canonical_table(answer) == {**TABLE, "convention": "modified"}
 
@@ -66,7 +73,7 @@ def test_the_canonical_answer_is_not_copied() -> None:
         {"a": "l1", "alpha": 0, "d": 0, "theta": "q1"},
     ],
 )  # fmt: skip
-def test_what_is_no_table_is_left_alone(answer: object) -> None:
+def test_an_answer_that_is_not_a_table_is_unchanged(answer: object) -> None:
     assert canonical_table(answer) == answer
 
 
@@ -78,18 +85,18 @@ def test_what_is_no_table_is_left_alone(answer: object) -> None:
         [["l2"], "0", "0", "q2"],
         None,
         "l2, 0, 0, q2",
-        # Two of one column; and a unit, which a cell of the canonical form could not carry.
+        # Two keys for one column; and a unit, which a canonical cell cannot have.
         {"a": "l2", "α": 0, "alpha": "pi", "d": 0, "theta": "q2"},
         {"a": "l2", "alpha (deg)": 90, "d": 0, "theta": "q2"},
         {"a [mm]": 300, "alpha": 0, "d": 0, "theta": "q2"},
     ],
 )
-def test_a_row_that_cannot_be_told_costs_only_itself(row: object) -> None:
+def test_an_ambiguous_row_affects_only_itself(row: object) -> None:
     assert canonical_table([ROWS[0], row]) == {"rows": [TABLE["rows"][0], row]}
     assert canonical_table({"rows": [ROWS[0], row]}) == {"rows": [TABLE["rows"][0], row]}
 
 
-def test_a_column_left_out_is_left_out() -> None:
+def test_an_omitted_column_stays_omitted() -> None:
     assert canonical_table([{"α": 0, "d": "d1"}]) == {"rows": [{"alpha": 0, "d": "d1"}]}
 
 
@@ -101,13 +108,13 @@ def test_the_tool_row_comes_last() -> None:
 
 
 @pytest.mark.parametrize("labels", [(1, 1), (2, "x"), ("", 1), (2, None)])
-def test_labels_that_give_no_order_leave_it_alone(labels: tuple[object, object]) -> None:
+def test_labels_without_an_order_leave_the_rows_unchanged(labels: tuple[object, object]) -> None:
     rows = [{"i": label, **row} for label, row in zip(labels, TABLE["rows"], strict=True)]
     assert canonical_table(rows) == TABLE
 
 
-def test_a_row_of_names_alone_is_a_row() -> None:
-    """Where a and d are lengths, the one row of a link transform reads like headers."""
+def test_a_single_row_of_names_is_a_row() -> None:
+    """If a and d are declared lengths, the only row of a table may look like headers."""
     assert canonical_table([["a", "alpha", "d", "theta"]]) == table([["a", "alpha", "d", "theta"]])
 
 
@@ -117,15 +124,85 @@ def test_too_many_rows_are_still_counted() -> None:
     assert len(found["rows"]) == 500
 
 
-def test_of_a_body_full_of_names_few_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each costs some ten microseconds, and a body has room for tens of thousands."""
+def test_only_the_first_names_of_a_body_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each name costs about ten microseconds, and a body may have tens of thousands of them."""
     read: list[str] = []
-    monkeypatch.setattr(table_json, "read_header", read.append)
+    monkeypatch.setattr(reading_cells, "read_header", read.append)
     canonical_table([{f"α_{i}_{j}": 0 for j in range(200)} for i in range(50)])
     assert 4 < len(read) < 100
 
 
 def test_a_number_of_any_length_raises_nothing() -> None:
-    """Python refuses to write out an integer of more than 4,300 digits."""
+    """Python raises an error if an integer of more than 4,300 digits is converted to text."""
     rows = [{"i": 10**5000, "a": 0, "alpha": 0, "d": 0, "theta": "q1"}]
     assert canonical_table(rows) == {"rows": [{"a": 0, "alpha": 0, "d": 0, "theta": "q1"}]}
+
+
+# Memoized rows have the same entries and the same cost as rows that are read.
+
+ROW = ("0", " -90", "d2 + 1", "theta2")
+
+
+@pytest.fixture
+def exercise(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["stanford-arm"]
+
+
+def reader_of(exercise: Exercise, unit: AngleUnit = "radians", symbols: int = 100) -> Reader:
+    samples = draw(exercise, {})
+    budget = WorkBudget(symbols=symbols)
+    return Reader(exercise.vocabulary, samples, unit, "m", budget)
+
+
+def told(entry: Entry) -> tuple[str, tuple[Finding, ...]]:
+    assert entry.expression is not None
+    return entry.expression.text(), entry.findings
+
+
+@pytest.mark.parametrize("unit", ["radians", "degrees"])
+def test_a_memoized_row_is_the_one_that_is_read(exercise: Exercise, unit: AngleUnit) -> None:
+    fresh, remembering = reader_of(exercise, unit), reader_of(exercise, unit)
+    expected = read_row(ROW, 2, fresh)
+    for _ in range(2):
+        remembering.budget.symbols = 100
+        found = memoized_row(ROW, 2, remembering)
+        assert found is not None
+        assert list(map(told, found)) == list(map(told, expected))
+        assert remembering.budget == fresh.budget
+
+
+def test_the_memo_distinguishes_units_and_row_numbers(exercise: Exercise) -> None:
+    inner = memoized_row(("0", "90", "0", "0"), 2, reader_of(exercise))
+    degrees = memoized_row(("0", "90", "0", "0"), 2, reader_of(exercise, "degrees"))
+    assert inner is not None
+    assert degrees is not None
+    assert told(inner[1]) != told(degrees[1])
+    assert memoized_row(("0", "0", "0", "theta_1 = 5"), 1, reader_of(exercise)) is not None
+    assert memoized_row(("0", "0", "0", "theta_1 = 5"), 2, reader_of(exercise)) is None
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ("0", "-90deg", "(d2", "theta2"),
+        ("0", "-90deg", "", "theta2"),
+        ("0", "-90deg", None, "theta2"),
+        (0, "-90deg", "d2", "theta2"),
+        ("0", "-90deg", "theta9", "theta2"),
+        ("0", "-90deg", " " * 90 + "d2", "theta2"),
+    ],
+)
+def test_long_or_unreadable_rows_are_not_memoized(
+    exercise: Exercise, cells: tuple[object, ...]
+) -> None:
+    reader = reader_of(exercise)
+    for _ in range(2):
+        assert memoized_row(cells, 2, reader) is None
+        assert reader.budget == WorkBudget(symbols=100)
+
+
+def test_the_memo_has_no_row_beyond_the_budget(exercise: Exercise) -> None:
+    assert memoized_row(ROW, 2, reader_of(exercise)) is not None
+    short = reader_of(exercise, symbols=3)
+    assert memoized_row(ROW, 2, short) is None
+    assert short.budget.symbols == 3

@@ -1,0 +1,356 @@
+"""Find the cells of a DH table or of one row, as JSON or as text, and read them as entries."""
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from itertools import accumulate
+from typing import Final, NamedTuple
+
+from service.expressions import AngleUnit, Vocabulary
+from service.grading.feedback import Finding
+from service.grading.numerics.samples import Samples
+from service.grading.reading.entry import Entry, Reader, unreadable
+from service.grading.reading.tables.cell_names import arranged_row, row_entries
+from service.grading.reading.tables.column_headers import (
+    ASIDE,
+    LABEL,
+    QUANTITIES,
+    Header,
+    named_parameter,
+    read_header,
+)
+from service.grading.reading.tables.row_labels import LAST, label_place
+from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
+from service.kinematics.chain import COLUMNS
+
+# Part 1: the JSON shapes of a table -> the one that the reader expects.
+
+_KEYS: Final = QUANTITIES.keys()
+_IN_ORDER: Final = (*QUANTITIES,)
+# Rows beyond these are counted but not read, and names beyond these are ignored.
+_MOST_ROWS: Final = 16
+_MOST_NAMES: Final = 40
+
+# A row's label, if it has one, and its cells by column; or None and the row as it was sent.
+_Read = tuple[object, object]
+
+
+def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
+    """Convert a table to ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``. Never raises.
+
+    The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or a
+    mapping from headers to lists. A row is a mapping whose keys are headers in any spelling ("α",
+    "alpha_i", "twist"), or a list in ``order``, with or without the row's number in front. A list
+    of four headers may precede such rows; or each list has the values of one parameter, after its
+    header. If all rows have a number or "e", they are put in that order.
+
+    Any other row is kept as it is; so is a row whose keys have a unit, or name one column twice.
+    The reader then refuses the row, or reads the cells that it knows. An answer without any row is
+    returned unchanged.
+    """
+    if isinstance(answer, Mapping):
+        rows = answer.get("rows")
+        if rows is None and (rows := _from_columns(answer)) is not None:
+            return {**answer, "rows": _canonical_rows(rows, order)}
+        if not isinstance(rows, list) or _is_canonical(rows):
+            return answer
+        return {**answer, "rows": _canonical_rows(rows, order)}
+    if not isinstance(answer, list):
+        return answer
+    found = answer if _is_canonical(answer) else _canonical_rows(answer, order)
+    has_rows = any(
+        isinstance(row, Mapping) and not _KEYS.isdisjoint(row) for row in found[:_MOST_ROWS]
+    )
+    return {"rows": found} if has_rows else answer
+
+
+def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
+    """Return the rows of a table that has one list for each parameter; None for other answers."""
+    columns = {key: cells for key, cells in answer.items() if isinstance(cells, list)}
+    lengths = {len(cells) for cells in columns.values()}
+    if not len(_IN_ORDER) <= len(columns) <= _MOST_NAMES or len(lengths) > 1:
+        return None
+    cells = [cells[:_MOST_ROWS] for cells in columns.values()]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*cells, strict=True)]
+
+
+def _with_parameters_in_columns(rows: list[object]) -> list[object]:
+    """Return the rows, transposed if the lists begin with a, α, d and θ.
+
+    A list of joint numbers may precede these lists.
+    """
+    lists = [row for row in rows[: len(_IN_ORDER) + 1] if isinstance(row, list)]
+    if len(lists) < len(rows) or len({len(row) for row in lists}) > 1 or not lists or not lists[0]:
+        return rows
+    first = [_header(row[0], {}) for row in lists[-len(_IN_ORDER) :]]
+    if sorted(header.column for header in first if header) != sorted(_IN_ORDER):
+        return rows
+    if len(lists) > len(_IN_ORDER):
+        lists[0] = ["i", *lists[0][1:]]
+    return [list(row) for row in zip(*lists, strict=True)]
+
+
+def has_unnamed_columns(answer: object) -> bool:
+    """True if the rows are lists without headers, so that only their order gives the columns."""
+    rows = answer.get("rows") if isinstance(answer, Mapping) else answer
+    if not isinstance(rows, list) or not any(isinstance(row, list) for row in rows):
+        return False
+    return _columns(_with_parameters_in_columns(rows), {}) is None
+
+
+def _is_canonical(rows: Sequence[object]) -> bool:
+    return all(isinstance(row, dict) and row.keys() == _KEYS for row in rows)
+
+
+def _canonical_rows(rows: list[object], order: Sequence[str]) -> list[object]:
+    names: dict[str, Header | None] = {}
+    rows = _with_parameters_in_columns(rows)
+    columns = _columns(rows, names)
+    body = rows if columns is None else rows[1:]
+    if columns is None:
+        columns = (LABEL, *order) if _are_numbered(rows[:_MOST_ROWS]) else tuple(order)
+    read = [_read_row(row, columns, names) for row in body[:_MOST_ROWS]]
+    return [*_in_order(read), *body[_MOST_ROWS:]]
+
+
+def _columns(rows: list[object], names: dict[str, Header | None]) -> tuple[str, ...] | None:
+    """Return the columns of rows that are lists, if the first list has the headers."""
+    first = rows[0] if len(rows) > 1 else None
+    if not isinstance(first, list) or len(first) not in (4, 5):
+        return None
+    headers = [_header(cell, names) for cell in first]
+    columns = tuple(header.column for header in headers if header and not header.unit)
+    is_head = set(_IN_ORDER) <= set(columns) <= {*_IN_ORDER, LABEL}
+    return columns if is_head and len(columns) == len(first) == len(set(columns)) else None
+
+
+def _are_numbered(rows: list[object]) -> bool:
+    """True if every row is a list of five values that begins with its own number, or "e"."""
+    if not all(isinstance(row, list) and len(row) == len(_IN_ORDER) + 1 for row in rows):
+        return False
+    numbers = [_number(row[0]) for row in rows if isinstance(row, list)]
+    return None not in numbers and len(set(numbers)) == len(numbers)
+
+
+def _number(cell: object) -> int | None:
+    """Return the number of a row. None for 0, and for a length such as l1."""
+    place = _place(cell)
+    return place if place == LAST or (place and str(cell).strip().isdecimal()) else None
+
+
+def _place(label: object) -> int | None:
+    """Return the place of the row with this label."""
+    # Python raises an error if a number of thousands of digits is converted to text.
+    is_number = isinstance(label, int | float) and abs(label) < _MOST_ROWS
+    return label_place(str(label)) if is_number or isinstance(label, str) else None
+
+
+def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | None]) -> _Read:
+    if isinstance(row, Mapping):
+        return _by_keys(row, names)
+    is_flat = isinstance(row, list) and not any(isinstance(cell, list | dict) for cell in row)
+    if not isinstance(row, list) or not is_flat or len(row) != len(columns):
+        return None, row
+    cells = dict(zip(columns, row, strict=True))
+    return cells.pop(LABEL, None), cells
+
+
+def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Read:
+    """Return the label and cells of a row that names its values."""
+    label: object = None
+    cells: dict[str, object] = {}
+    for key, value in row.items():
+        header = _header(key, names)
+        if header is None or header.column == ASIDE:
+            continue
+        if header.column == LABEL:
+            label = value
+        elif header.unit or header.column in cells:
+            return None, row
+        else:
+            cells[header.column] = value
+    return label, cells or row
+
+
+def _header(name: object, names: dict[str, Header | None]) -> Header | None:
+    """Return the header with this name; ``names`` memoizes those of earlier rows."""
+    if not isinstance(name, str):
+        return None
+    if name not in names:
+        names[name] = read_header(name) if len(names) < _MOST_NAMES else None
+    return names[name]
+
+
+def _in_order(rows: Sequence[_Read]) -> list[object]:
+    """Return the rows in the order of their labels, or unchanged unless each has its own label."""
+    places = [_place(label) for label, _ in rows]
+    known = [place for place in places if place is not None]
+    if len(known) < len(rows) or len(set(known)) < len(known):
+        return [row for _, row in rows]
+    return [rows[i][1] for i in sorted(range(len(rows)), key=known.__getitem__)]
+
+
+# Part 2: the text of one row -> its cells.
+
+_LONGEST_TEXT: Final = 2_000
+# A name before = or a colon, with or without an index: a, \alpha_1, θ₁.
+_NAMED: Final = re.compile(
+    r"(?<![^\s,;({\[$|&])(\\?[A-Za-z\u0370-\u03ff⍺]+)(?:_?\{?[0-9]\}?|_\{?i\}?|[₀-₉])?\s{0,8}[=:]"
+)
+_BETWEEN: Final = re.compile(r"(?:[\s,;$|&]|\\[,;: ]|\\\\|\\quad|\\qquad|\band\b)+")
+# The separators of rows in MATLAB, and of lines.
+_ENDS: Final = re.compile(r"[;\n]")
+# Four values separated by blanks only: a sign with blanks on both sides is an operator.
+_FOUR_VALUES: Final = re.compile(
+    r"\s*(?:[-+]?[^\s,;=+*/^-](?:[^\s,;=]*[^\s,;=+*/^-])?(?:[ \t]+|\s*$)){4}"
+)
+_BLANK: Final = re.compile(r"[ \t](?=[^ \t])")
+_STYLE: Final = re.compile(r"\\(?:text|textrm|textit|mathrm|mathit|operatorname)\s?\{([^{}]*)\}")
+_NONE: Final = re.compile(
+    r"none|n/a|no (?:dh )?row|there is (?:none|no row)|does(?: not|n't) exist|\{none: ?true\}"
+)
+
+
+class NamedCell(NamedTuple):
+    """The text of a cell, and the place in the whole text where it begins."""
+
+    text: str
+    start: int
+
+
+def named_cells(text: str) -> Mapping[str, NamedCell] | None:
+    """Return the cells of a text such as ``a=3, d=2, theta=90deg, alpha=0`` by column.
+
+    The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
+    ``=``. Return None for any other text, and an empty mapping if a parameter is named twice.
+    """
+    if len(text) > _LONGEST_TEXT:
+        return None
+    names = list(_NAMED.finditer(text))
+    if not names or text[: names[0].start()].strip(" \t\n([{$"):
+        return None
+    cells: dict[str, NamedCell] = {}
+    ends = [name.start() for name in names[1:]] + [len(text)]
+    for name, end in zip(names, ends, strict=True):
+        named = named_parameter(name[1])
+        if named is None:
+            return None
+        if named.column in cells:
+            return {}
+        cells[named.column] = _trimmed(text, name.end(), end)
+    return cells
+
+
+def _trimmed(text: str, start: int, end: int) -> NamedCell:
+    """Return the text between two places, without the separators around it."""
+    while leading := _BETWEEN.match(text, start, end):
+        start = leading.end()
+    value = text[start:end]
+    for trailing in _BETWEEN.finditer(value):
+        if trailing.end() == len(value):
+            value = value[: trailing.start()]
+            break
+    return NamedCell(value, start)
+
+
+def in_one_line(text: str) -> str:
+    """Return the text of a row with commas between its values and without outer round brackets.
+
+    No character moves, so that spans stay valid.
+    """
+    if len(text) > _LONGEST_TEXT:
+        return text
+    first, last = len(text) - len(text.lstrip()), len(text.rstrip())
+    if _is_enclosed(text[first:last]):
+        text = f"{text[:first]} {text[first + 1 : last - 1]} {text[last:]}"
+    if "," not in text and len(_ENDS.findall(text.strip())) == len(QUANTITIES) - 1:
+        return text[:first] + _ENDS.sub(",", text[first:last]) + text[last:]
+    if _FOUR_VALUES.fullmatch(text):
+        return text[:first] + _BLANK.sub(",", text[first:last]) + text[last:]
+    return text
+
+
+def _is_enclosed(text: str) -> bool:
+    """True if the last character closes the first bracket."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return False
+    depths = accumulate({"(": 1, ")": -1}.get(sign, 0) for sign in text[:-1])
+    return min(depths) > 0
+
+
+def says_none(text: str) -> bool:
+    r"""True if the text says that there is no row: none, n/a, \text{none}."""
+    if len(text) > _LONGEST_TEXT:
+        return False
+    plain = _STYLE.sub(r"\1", text)
+    plain = "".join(sign for sign in plain if sign not in "$\"'“”").strip().rstrip(".!").lower()
+    return _NONE.fullmatch(" ".join(plain.split())) is not None
+
+
+# Part 3: the cells of a row -> entries.
+
+# Longer rows are not memoized: hardly any two students write the same one.
+_LONGEST_MEMOIZED: Final = 60
+_MEMOIZED: Final = 4096
+_NO_SAMPLES: Final = Samples({})
+
+
+def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
+    """Read the cells of row ``number``, which is None if unknown.
+
+    A cell is a JSON value, or the finding why it is unreadable.
+    """
+    found = arranged_row(cells, reader.vocabulary)
+    ordered = [cells[i] for i in found.order] if found else cells
+
+    def read(column: int) -> Entry:
+        raw = ordered[column]
+        if isinstance(raw, Finding):
+            return unreadable(raw)
+        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
+
+    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
+
+
+def memoized_row(
+    cells: Sequence[object], number: int | None, reader: Reader
+) -> tuple[Entry, ...] | None:
+    """Return the memoized entries of a row of short, readable texts; None for any other row.
+
+    Most students of a class write the same rows, and a lookup takes a tenth of reading one.
+    """
+    a, alpha, d, theta = cells
+    if not (type(a) is type(alpha) is type(d) is type(theta) is str):
+        return None
+    if len(a) + len(alpha) + len(d) + len(theta) > _LONGEST_MEMOIZED:
+        return None
+    found = _read_texts(a, alpha, d, theta, number, reader.vocabulary, reader.angle_unit)
+    if found is None or found.symbols > reader.budget.symbols:
+        return None
+    reader.budget.symbols -= found.symbols
+    return found.entries
+
+
+class _MemoizedRow(NamedTuple):
+    """The entries of a row, and the number of symbols that were read."""
+
+    entries: tuple[Entry, ...]
+    symbols: int
+
+
+@lru_cache(maxsize=_MEMOIZED)
+def _read_texts(
+    a: str,
+    alpha: str,
+    d: str,
+    theta: str,
+    number: int | None,
+    vocabulary: Vocabulary,
+    angle_unit: AngleUnit,
+) -> _MemoizedRow | None:
+    budget = WorkBudget(repairs=0)
+    reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
+    entries = read_row((a, alpha, d, theta), number, reader)
+    # Rows that need repairs are not memoized: each submission must pay for its own repairs.
+    is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
+    return _MemoizedRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None
