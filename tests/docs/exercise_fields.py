@@ -82,7 +82,7 @@ shows what students hand in.
 
 A *formula* is text in the students' notation, such as `"l1 + 0.1"` or `"-90deg"`, or a number. An
 angle without a unit is in radians. A key that is not listed here is an error, and so is a value of
-another type.
+another type. A text has at most 20,000 characters, and no invisible control characters.
 
 This page is generated: `python -m tests.docs.exercise_fields`."""
 _PARTS: Final = f"""\
