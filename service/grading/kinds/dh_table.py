@@ -270,9 +270,9 @@ def _judged(
     grading: Grading,
 ) -> Judged:
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
-    cases = wrong_cells(judgement, grading)
+    cases = wrong_cells(judgement, grading) if judgement.wrong else {}
     # A slip of the whole table is told once, and needs of its cells no more than the corrections.
-    slips = {} if found else diagnose_cells(cases, judgement)
+    slips = diagnose_cells(cases, judgement) if cases and not found else {}
     places = tuple(
         Place(judgement.rows[i].label, COLUMNS[column], case.correction)
         for (i, column), case in cases.items()
