@@ -30,7 +30,11 @@ from service.grading.judging.report_rows import (
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content
-from service.grading.judging.table_filled import as_still, with_lazy_cells, with_wrong_cells
+from service.grading.judging.table_filled import (
+    values_with_zeros,
+    with_lazy_cells,
+    with_wrong_cells,
+)
 from service.grading.numerics.comparison import Match
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
@@ -63,7 +67,7 @@ WRONG_THROUGHOUT = 3
 
 
 def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | None:
-    """The rows of a table; None where there are none."""
+    """The rows of a table; None if there are none."""
     empty_is_zero = part.empty_cells == "zero"
     table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
     return table if table.rows else None
@@ -292,7 +296,8 @@ def _judged(
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
-        stands_still=judgement.wrong > 0 and stands_still(as_still(answer), _QUANTITIES, grading),
+        stands_still=judgement.wrong > 0
+        and stands_still(values_with_zeros(answer), _QUANTITIES, grading),
         lost=first.lost,
         chain=lambda: _chain(answer, first, convention),
     )
@@ -327,7 +332,7 @@ def _of_the_whole(
 def _chain(
     answer: StudentTable, judgement: Judgement, convention: Convention
 ) -> StudentChain | None:
-    """A table as a chain; None where not all of it has a value."""
+    """A table as a chain; None if not all of it has a value."""
     if np.isnan(answer.values).any():
         return None
 
