@@ -22,7 +22,7 @@ from service.grading import (
     Verdict,
     grade,
 )
-from service.grading.feedback import told_once
+from service.grading.feedback import with_shared_messages
 from service.grading.report import messages_of
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
@@ -197,7 +197,9 @@ def test_what_several_cells_share_is_told_once_with_its_places(
 def test_the_correction_that_all_places_share_stands_with_the_message() -> None:
     same = Correction("0", "0")
     told = Feedback("x", Severity.ERROR, "No.", correction=same)
-    report = told_once(one_row(tuple(CellReport(c, Verdict.INCORRECT, (told,)) for c in "ad")))
+    report = with_shared_messages(
+        one_row(tuple(CellReport(c, Verdict.INCORRECT, (told,)) for c in "ad"))
+    )
     [message] = report.feedback
     assert message.correction == same
     assert message.places == (Place("1", "a"), Place("1", "d"))
@@ -207,7 +209,7 @@ def test_the_correction_that_all_places_share_stands_with_the_message() -> None:
 def test_a_message_with_a_span_stays_with_its_cell() -> None:
     unread = Feedback("x", Severity.ERROR, "No.", span=(0, 1))
     report = one_row(tuple(CellReport(label, Verdict.UNREADABLE, (unread,)) for label in "ad"))
-    assert told_once(report) == report
+    assert with_shared_messages(report) == report
 
 
 def one_row(cells: tuple[CellReport, ...]) -> PartReport:

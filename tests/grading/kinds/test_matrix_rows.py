@@ -72,7 +72,7 @@ def test_a_bad_entry_affects_only_itself(
     elif code == "value" and known:
         code = "independent_of"
     elif code == "quantity" and POSE[i][j] == "0":
-        # An expected 0 fits every quantity: the message is that it must not contain a joint variable.
+        # An expected 0 fits every quantity: the message is on the joint variable.
         code = "joint_variable_extra"
     assert (code, (Place(*place),)) in [(m.code, places) for m, places, _ in messages_of(report)]
 
