@@ -1,4 +1,4 @@
-"""The engine that finds which misconception explains a wrong answer."""
+"""The engine that finds the misconception behind a wrong answer."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -40,7 +40,7 @@ def negative(case: WrongNumber) -> Finding | None:
     return Finding("negative", "Negative.") if case.actual < 0 else None
 
 
-def test_the_first_that_explains_is_taken_and_none_after_it_is_tried() -> None:
+def test_the_search_ends_at_the_first_explanation() -> None:
     case = WrongNumber(1)
     found = explanation(case, (too_small, too_large))
     assert found is not None
@@ -55,7 +55,7 @@ def test_each_misconception_is_tried_until_one_explains() -> None:
     assert explanation(WrongNumber(5), (too_small, too_large)) is None
 
 
-def test_two_findings_where_two_misconceptions_are_held() -> None:
+def test_two_misconceptions_give_two_findings() -> None:
     found = explanation(WrongNumber(2), (too_small,))
     assert found is not None
     assert [finding.code for finding in found.findings] == ["two", "small"]
@@ -68,7 +68,7 @@ def test_a_misconception_may_be_a_function_of_something_else() -> None:
     assert explanation(WrongNumber(3), (of_text,), "abc") is not None
 
 
-def test_checks_come_first() -> None:
+def test_checks_are_tried_first() -> None:
     def code(case: WrongNumber) -> str | None:
         finding = diagnosed(case, (too_small,), (negative,))
         return finding.code if finding else None
@@ -76,5 +76,5 @@ def test_checks_come_first() -> None:
     assert [code(WrongNumber(n)) for n in (-1, 1, 5)] == ["negative", "one", None]
 
 
-def test_hypotheses_in_the_order_of_the_list() -> None:
+def test_hypotheses_are_tried_in_the_order_of_the_list() -> None:
     assert [each.answer for each in hypotheses_of(0, (too_large, too_small))] == [8, 1, 2]
