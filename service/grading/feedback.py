@@ -96,8 +96,8 @@ def parts_at_level(
 ) -> tuple[PartReport, ...]:
     """Return the parts with the messages that are visible at the level, without repetitions.
 
-    ``left_out`` is the message, if any, that the work budget did not allow all explanations. This
-    function removes no corrections: at lower levels, messages are made without them.
+    ``left_out`` is the message that explanations are incomplete, or None. This function does not
+    remove corrections: at lower levels, messages are made without them.
     """
     has_hints = level in _LEVELS_WITH_HINTS
     visible = _with_hints if has_hints else _on_reading

@@ -69,5 +69,5 @@ def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:
 
 
 def as_entries(matrices: Matrices) -> Numbers:
-    """Move the axis of the samples: ``(..., SAMPLES, rows, columns)`` to the last place."""
+    """Convert ``(..., SAMPLES, rows, columns)`` to ``(..., rows, columns, SAMPLES)``."""
     return np.moveaxis(matrices, -3, -1)

@@ -136,7 +136,7 @@ def _of_right(content: Content, marking: Marking) -> Shares:
 def _by_content(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
     """Return the shares by content, and the cost of one wrong cell.
 
-    The latter is also the cost of a slip that no cell shows. A wrong cell costs a unit, and a group
+    The latter is also the cost of a slip outside all cells. A wrong cell costs a unit, and a group
     cannot lose more than it is worth. A student's own frames may have more content cells than the
     reference's; that does not reduce the cost of a wrong cell.
     """
@@ -222,7 +222,7 @@ def _besides(content: Content) -> float:
 
 
 def _by_cells(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """Return the shares if every cell counts the same, and the cost of one cell."""
+    """Return the shares if every cell counts the same, and the cost of a slip outside all cells."""
     cells = sum(map(len, verdicts))
     right = [row.count(Verdict.CORRECT) for row in verdicts]
     shares = Shares([len(row) / cells for row in verdicts], [count / cells for count in right])
@@ -230,13 +230,13 @@ def _by_cells(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
 
 
 def _by_rows(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """Return the shares if a row counts only as a whole, and the cost of one row."""
+    """Return the shares if rows count only as a whole, and the cost of a slip outside all cells."""
     share = 1 / len(verdicts)
     return Shares([share] * len(verdicts), [share * _is_right(row) for row in verdicts]), share
 
 
 def _as_a_whole(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """Return the shares if the part counts only as a whole, and its cost."""
+    """Return the shares if all or nothing is earned, and the cost of a slip outside all cells."""
     shares, _ = _by_content(content, verdicts)
     return shares.with_total(float(all(map(_is_right, verdicts)))), 1.0
 

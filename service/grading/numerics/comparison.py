@@ -184,8 +184,8 @@ def nearly_equal(
     """Return a mask ``(...)`` of the values ``(..., samples)`` that are equal except for rounding.
 
     Use this for guesses, such as which slip explains an answer, but never for a verdict. ``slack``
-    is a known rounding error. The tolerance is at least three figures of the values' size, or of
-    the largest size of the robot's numbers, if that is smaller.
+    is a known rounding error. The tolerance is at least a thousandth of the values' size, which
+    counts at most as much as the robot's largest numbers.
     """
     error = np.abs(difference(one, other, angle)).max(axis=-1)
     size = np.sqrt(np.mean(other * other, axis=-1))

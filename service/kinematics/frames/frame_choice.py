@@ -211,7 +211,7 @@ def _with_others(chosen: NDArray[np.int_], others: NDArray[np.int_]) -> NDArray[
 def _counts(
     wrong: NDArray[np.bool_], expected: Numbers, row: RowConstants, length_scale: float
 ) -> tuple[_RowCounts, _RowCounts]:
-    """Return the counts of the X and of the Z of each of N rows."""
+    """Return the counts of the cells in X (a, α) and of those in Z (d, θ), for N rows."""
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
     of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
     # A constant beside a wrong joint variable does not count.

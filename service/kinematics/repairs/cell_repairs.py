@@ -145,9 +145,10 @@ def _right_part(
 def _turn_of_a(
     m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """Return the turn about A's axis that takes what B leaves unchanged from M to N: ``(C, L)``.
+    """Return the turn ``(C, L)`` about A's axis, from directions and points that B does not change.
 
-    For u → v about the axis a it is atan2(a·(u×v), u·v − (a·u)(a·v)); several are summed.
+    The turn about a from u (in M) to v (in N) is atan2(a·(u×v), u·v − (a·u)(a·v)); the arguments of
+    several pairs are summed.
     """
     c = np.arange(len(axis_a))
     unchanged = np.where(b_turns, 0.0, [[1.0, 1.0, 1.0, 0.0]])
