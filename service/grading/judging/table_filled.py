@@ -37,7 +37,7 @@ def with_wrong_cells(answer: StudentTable, grading: Grading) -> StudentTable | N
     return _filled(answer, empty, np.repeat(numbers[..., None], SAMPLES, axis=-1))
 
 
-def values_with_zeros(answer: StudentTable) -> Table:
+def with_zeros(answer: StudentTable) -> Table:
     """Return the numbers of the table, with 0 in empty cells, so that their joints do not move."""
     return np.where(_empty_cells(answer)[..., None], 0.0, answer.values)
 

@@ -30,11 +30,7 @@ from service.grading.judging.report_rows import (
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content
-from service.grading.judging.table_filled import (
-    values_with_zeros,
-    with_lazy_cells,
-    with_wrong_cells,
-)
+from service.grading.judging.table_filled import with_lazy_cells, with_wrong_cells, with_zeros
 from service.grading.numerics.comparison import Match
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
@@ -200,8 +196,7 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
     if unread.any() and not unread.all():
         in_silence = replace(grading, explains=False)
         filled = [with_lazy_cells(fixed, convention, grading)]
-        # The search must not find more for a table with an empty cell than for one with a wrong
-        # cell.
+        # The search must not find more beside an empty cell than beside a wrong one.
         if judged.is_wrong and (wrong := with_wrong_cells(fixed, grading)):
             grading.reader.budget.charge_search(_search_work(part, wrong, grading))
             filled.append(wrong)
@@ -298,8 +293,7 @@ def _judged(
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
-        stands_still=judgement.wrong > 0
-        and stands_still(values_with_zeros(answer), _QUANTITIES, grading),
+        stands_still=judgement.wrong > 0 and stands_still(with_zeros(answer), _QUANTITIES, grading),
         lost=first.lost,
         chain=lambda: _chain(answer, first, convention),
     )
