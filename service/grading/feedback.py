@@ -1,4 +1,4 @@
-"""Findings, the messages on them, and what a feedback level tells of these."""
+"""Findings, their messages, and the messages that are visible at each feedback level."""
 
 from collections.abc import Callable, Iterable, Sequence, Set
 from dataclasses import dataclass, replace
@@ -23,12 +23,12 @@ EXPECTED = "expected"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A message: a hint where to look, which never holds the value, and the correction itself.
+    """A hint where to look, which never contains the right value, and the correction itself.
 
-    ``code`` is stable, so that a class can be counted. ``correction`` is a formula, or an
-    instruction in words; empty where there is none. ``values`` is a counterexample. ``reading``
-    marks a finding on the reading of a text and not on its worth: it gives nothing away and is
-    visible at every level. ``suggestion`` is the repaired text of one that cannot be read.
+    ``code`` is stable, so that mistakes of a class can be counted. ``correction`` is a formula, an
+    instruction in words, or empty. ``values`` is a counterexample. ``reading`` is true for a
+    finding on how a text was read; it reveals nothing and is visible at every level. ``suggestion``
+    is the repaired text of an unreadable one.
     """
 
     code: str
@@ -41,7 +41,7 @@ class Finding:
     suggestion: str | None = None
 
     def message(self, places: tuple[Place, ...] = (), *, corrects: bool) -> Feedback:
-        """The message, which tells the correction only where it ``corrects``."""
+        """Return the message, with the correction only if ``corrects`` is true."""
         correction, values = self.correction or None, self.values
         if not corrects:
             correction = None
@@ -60,17 +60,17 @@ class Finding:
 
 
 def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
-    """The finding that something cannot be read."""
+    """Return the finding that something cannot be read."""
     return Finding(code, message, span=span, reading=True)
 
 
 def reading_note(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
-    """The finding that something was read, and how."""
+    """Return a finding on how something was read."""
     return Finding(code, message, severity=Severity.INFO, span=span, reading=True)
 
 
 class UnreadableAnswerError(Exception):
-    """Nothing of an answer can be read; ``finding`` says what it would have to look like."""
+    """An answer is unreadable as a whole; ``finding`` says what is expected."""
 
     def __init__(self, finding: Finding) -> None:
         super().__init__(finding.hint)
@@ -86,31 +86,31 @@ ROUNDED = Finding(
 
 Messages = tuple[Feedback, ...]
 
-_TELLS_HINTS: Final = (FeedbackLevel.FULL, FeedbackLevel.HINTS)
-# The note on the reading that a slip makes needless where it is told, by the slip's code.
+_LEVELS_WITH_HINTS: Final = (FeedbackLevel.FULL, FeedbackLevel.HINTS)
+# The note on the reading that is redundant beside the message on a slip, by the slip's code.
 _NOTES_ON: Final = {"swapped_atan2": "atan2_order", "degrees_as_radians": "bare_radians"}
 
 
-def told_at(
+def parts_at_level(
     parts: Iterable[PartReport], level: FeedbackLevel, left_out: Feedback | None
 ) -> tuple[PartReport, ...]:
-    """The parts with the messages that the level lets through, each told once.
+    """Return the parts with the messages that are visible at the level, without repetitions.
 
-    ``left_out`` says that something was not explained for want of work, if so. Corrections and
-    right values are left out where messages are made, since they need not be worked out then.
+    ``left_out`` is the message that explanations are incomplete, or None. This function does not
+    remove corrections: at lower levels, messages are made without them.
     """
-    tells_hints = level in _TELLS_HINTS
-    visible = _with_hints if tells_hints else _on_reading
-    told = [told_once(_filtered(part, visible)) for part in parts]
-    if left_out is not None and tells_hints:
-        told = _with_left_out(told, left_out)
+    has_hints = level in _LEVELS_WITH_HINTS
+    visible = _with_hints if has_hints else _on_reading
+    shown = [with_shared_messages(_filtered(part, visible)) for part in parts]
+    if left_out is not None and has_hints:
+        shown = _with_left_out(shown, left_out)
     if level is FeedbackLevel.SCORE:
-        told = [_without_rows(part) for part in told]
-    return tuple(told)
+        shown = [_without_rows(part) for part in shown]
+    return tuple(shown)
 
 
 def _filtered(part: PartReport, visible: Callable[[Messages], Messages]) -> PartReport:
-    """The part with the visible ones of its messages."""
+    """Return the part with only its visible messages."""
     if not part.feedback and not any(map(_has_messages, part.rows)):
         return part
     rows = tuple(_filtered_row(row, visible) if _has_messages(row) else row for row in part.rows)
@@ -136,7 +136,7 @@ def _with_hints(messages: Messages) -> Messages:
 
 
 def _on_reading(messages: Messages) -> Messages:
-    """Those that say what could not be read, or how something was: no hints."""
+    """Return the messages on how texts were read, without hints."""
     return tuple(_unmarked(each) for each in messages if each.reading)
 
 
@@ -145,7 +145,7 @@ def _unmarked(message: Feedback) -> Feedback:
 
 
 def _with_left_out(parts: list[PartReport], left_out: Feedback) -> list[PartReport]:
-    """The parts; the first one that has a wrong cell without a message says that there are such."""
+    """Return the parts, with the message ``left_out`` on the first that has an unexplained cell."""
     for i, part in enumerate(parts):
         if _has_unexplained_cells(part):
             told = replace(part, feedback=(*part.feedback, left_out))
@@ -167,7 +167,10 @@ def _has_unexplained_cells(part: PartReport) -> bool:
 
 
 def _without_rows(report: PartReport) -> PartReport:
-    """The bare mark, with what could not be read: that is no hint, and a student must know it."""
+    """Return the mark of a part without rows, but with all messages on unreadable cells.
+
+    Those messages reveal nothing, and students need them.
+    """
     reading = tuple(
         replace(message, places=(Place(row.label, cell.label),))
         for row in report.rows
@@ -177,19 +180,18 @@ def _without_rows(report: PartReport) -> PartReport:
     return replace(report, rows=(), feedback=(*report.feedback, *reading))
 
 
-# Notes that say all they have to say in their words: shared by several cells, they are told once,
-# without the places in the cells' texts.
+# Notes that need no span: if several cells share one, it is shown once, without spans.
 _WORDS_ENOUGH = frozenset({"equation", "letter_case"})
 
-# What a message says: its code, its sentence, the repaired text.
+# The content of a message: its code, its sentence, the repaired text.
 _Said = tuple[str, str, str | None]
 
 
-def told_once(report: PartReport) -> PartReport:
-    """The report with each message that several places share told once, with the part.
+def with_shared_messages(report: PartReport) -> PartReport:
+    """Replace equal messages on several cells by one message on the part, with all their places.
 
-    Messages are the same where they say the same; of their counterexamples the first is kept. One
-    with a span stays with its cell, whose text the span is in, unless its words are enough.
+    Messages are equal if their code, sentence and repaired text are. The first counterexample is
+    kept. A message with a span stays with its cell, unless it is one of ``_WORDS_ENOUGH``.
     """
     in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
     for row in report.rows:
@@ -210,7 +212,7 @@ def told_once(report: PartReport) -> PartReport:
 
 
 def _is_shareable(message: Feedback) -> bool:
-    """Whether the message says the same in another cell."""
+    """True if the message may be shared by several cells."""
     return message.span is None or message.code in _WORDS_ENOUGH
 
 
@@ -219,7 +221,7 @@ def _said(message: Feedback) -> _Said:
 
 
 def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
-    """The first of the messages with the places of all."""
+    """Return the first of equal messages with the places of all."""
     first = replace(told[0][1], span=None)
     if len({message.correction for _, message in told}) == 1:
         return replace(first, places=tuple(dict.fromkeys(place for place, _ in told)))
@@ -228,13 +230,13 @@ def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
 
 
 def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
-    """The cell with the messages that are its own."""
+    """Return the cell without its shared messages."""
     own = tuple(m for m in cell.feedback if not _is_shareable(m) or _said(m) not in shared)
     return cell if len(own) == len(cell.feedback) else replace(cell, feedback=own)
 
 
 def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
-    """The messages on a part, those with the same words as one with all their places."""
+    """Return the messages on a part, joining equal ones into one with all their places."""
     found: dict[object, Feedback] = {}
     for i, message in enumerate(messages):
         is_placed = message.places is not None and message.span is None

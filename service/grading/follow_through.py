@@ -1,8 +1,8 @@
-"""Marks for an answer that follows from an earlier answer of the student's own.
+"""Marks for an answer that follows from the student's own earlier answer.
 
-An early slip must not cost every later part. A part that follows from another one is judged by the
-student's own answer there where the reference says that it is wrong; but only an answer that is
-good enough to carry it, so that a trivial table cannot buy easy marks.
+One early slip must not make every later part wrong. So if a part is wrong by the reference, it is
+also judged by the student's answer to the part that it follows. That answer must be good enough, so
+that a trivial table does not earn easy marks later.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,18 +24,18 @@ from service.kinematics.transforms import Matrices, Numbers, inverse, is_rigid
 _Quantities = Sequence[Kind] | Sequence[Sequence[Kind]]
 
 
-# By how much a joint is moved: in radians, or in the exercise's typical length.
+# The step by which a joint is moved, in radians or in the exercise's typical length.
 STEPS = (0.4, 1.1)
 
 ToolAt = Callable[[Samples], Matrices]
 
 
 def can_carry(chain: StudentChain, grading: Grading) -> bool:
-    """Whether an answer is an arm that later parts may follow from.
+    """True if later parts may follow from an answer.
 
-    It must be a rigid chain in which each joint moves as its kind does, about or along one axis, by
-    its own variable; and it must move in as many ways as the robot. All that follows from another
-    arm may be much easier.
+    The answer must be a rigid chain. Each joint must turn about, or slide along, one axis by its
+    own variable. The arm must have as many degrees of freedom as the robot. Other arms may make
+    later parts much easier.
     """
     robot = grading.exercise.reference
     if robot is None or not is_rigid(chain.frames, NOT_RIGID).all():
@@ -48,13 +48,13 @@ def can_carry(chain: StudentChain, grading: Grading) -> bool:
 
 
 def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
-    """The axes of all joints, ``(HALF, 6, joints)``; None where one does not move as its kind does.
+    """Return the axes of all joints, ``(HALF, 6, joints)``, in the exercise's typical length.
 
-    Lengths are in the exercise's typical length.
+    Return None if a joint does not turn about, or slide along, one axis.
     """
     found = []
     for i in range(len(grading.exercise.joints)):
-        # An axis stays where it is however far its joint moves, and wherever the later joints are.
+        # An axis depends neither on its own joint's variable nor on those of later joints.
         near, far = (_axis(tool_at, i, step, grading, later=step is STEPS[1]) for step in STEPS)
         if near is None or far is None or np.abs(near - far).max() > SAME_AXIS:
             return None
@@ -63,10 +63,10 @@ def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
 
 
 def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool) -> Numbers | None:
-    """The axis ``(HALF, 6)`` in the base frame that joint ``i`` moves the tool about or along.
+    """Return the axis ``(HALF, 6)`` of joint ``i`` in the base frame.
 
-    None where its displacement is not the ``step`` about or along one axis. With ``later`` the
-    joints after it stand elsewhere.
+    Return None if the tool does not move by ``step`` about or along one axis. With ``later``, the
+    later joints have other values.
     """
     scale, joints = grading.exercise.length_scale, grading.exercise.joints
     values = {name: np.tile(numbers[:HALF], 2) for name, numbers in grading.samples.values.items()}
@@ -80,15 +80,14 @@ def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool
     axis = sliding_axis(displacement, step) if prismatic else turning_axis(displacement, step)
     error = np.abs(exponential(axis, step) - displacement).max()
     length = np.linalg.norm(axis[:, 3:] if prismatic else axis[:, :3], axis=-1)
-    # NaN is not smaller than anything.
+    # NaN fails this comparison.
     return axis if max(error, np.abs(length - 1).max()) < SAME_AXIS else None
 
 
 def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> bool:
-    """Whether the joints move no entry ``(rows, columns, SAMPLES)`` of an answer that was read.
+    """True if the joints move no entry ``(rows, columns, SAMPLES)`` of an answer that was read.
 
-    ``quantities`` are those of the columns, or of all entries. Nobody knows how an entry moves that
-    was not read.
+    ``quantities`` are those of the columns, or of all entries. Unread entries are ignored.
     """
     scales = np.where(np.array(quantities) == "length", grading.exercise.length_scale, 1.0)
     motion = np.abs(changes(values)).max(axis=-1)
@@ -103,7 +102,7 @@ STANDS_STILL = Finding(
 
 
 def follows_from(earlier: PartSpec) -> Finding:
-    """The message to a student who earned the points by following through."""
+    """Return the message that the points were earned by following from an earlier answer."""
     return Finding(
         "follow_through",
         f"This earns its points, for it follows from your answer to {earlier.title!r}. That answer "

@@ -1,4 +1,4 @@
-"""The formula that a student would write for values of which only the numbers are known."""
+"""Find the formula that a student would write for given numbers."""
 
 from fractions import Fraction
 
@@ -21,17 +21,17 @@ _Term = tuple[int, Node]
 
 
 def spelled(formula: Node, spelling: Spelling) -> Correction:
-    """A right formula in the student's spelling."""
+    """Return a right formula in the student's spelling."""
     return Correction(to_text(formula, spelling), to_latex(spelling.renamed(formula)))
 
 
 def value_formula(
     values: Numbers, angle: bool, exercise: Exercise, samples: Samples, spelling: Spelling
 ) -> Correction | None:
-    """``values`` ``(SAMPLES,)`` as a sum of multiples of the exercise's letters and a constant.
+    """Return ``values`` ``(SAMPLES,)`` as a sum of multiples of letters and a constant.
 
-    That is the form of table cells: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. None if the values are
-    of another form.
+    Table cells have this form: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Return None if the values
+    have another form.
     """
     (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
     return sum_formula(values, counts, angle, exercise, samples, spelling)
@@ -45,7 +45,7 @@ def sum_formula(
     samples: Samples,
     spelling: Spelling,
 ) -> Correction | None:
-    """``value_formula`` where the multiples of the joint variables are known, or none (None)."""
+    """Return ``value_formula`` for known multiples of joint variables; None if they are None."""
     if counts is None:
         return None
     moving = [joint.variable for joint in exercise.joints]
@@ -67,9 +67,9 @@ def sum_formula(
 def multiples(
     constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Whole multiples of letters and a remainder that add up to ``constant`` ``(HALF,)``.
+    """Return whole multiples of letters and a remainder with the sum ``constant`` ``(HALF,)``.
 
-    None if there are none. Letters with a share of 0 are left out.
+    Return None if there are none. Letters with the multiple 0 are left out.
     """
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:
@@ -94,7 +94,7 @@ def multiples(
 
 
 def number_formula(values: Numbers, figures: int = 4) -> Correction | None:
-    """An entry ``(SAMPLES,)`` that is a plain number everywhere; None where it varies."""
+    """Return an entry ``(SAMPLES,)`` as a plain number; None if it varies."""
     if np.ptp(values) > PRINTED_NUMBER:
         return None
     value = float(values[0])
@@ -103,7 +103,7 @@ def number_formula(values: Numbers, figures: int = 4) -> Correction | None:
 
 
 def _sum(terms: list[_Term]) -> Node:
-    """The sum of the terms, 0 where there are none."""
+    """Return the sum of the terms, 0 if there are none."""
     total: Node | None = None
     for sign, term in terms:
         if total is None:
@@ -114,7 +114,7 @@ def _sum(terms: list[_Term]) -> Node:
 
 
 def _negated(term: Node) -> Node:
-    """The term with a minus sign in front of its first factor: -2*l1, -3*pi/4."""
+    """Return the term with a minus sign before its first factor: -2*l1, -3*pi/4."""
     if isinstance(term, Binary):
         return Binary(term.operator, _negated(term.left), term.right)
     return Negation(term)
@@ -131,14 +131,14 @@ def _number(value: float, figures: int) -> _Term:
 
 
 def _length(value: float) -> _Term | None:
-    """A constant length; None if it is 0."""
+    """Return a constant length; None if it is 0."""
     return None if abs(value) < WHOLE_MULTIPLE else _number(value, 6)
 
 
 def _angle(value: float, spelling: Spelling) -> _Term | None:
-    """A constant angle in degrees or as a fraction of π, None if it is 0.
+    """Return a constant angle in degrees or as a fraction of π; None if it is 0.
 
-    What is no fraction of π by twelve is in degrees in any case.
+    An angle that is not a multiple of π/12 is always in degrees.
     """
     turned = float(difference(np.array(value), np.array(0.0), angle=True))
     if abs(turned) < WHOLE_MULTIPLE:

@@ -1,4 +1,4 @@
-"""A submission -> a report: each part is read and judged by its kind."""
+"""Grade a submission: read and judge each part by its kind, and return a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from typing import Final
 
 from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
-from service.grading.feedback import Finding, UnreadableAnswerError, told_at
+from service.grading.feedback import Finding, UnreadableAnswerError, parts_at_level
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
 from service.grading.judging.marks import has_earned, part_report, unjudged_report
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
@@ -22,9 +22,9 @@ from service.version import VERSION
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """The answers that were handed in: one JSON value for each part answered.
+    """The submitted answers: one JSON value for each answered part.
 
-    ``feedback`` is how much the report tells, ``echo`` whether it tells how each cell was read.
+    ``feedback`` is the level of the report. With ``echo`` it shows how each cell was read.
     """
 
     answers: Mapping[str, object]
@@ -54,10 +54,10 @@ _WORK_LIMIT: Final = Finding(
 
 @dataclass(frozen=True, slots=True)
 class GradedAnswers:
-    """Answers graded once, whose report can be told at several levels.
+    """Answers that were graded once, for reports at several levels.
 
-    ``corrects`` says that corrections were worked out, ``has_left_out`` that something was not
-    explained for want of work; ``parts`` have all their messages.
+    ``corrects`` is true if corrections were computed, ``has_left_out`` if the work budget did not
+    allow all explanations. ``parts`` have all their messages.
     """
 
     exercise: Exercise
@@ -66,11 +66,11 @@ class GradedAnswers:
     has_left_out: bool
 
     def can_tell(self, level: FeedbackLevel) -> bool:
-        """Whether this grading has what a report of the level tells, no less and no more."""
+        """True if a report at the level can be made without grading again."""
         return self.corrects == (level is FeedbackLevel.FULL)
 
     def report(self, level: FeedbackLevel) -> Report:
-        """The report at a level that it can tell."""
+        """Return the report at a level for which ``can_tell`` is true."""
         assert self.can_tell(level)
         points = rounded_points(sum(part.points for part in self.parts))
         max_points = rounded_points(sum(part.max_points for part in self.parts))
@@ -83,21 +83,20 @@ class GradedAnswers:
             points=points,
             max_points=max_points,
             score=round(points / max_points, 6),
-            parts=told_at(self.parts, level, _WORK_LIMIT if self.has_left_out else None),
+            parts=parts_at_level(self.parts, level, _WORK_LIMIT if self.has_left_out else None),
         )
 
 
 def grade(exercise: Exercise, submission: Submission) -> Report:
-    """The report on a submission. Pure: the same submission gives the same report.
+    """Return the report on a submission. Pure: the same submission gives the same report.
 
-    Raises UnknownPartError for a part that does not exist; nothing else that a student hands in
-    raises anything.
+    Raises UnknownPartError for a part that does not exist. No other submission raises an error.
     """
     return graded_answers(exercise, submission).report(submission.feedback)
 
 
 def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
-    """The answers of a submission graded, for a report at its level and others. See ``grade``."""
+    """Grade the answers of a submission for reports at its level and others; see ``grade``."""
     for part_id in submission.answers:
         if exercise.part(part_id) is None:
             raise UnknownPartError(part_id, exercise)
@@ -116,9 +115,9 @@ def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
 
 @dataclass(frozen=True)
 class _Graded:
-    """A part that was graded; ``judged`` is None where there was nothing to judge.
+    """A part that was graded; ``judged`` is None if there was no readable answer.
 
-    Where it follows from the student's own earlier answer, it was judged by that one.
+    If it follows from the student's earlier answer, it was judged by that answer.
     """
 
     part: PartSpec
@@ -127,14 +126,14 @@ class _Graded:
 
     @cached_property
     def chain(self) -> StudentChain | None:
-        """The answer as a chain that later parts may follow from."""
+        """Return the answer as a chain that later parts may follow from, or None."""
         return None if self.judged is None else self.judged.chain()
 
     def carries(self, share: float, grading: Grading) -> bool:
-        """Whether a later part may follow from the answer.
+        """True if a later part may follow from the answer.
 
-        It must have earned its share of the points by what one has to know, however the part is
-        marked, and be an arm of the robot's joints.
+        It must have earned ``share`` of the points by content, in any marking, and be an arm with
+        the robot's joints.
         """
         if self.judged is None or self.chain is None or not has_earned(self.judged, share):
             return False
@@ -144,7 +143,7 @@ class _Graded:
 def _graded(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded], grading: Grading
 ) -> _Graded:
-    """A part judged by the reference, or by the student's own answer to the part it follows."""
+    """Judge a part by the reference, or by the student's answer to the part that it follows."""
     answer = answers.get(part.id)
     if answer is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
@@ -160,10 +159,10 @@ def _graded(
     if read is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
     judged = kind.judge(part, read, grading)
-    # Missing cells alone do not say that no joint moves.
+    # A table with missing cells only does not imply that no joint moves.
     if judged.stands_still and judged.is_wrong:
         messages = grading.messages((STANDS_STILL,))
-        # Who let no joint move has chosen no frames.
+        # A table without any motion implies no choice of frames.
         others = (each for each in judged.feedback if each.code != OWN_FRAME_CHOICE)
         judged = replace(judged, feedback=(*messages, *others))
     report = part_report(part, judged)
@@ -184,7 +183,7 @@ def _graded(
 def _followed(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded]
 ) -> _Graded | None:
-    """The part that this one follows: where that one has no answer, the one that it follows."""
+    """Return the part that this one follows; if that has no answer, the part that it follows."""
     while part.follows is not None:
         part = earlier[part.follows].part
         if answers.get(part.id) is not None:
@@ -193,6 +192,6 @@ def _followed(
 
 
 def _was_read(part: PartReport) -> bool:
-    """Whether any cell of the part was read."""
+    """True if any cell of the part could be read."""
     unread = (Verdict.MISSING, Verdict.UNREADABLE)
     return any(cell.verdict not in unread for row in part.rows for cell in row.cells)

@@ -1,4 +1,4 @@
-"""An answer kind: how answers of it are read and judged. One file of ``kinds`` holds each."""
+"""The interface of an answer kind, which reads and judges answers; each is a file in ``kinds``."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -15,10 +15,10 @@ from service.grading.reading.entry import Entry, Reader
 from service.grading.report import Feedback, Place, RowReport, Verdict
 from service.kinematics.transforms import Matrices, inverse
 
-# So many entries show how a student names symbols.
+# The number of entries that show how a student names symbols.
 NAMING_ENTRIES = 4
-# The characters of a cell of a table. What longer texts show is not remembered: their expressions
-# would be kept with it.
+# The length of a table cell. Longer texts are not memoized, because the memo would keep their
+# expressions.
 _CELL = 40
 
 
@@ -26,10 +26,10 @@ _CELL = 40
 class StudentChain:
     """An answer as a chain of links, which a later part may follow from.
 
-    ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are its frames in the base frame, from the base on; the
-    last is the tool's. ``tool_at`` gives the tool's frame at other samples, NaN where it has none.
+    ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are its frames in the base frame, from the base to the
+    tool. ``tool_at`` returns the tool's frame at other samples, NaN where it is undefined.
     ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the valid table nearest to
-    the answer, None where it is no table.
+    the answer, None if it is not a table.
     """
 
     frames: Matrices
@@ -38,19 +38,18 @@ class StudentChain:
 
     @property
     def links(self) -> Matrices:
-        """The link transforms as the student has them, ``(k, SAMPLES, 4, 4)``."""
+        """The student's link transforms, ``(k, SAMPLES, 4, 4)``."""
         return inverse(self.frames[:-1]) @ self.frames[1:]
 
 
 @dataclass(frozen=True, slots=True)
 class Grading:
-    """One submission being graded: everything that an answer kind may use.
+    """The state of grading one submission, for use by answer kinds.
 
-    ``corrects`` says that corrections are told, so that they need to be worked out, ``explains``
-    that what is wrong is explained, and not only judged.
-    ``echo`` says that each cell is reported as it was understood. ``student_chain`` is the earlier
-    answer that the part follows from, where there is one. With
-    ``following`` the part is judged by that answer and not by the reference.
+    ``corrects`` is true if the report shows corrections, which then must be computed; ``explains``
+    if wrong cells are explained, not only judged. With ``echo`` the report shows how each cell was
+    read. ``student_chain`` is the earlier answer that the part follows from, if there is one. With
+    ``following`` the part is judged by that answer instead of the reference.
     """
 
     exercise: Exercise
@@ -63,21 +62,21 @@ class Grading:
     explains: bool = True
 
     def affords(self, work: float) -> bool:
-        """Whether the budget has so much work left for an explanation; it is taken from it."""
+        """Take ``work`` for an explanation from the budget; return True if enough was left."""
         return self.explains and self.reader.budget.affords(work)
 
     def messages(
         self, findings: tuple[Finding, ...], places: tuple[Place, ...] = ()
     ) -> tuple[Feedback, ...]:
-        """The findings as messages; the feedback level decides later which of them are told.
+        """Return the findings as messages; the feedback level later decides which are visible.
 
-        ``places`` are those that they are about, where they do not stand with them.
+        ``places`` are the places that messages on the part are about.
         """
         return tuple(finding.message(places, corrects=self.corrects) for finding in findings)
 
     def spelling(self, entries: Iterable[Entry]) -> Spelling:
-        """The spelling of the entries of a part, in which the student is answered."""
-        # Half the cells of a table are a bare 0, which shows nothing.
+        """Return the spelling of the entries of a part, for use in messages."""
+        # Half the cells of a table are a bare 0, which shows no spelling.
         expressions = [entry.expression for entry in entries]
         vocabulary = self.exercise.vocabulary
         habits = [
@@ -88,9 +87,9 @@ class Grading:
         return spelling_of(habits, vocabulary, degrees=self.reader.angle_unit == "degrees")
 
     def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
-        """The names of symbols as the entries of a part have them, found when one is asked for.
+        """Return a function from symbols to their names in the entries of a part.
 
-        The shortest entries show them as well as the longest, for less work.
+        It reads the shortest entries, which show the names with the least work, on its first call.
         """
 
         @cache
@@ -101,9 +100,9 @@ class Grading:
         return lambda symbol: spelling().names.get(symbol, symbol)
 
     def unwritten(self, entries: Iterable[Entry]) -> frozenset[str]:
-        """The constants of the exercise that none of the entries contains.
+        """Return the constants of the exercise that no entry contains.
 
-        A hint does not name them: which one is missing may be all that is asked for.
+        A hint must not name them, because the missing one may be the whole answer.
         """
         read = (each.expression.symbols for each in entries if each.expression is not None)
         joints = (joint.variable for joint in self.exercise.joints)
@@ -117,7 +116,7 @@ def _habits(expression: Expression, vocabulary: Vocabulary) -> Habits:
     return habits_of(expression.typed, vocabulary)
 
 
-# A class writes the same cells again and again, and each is one expression.
+# Memoized, because the students of a class write the same cells.
 @lru_cache(maxsize=2048)
 def _habits_of_cell(expression: Expression, vocabulary: Vocabulary) -> Habits:
     return habits_of(expression.typed, vocabulary)
@@ -133,14 +132,14 @@ def _no_chain() -> StudentChain | None:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The cells of a right answer that one has to know something for: marks are earned by them.
+    """The content cells of a right answer: those that need knowledge and therefore earn marks.
 
-    Both lists are ``(rows, cells)``, as the rows of the report. ``known`` says which cells these
-    are. ``groups`` numbers the group of each cell: a wrong cell costs no more than its group has.
-    With ``besides`` each group is worth a little besides its cells. With ``equal`` all groups are
-    worth the same, however many cells they have. ``most`` is the number of cells that
-    count, where a student's own choices may have added others. With ``empty_is_wrong`` an empty
-    cell costs what a wrong one does, so that nobody gains by leaving a cell empty.
+    Both lists are ``(rows, cells)``, like the rows of the report. ``known`` marks the content
+    cells. ``groups`` has the number of each cell's group; a group cannot lose more than it is
+    worth. With ``besides``, each group has a small worth besides its content cells. With ``equal``,
+    all groups are worth the same. ``most`` is the largest number of cells that count, because a
+    student's own choices may add content cells. With ``empty_is_wrong``, an empty cell costs as
+    much as a wrong one, so that leaving a cell empty gains nothing.
     """
 
     known: tuple[tuple[bool, ...], ...]
@@ -152,22 +151,21 @@ class Content:
 
     @property
     def count(self) -> int:
-        """The number of these cells."""
+        """The number of content cells."""
         return sum(map(sum, self.known))
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """An answer that was judged: its rows, and the messages on the part as a whole.
+    """The judgement of an answer: its rows, and the messages on the part as a whole.
 
-    The rows have no points yet: ``content`` says what their cells are worth. ``slips`` counts those
-    that no cell shows, such as a row too many. ``whole_cost`` is the share of the points that a
-    slip of the whole answer costs, where one explains all its wrong cells; or all but those that
-    are wrong in ``beside``, the same answer without that slip. ``stands_still`` says
-    that no joint moves an answer that must move. ``at_most`` is the same answer judged
-    without what must not help: it earns no more than that. ``lost`` are the units of content that
-    are lost at most, whatever cells are blamed. ``chain`` gives the answer as a chain,
-    if it is one; it is asked only where another part follows this one.
+    The rows have no points yet; ``content`` has the worth of their cells. ``slips`` is the number
+    of slips that no cell shows, such as an extra row. ``whole_cost`` is the share of the points
+    that a slip of the whole answer costs, if one explains all wrong cells. Cells that are also
+    wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is true if no
+    joint moves an answer that must move. ``at_most`` is a judgement that limits the points of this
+    one. ``lost`` is an upper limit of the lost units of content. ``chain`` returns the answer as a
+    chain, or None; it is called only if another part follows this one.
     """
 
     rows: tuple[RowReport, ...]
@@ -183,29 +181,29 @@ class Judged:
 
     @property
     def is_right(self) -> bool:
-        """Whether nothing is wrong, unread or missing."""
+        """True if nothing is wrong, unread or missing."""
         return not self.slips and all(row.verdict is Verdict.CORRECT for row in self.rows)
 
     @property
     def is_wrong(self) -> bool:
-        """Whether anything that was read is wrong."""
+        """True if anything that was read is wrong."""
         cells = (cell.verdict for row in self.rows for cell in row.cells)
         return self.slips > 0 or Verdict.INCORRECT in cells
 
 
 class AnswerKind(Protocol):
-    """The reading and the judging of answers of one kind.
+    """The functions that read and judge the answers of one kind.
 
-    Pure: the same part, answer and samples, the same result.
+    Pure: the result depends only on part, answer and samples.
     """
 
     def read(self, part: Any, answer: object, grading: Grading) -> Any:
-        """The answer as ``judge`` takes it, from whatever JSON value was handed in, never None.
+        """Convert any JSON value except None to the form that ``judge`` expects.
 
-        None where nothing is written. Raises UnreadableAnswerError where nothing can be read.
+        Return None for an empty answer. Raises UnreadableAnswerError if nothing can be read.
         """
         ...
 
     def judge(self, part: Any, answer: Any, grading: Grading) -> Judged:
-        """The judgement on an answer that was read."""
+        """Judge an answer that was read."""
         ...

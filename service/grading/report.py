@@ -47,7 +47,7 @@ class Correction:
 class Place:
     """A row of the report, or one of its cells, by their labels.
 
-    ``correction`` is that of the place, where a message has another for each.
+    ``correction`` is that of the place, if the places of a message have different ones.
     """
 
     row: str
@@ -57,14 +57,14 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Feedback:
-    """One message, which never holds the right value.
+    """One message, which never contains the right value.
 
-    ``places`` are the rows and cells that it is about, where it does not stand with the one that it
-    is about. ``span`` is [from, to) in the text of the cell, or in the whole text where it was
-    pasted. ``suggestion`` is the student's own text, repaired where it cannot be read.
-    ``correction`` is told at the level full only. ``values`` is a counterexample, for the first of
-    the places: the values of the symbols, and "yours", the value of the entry there; at the level
-    full "expected", too. ``reading`` marks one on the reading of a text, until the report is told.
+    ``places`` are the rows and cells that a message on a part is about. ``span`` is [from, to) in
+    the text of the cell, or in the whole text if it was pasted. ``suggestion`` is the repaired text
+    of an unreadable one. ``correction`` is only in reports at the level full. ``values`` is a
+    counterexample for the first place: the values of the symbols, and "yours", the value of the
+    entry there; at the level full, "expected" is the right value. ``reading`` is true if the
+    message is on how a text was read; it is not part of a report.
     """
 
     code: str
@@ -80,7 +80,7 @@ class Feedback:
 
 @dataclass(frozen=True, slots=True)
 class ReadEntry:
-    """An entry as it was understood."""
+    """An entry as it was read."""
 
     text: str
     latex: str
@@ -88,7 +88,7 @@ class ReadEntry:
 
 @dataclass(frozen=True, slots=True)
 class CellReport:
-    """One table cell or matrix entry; ``read`` is there where it was asked for."""
+    """One table cell or matrix entry; ``read`` is present if the submission asks for it."""
 
     label: str
     verdict: Verdict
@@ -126,8 +126,8 @@ class PartReport:
 class Report:
     """The whole grading. ``score`` is points / max_points, 0..1.
 
-    ``grader`` is the program's version, ``feedback`` how much the report tells. ``gradable`` is
-    false when nothing could be read, so that a site need not count the attempt.
+    ``grader`` is the program's version, ``feedback`` the level of the report. ``gradable`` is false
+    if nothing could be read, so that a site need not count the attempt.
     """
 
     exercise: str
@@ -142,7 +142,7 @@ class Report:
 
 
 def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...], Verdict]]:
-    """The messages on a part, its rows and cells, with their places and the verdict there."""
+    """Yield the messages on a part, its rows and cells, with their places and the verdict there."""
     verdicts: dict[tuple[str, str | None], Verdict] = {}
     for row in part.rows:
         verdicts[row.label, None] = row.verdict
@@ -159,10 +159,10 @@ def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...],
 
 
 def combined(verdicts: Iterable[Verdict]) -> Verdict:
-    """The verdict on a whole from those on its pieces: theirs where they agree.
+    """Return the verdict on a whole: that of its pieces, if they all have the same.
 
-    Where they do not, some of it is right (partial), or else some of it was wrong (incorrect), or
-    else it could not be read.
+    Otherwise it is partial if some piece is right, else incorrect if some piece is wrong, else
+    unreadable.
     """
     found = set(verdicts)
     if not found:
@@ -175,12 +175,12 @@ def combined(verdicts: Iterable[Verdict]) -> Verdict:
 
 
 def rounded_points(points: float) -> float:
-    """Points without the dust of floating-point sums."""
+    """Return points without floating-point rounding errors."""
     return round(points, 6)
 
 
 def row_report(
     label: str, cells: tuple[CellReport, ...], feedback: tuple[Feedback, ...] = ()
 ) -> RowReport:
-    """A row from its cells; it has no points yet."""
+    """Make a row from its cells; it has no points yet."""
     return RowReport(label, combined([cell.verdict for cell in cells]), 0.0, 0.0, cells, feedback)

@@ -1,4 +1,4 @@
-"""The work that the reading of one submission may set going, counted and never timed.
+"""Limit the work for one submission by counting it; time is never measured.
 
 Counted work is the same on every machine, so that the same submission gives the same report.
 """
@@ -12,34 +12,34 @@ from service.expressions.reading_work import reading_cost
 from service.grids.cutting.limits import GRID_LIMITS
 from service.time_slices import checkpoint
 
-# The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX or JavaScript,
-# has up to 13,900, each symbol counted by what it costs.
+# The pose of a seven-joint arm, multiplied out without simplification and printed as LaTeX or
+# JavaScript, has up to 13,900 symbols, weighted by their cost.
 MAX_SYMBOLS = 14_000
-# A table is read a second time with its columns in another order; an ordinary one has 300.
+# For reading a table again with its columns in another order; an ordinary table has 300 symbols.
 MAX_SYMBOLS_AGAIN = 2_400
-# To look for the repaired text of an unreadable one costs more than any other reading.
+# Searching for the repair of an unreadable text costs more than any other reading.
 MAX_REPAIRS = 24
-# A repair that reads so many symbols counts as another one.
+# For each of these numbers of symbols that a repair reads, it counts as one more repair.
 SYMBOLS_PER_REPAIR = 100
 
-# Pasted texts are cut into cells, whose characters are counted once more when they are read. The
-# longest text leaves half as much for the other parts.
+# The characters of pasted texts that are cut into cells; the symbols in the cells are counted again
+# when they are read. The longest allowed text leaves half its length for the other parts.
 MAX_PASTED = 36_000
 
-# In units of the least work that a grading can be: six links multiplied out at all samples.
+# The unit is the least work of a grading: multiplying out six links at all samples.
 MAX_EXPLANATIONS = 145.0
-# Enough to judge a table with unread cells in either convention, and to look for their values.
+# Enough to judge a table with unread cells in either convention, and to search for their values.
 MAX_SEARCHES = 280.0
-# All of it together. What was read and searched leaves so much less for explanations.
+# The limit for reading, searches and explanations together.
 MAX_WORK = 285.0
-# The work of reading a symbol, of cutting a character out of a pasted text, of a repair.
+# The work of reading a symbol, of cutting a pasted character into a cell, and of a repair.
 SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 
-# The pose of a seven-joint arm has 57,000 as MathML. Nobody looks at longer formulas.
+# The MathML of the pose of a seven-joint arm has 57,000 characters. Nobody reads longer formulas.
 MAX_PRINTED = 60_000
 
-# What a request for a drawing may cost, all of it in symbols that are read: the table itself, its
-# figure, and the formulas printed for it. Those of a seven-joint arm cost 13,700.
+# The limit for a drawing, as a number of symbols: the table, its figure, and the printed formulas.
+# Those of a seven-joint arm cost 13,700.
 MAX_SYMBOLS_DRAWN = 16_000
 SYMBOLS_PER_FIGURE = 2_200
 SYMBOLS_PER_PRINTED_NODE = 2.5
@@ -47,17 +47,16 @@ SYMBOLS_PER_PRINTED_NODE = 2.5
 
 @dataclass(slots=True)
 class WorkBudget:
-    """The work left for a submission: one object for all its parts, pasted texts and units.
+    """The remaining work for a submission, shared by all its parts, pasted texts and angle units.
 
-    ``symbols`` counts the names, numbers and signs that may still be read, ``repairs`` the
-    unreadable texts for which a repaired one may still be looked for. ``pasted`` counts the
-    characters of texts that may still be cut into cells. ``explanations`` is the work that may
-    still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
-    a table may have been meant to be: with what was not read, in another order of its columns.
-    ``printed`` counts the characters of formulas that may still be drawn for a preview.
-    ``answers`` is the whole submission: what later parts have to read is kept back for them.
-    ``has_left_out`` says that an explanation was not afforded. ``unreadable`` are the texts that
-    could not be read.
+    ``symbols`` is the number of names, numbers and signs that may still be read. ``repairs`` is the
+    number of unreadable texts for which a repair may still be searched. ``pasted`` is the number of
+    characters that may still be cut into cells. ``explanations`` is the work left for explaining
+    mistakes, on which no verdict depends. ``searches`` is the work left for finding the intended
+    table: values of unread cells, other column orders. ``printed`` is the number of characters of
+    formulas that a preview may still print. ``answers`` is the whole submission; work for reading
+    its later parts is reserved. ``has_left_out`` is true if an explanation was too expensive.
+    ``unreadable`` are the texts that could not be read.
     """
 
     symbols: int = MAX_SYMBOLS
@@ -73,12 +72,12 @@ class WorkBudget:
 
     @classmethod
     def of_drawing(cls, *, with_figure: bool) -> Self:
-        """The budget of a request for the frames, the formulas and the figure of a table."""
+        """Return the budget of a request for the frames, formulas and figure of a table."""
         return cls(MAX_SYMBOLS_DRAWN - (SYMBOLS_PER_FIGURE if with_figure else 0))
 
     @property
     def left(self) -> float:
-        """How much of all work the reading, also that to come, and the searches have left."""
+        """The total work minus searches and reading, including later parts of the submission."""
         if self._expected < 0:
             self._expected = _symbols_of(self.answers)
         read = (
@@ -89,7 +88,7 @@ class WorkBudget:
         return MAX_WORK - read - (MAX_SEARCHES - self.searches)
 
     def affords(self, work: float) -> bool:
-        """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
+        """Take ``work`` for an explanation, in any case; return True if enough was left."""
         checkpoint()
         self.explanations -= work
         left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
@@ -97,9 +96,9 @@ class WorkBudget:
         return left >= 0
 
     def affords_search(self, work: float) -> bool:
-        """Whether there is so much left for searches; if so, it is taken.
+        """Take ``work`` for a search if enough is left; return True if it was taken.
 
-        It does not depend on what was explained.
+        The result does not depend on earlier explanations.
         """
         is_afforded = work <= min(self.searches, self.left)
         if is_afforded:
@@ -107,33 +106,33 @@ class WorkBudget:
         return is_afforded
 
     def charge_search(self, work: float) -> None:
-        """Count a search that has to be made, whatever it costs."""
+        """Take the work of a necessary search, even if not enough is left."""
         checkpoint()
         self.searches -= work
 
     def charge_reading(self, symbols: int) -> bool:
-        """Count a text that is to be read; whether it may be."""
+        """Count a text before reading it; return True if it may be read."""
         self.symbols -= symbols
         return self.symbols >= 0
 
     def charge_printing(self, nodes: int) -> bool:
-        """Count a formula of so many nodes that is to be printed; whether it may be."""
+        """Count a formula of ``nodes`` before printing it; return True if it may be printed."""
         return self.charge_reading(math.ceil(SYMBOLS_PER_PRINTED_NODE * nodes))
 
     def charge_repair(self, text: object, tried: int) -> None:
-        """Count an unreadable text, once, for which texts of so many symbols were tried."""
+        """Count the repair of an unreadable text, once; ``tried`` symbols were read for it."""
         if text not in self.unreadable:
             self.unreadable.add(text)
             self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
 
 
 def _symbols_of(answer: object) -> int:
-    """The names, numbers and signs in all texts of a JSON value, up to the most that is read."""
+    """Return the number of symbols in all texts of a JSON value, at most MAX_SYMBOLS."""
     found, waiting = 0, [answer]
-    # Without recursion: lists may stand in each other deeper than Python calls.
+    # No recursion, because lists may be nested deeper than Python's call stack.
     while waiting and found < MAX_SYMBOLS:
         match waiting.pop():
-            # A longer text is read neither as a formula nor as a grid.
+            # Longer texts are never read.
             case str() as text if len(text) <= GRID_LIMITS.characters:
                 found += reading_cost(text)
             case Mapping() as fields:

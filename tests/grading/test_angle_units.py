@@ -20,7 +20,7 @@ from tests.grading.support.submitting import (
 [DEGREES] = [spelling for spelling in SPELLINGS if spelling.name == "bare degrees"]
 
 
-def test_bare_degrees_where_radians_are_set_are_named(catalogue: Mapping[str, Exercise]) -> None:
+def test_bare_degrees_instead_of_radians_are_named(catalogue: Mapping[str, Exercise]) -> None:
     report = graded_table(catalogue[STANFORD.exercise], DEGREES.rows(STANFORD))
     turned = {(label, "alpha") for label in ("1", "2", "4", "5")}
     assert not_correct(report) == dict.fromkeys(turned, Verdict.INCORRECT)
@@ -28,7 +28,7 @@ def test_bare_degrees_where_radians_are_set_are_named(catalogue: Mapping[str, Ex
         assert codes_at(report, *place) == ["degrees_as_radians"]
 
 
-def test_bare_radians_where_degrees_are_set_are_named(catalogue: Mapping[str, Exercise]) -> None:
+def test_bare_radians_instead_of_degrees_are_named(catalogue: Mapping[str, Exercise]) -> None:
     rows = [list(row) for row in DEGREES.rows(STANFORD)]
     rows[0][1] = "-1.5708"
     report = graded_table(catalogue[STANFORD.exercise], rows, angle_unit="degrees")
@@ -55,7 +55,9 @@ def test_lengths_have_no_angle_unit(catalogue: Mapping[str, Exercise]) -> None:
     assert full_marks(graded_table(catalogue[PLANAR_RRR.exercise], rows, angle_unit="degrees"))
 
 
-def test_an_offset_in_degrees_beside_a_joint_variable(catalogue: Mapping[str, Exercise]) -> None:
+def test_an_offset_in_a_sum_has_the_unit_of_the_submission(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     rows = [list(row) for row in EXACT.rows(PLANAR_RRR)]
     rows[0][3] = "q1 + 360"
     exercise = catalogue[PLANAR_RRR.exercise]
@@ -63,7 +65,9 @@ def test_an_offset_in_degrees_beside_a_joint_variable(catalogue: Mapping[str, Ex
     assert not_correct(graded_table(exercise, rows)) == {("1", "theta"): Verdict.INCORRECT}
 
 
-def test_degrees_inside_a_matrix(catalogue: Mapping[str, Exercise]) -> None:
+def test_angles_in_a_matrix_have_the_unit_of_the_submission(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     pose = [
         ["sin(q1 + q2 + q3 + 90)", "-s123", "cos(90)", "l1 c1 + l2 c12 + l3 c123"],
         ["s123", "-cos(q1 + q2 + q3 - 180)", "0", "l1 s1 + l2 s12 + l3 s123"],

@@ -12,13 +12,13 @@ from tests.grading.support.submitting import handed_in, part
 from tests.together import together
 
 Make = Callable[[str], Exercise]
-# What stands in a cell that cannot be read, is empty, or has no value.
+# Texts of cells that are unreadable, empty, or without a value.
 SPOILT = ["0.5 +", "foo", "", None, "0,5", "1/0", "sqrt(-1)", "0.333", True]
 ODD: list[object] = ["", None, [], {}, "0.5", 3, "[1 2; 3 4]", [[]], {"rows": []}]
 
 
 def spoilt(answer: object) -> Iterator[object]:
-    """The answer with one of its entries spoilt, or taken away."""
+    """Yield the answer with one of its entries spoilt or removed."""
     if isinstance(answer, dict):
         for key in answer:
             yield from ({**answer, key: each} for each in SPOILT)
@@ -35,7 +35,9 @@ def test_there_is_an_exercise_of_each_kind() -> None:
 
 
 @together("bare", BARE)
-def test_right_and_wrong_numbers(bare: BareExercise, make_exercise: Make) -> None:
+def test_right_numbers_get_full_marks_and_wrong_ones_do_not(
+    bare: BareExercise, make_exercise: Make
+) -> None:
     exercise = make_exercise(bare.text)
     for level in FeedbackLevel:
         right = part(handed_in(exercise, {"it": bare.right}, feedback=level), "it")
@@ -47,7 +49,7 @@ def test_right_and_wrong_numbers(bare: BareExercise, make_exercise: Make) -> Non
 
 
 @together("bare", BARE)
-def test_numbers_that_cannot_be_read(bare: BareExercise, make_exercise: Make) -> None:
+def test_unreadable_numbers_get_a_report(bare: BareExercise, make_exercise: Make) -> None:
     exercise = make_exercise(bare.text)
     for answer in [*spoilt(bare.right), *ODD]:
         report = part(handed_in(exercise, {"it": answer}), "it")
@@ -55,7 +57,7 @@ def test_numbers_that_cannot_be_read(bare: BareExercise, make_exercise: Make) ->
 
 
 def test_a_wrong_number_is_explained(make_exercise: Make) -> None:
-    """The same slips are named as beside symbols; a bare number has no counterexample."""
+    """Slips in bare numbers get the same codes as those in formulas, but no counterexample."""
     vector, position = (make_exercise(BARE[i].text) for i in (0, 2))
     report = part(handed_in(vector, {"it": ["0.7", "30deg", "-3"]}), "it")
     found = [message for row in report.rows for each in row.cells for message in each.feedback]
@@ -66,7 +68,9 @@ def test_a_wrong_number_is_explained(make_exercise: Make) -> None:
 
 
 @pytest.mark.parametrize("answer", [["0", "0", "0"], ["1", "1", "1"]])
-def test_symbols_on_which_nothing_depends(answer: list[str], make_exercise: Make) -> None:
+def test_wrong_numbers_are_wrong_beside_unused_symbols(
+    answer: list[str], make_exercise: Make
+) -> None:
     text = BARE[2].text.replace(
         "[[parts]]", '[symbols]\nl1 = { kind = "length", description = "unused" }\n[[parts]]'
     )

@@ -1,4 +1,4 @@
-"""Marks for what follows from an earlier answer."""
+"""Marks for answers that follow from an earlier answer."""
 
 from collections.abc import Callable
 from functools import reduce
@@ -29,12 +29,12 @@ def scara(make_exercise: Callable[[str], Exercise]) -> Exercise:
     return make_exercise(SCARA)
 
 
-def test_matrices_that_follow_from_a_wrong_table_earn_their_points(scara: Exercise) -> None:
+def test_matrices_that_follow_from_a_wrong_table_earn_points(scara: Exercise) -> None:
     wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
     links = [A1, a2_with("a1"), A3, A4]
     position = ["a1*c1 + a1*c12", "a1*s1 + a1*s12", "-d3 - d4"]
     parts = graded(scara, table=wrong, links=links, pose=pose_with("a1"), position=position)
-    # One of the four cells that one has to know is wrong; each row is worth a fifth besides.
+    # One of the four content cells is wrong; each row is worth a fifth more.
     assert parts["table"].points == pytest.approx(8 * 3.8 / 4.8, abs=1e-5)
     for name in ("links", "pose", "position"):
         assert parts[name].points == parts[name].max_points, name
@@ -42,14 +42,14 @@ def test_matrices_that_follow_from_a_wrong_table_earn_their_points(scara: Exerci
         assert "follow_through" in [message.code for message in parts[name].feedback]
 
 
-def test_what_follows_may_skip_a_part_without_answer(scara: Exercise) -> None:
+def test_a_part_may_follow_across_an_unanswered_part(scara: Exercise) -> None:
     wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
     parts = graded(scara, table=wrong, pose=pose_with("a1"))
     assert parts["pose"].points == 8
     assert parts["pose"].follow_through
 
 
-def test_what_is_right_does_not_follow(scara: Exercise) -> None:
+def test_a_right_answer_does_not_follow(scara: Exercise) -> None:
     wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
     parts = graded(scara, table=wrong, links=LINKS, pose=pose_with("a2"))
     assert [parts[name].points for name in ("links", "pose")] == [8, 8]
@@ -62,15 +62,15 @@ def test_a_right_table_does_not_make_a_wrong_pose_right(scara: Exercise) -> None
     assert not parts["pose"].follow_through
 
 
-def test_a_trivial_table_buys_nothing(scara: Exercise) -> None:
+def test_a_trivial_table_earns_no_later_marks(scara: Exercise) -> None:
     zero = table([("0", "0", "0", "0")] * 4)
     parts = graded(scara, table=zero, links=[IDENTITY] * 4, pose=IDENTITY)
     assert [parts[name].points for name in ("table", "links", "pose")] == [0, 0, 0]
     assert not any(part.follow_through for part in parts.values())
 
 
-def test_a_poor_table_does_not_carry(scara: Exercise) -> None:
-    """Only the joint variables are right; with all else 0 the matrices are too easy."""
+def test_no_part_follows_from_a_poor_table(scara: Exercise) -> None:
+    """Only the joint variables are right; with 0 in all other cells the matrices are too easy."""
     poor = table(
         [("0", "1", "1", "q1"), ("0", "1", "1", "q2"), ("1", "1", "d3", "1"), ("1", "1", "1", "q4")]
     )
@@ -79,16 +79,16 @@ def test_a_poor_table_does_not_carry(scara: Exercise) -> None:
     assert not parts["pose"].follow_through
 
 
-def test_a_variable_without_effect_buys_nothing(scara: Exercise) -> None:
-    """0·q is no motion, whatever letters it holds."""
+def test_a_variable_without_effect_earns_no_later_marks(scara: Exercise) -> None:
+    """0·q is not a motion."""
     idle = "0*(q1 + q2 + d3 + q4)"
     still = [[f"1 + {idle}", "0", "0", "0"], *IDENTITY[1:]]
     parts = graded(scara, table=table([("0", "0", "0", idle)] * 4), links=[still] * 4, pose=still)
     assert [parts[name].points for name in ("table", "links", "pose")] == [0, 0, 0]
 
 
-def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None:
-    """All twists and lengths ignored: one line, four joints, and a pose that anybody can write."""
+def test_no_part_follows_from_a_chain_with_lost_freedom(scara: Exercise) -> None:
+    """Without twists and lengths, four joints are on one line, and the pose is trivial."""
     bare = table(
         [("0", "0", "0", "q1"), ("0", "0", "0", "q2"), ("0", "0", "d3", "0"), ("0", "0", "0", "q4")]
     )
@@ -107,7 +107,7 @@ def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None
 
 a1, a2, d3, d4, one, two, four = sympy.symbols("a1 a2 d3 d4 theta1 theta2 theta4")
 ARM = [(a1, 0, 0, one), (a2, sympy.pi, 0, two), (0, 0, d3, 0), (0, 0, d4, four)]
-# A row with one slip, and whether the table carries what follows from it.
+# A row with one slip, and whether later parts may follow from the table.
 SLIPS: dict[str, tuple[int, tuple[Any, ...], bool]] = {
     "a length": (1, (a1, sympy.pi, 0, two), True),
     "the joint counts the other way": (1, (a2, sympy.pi, 0, -two), True),
@@ -120,7 +120,7 @@ SLIPS: dict[str, tuple[int, tuple[Any, ...], bool]] = {
 
 
 def link(a: Any, alpha: Any, d: Any, theta: Any) -> sympy.Matrix:
-    """The link transform of a row, from the textbook (SHV, eq. 3.10)."""
+    """Return the link transform of a row, from the textbook (SHV, eq. 3.10)."""
     c, s, ca, sa = sympy.cos(theta), sympy.sin(theta), sympy.cos(alpha), sympy.sin(alpha)
     return sympy.Matrix(
         [
@@ -133,7 +133,7 @@ def link(a: Any, alpha: Any, d: Any, theta: Any) -> sympy.Matrix:
 
 
 @pytest.mark.parametrize("name", SLIPS)
-def test_only_an_arm_of_the_robot_s_joints_carries(name: str, scara: Exercise) -> None:
+def test_parts_follow_only_from_an_arm_with_the_robots_joints(name: str, scara: Exercise) -> None:
     place, slip, carries = SLIPS[name]
     rows = [slip if i == place else row for i, row in enumerate(ARM)]
     pose = reduce(mul, [link(*row) for row in rows]).applyfunc(sympy.expand)
@@ -143,7 +143,7 @@ def test_only_an_arm_of_the_robot_s_joints_carries(name: str, scara: Exercise) -
     assert parts["pose"].follow_through is carries
 
 
-def test_links_that_only_slide_carry_nothing(scara: Exercise) -> None:
+def test_no_part_follows_from_links_that_only_slide(scara: Exercise) -> None:
     sliding = [[*"100", "theta1"], [*"010", "theta2"], [*"001", "d3 + theta4"], [*"0001"]]
     links = [sliding, IDENTITY, IDENTITY, IDENTITY]
     parts = graded(scara, links=links, pose=sliding, position=["theta1", "theta2", "d3 + theta4"])

@@ -1,4 +1,4 @@
-"""Whatever is handed in, a report comes back, soon."""
+"""Every submission gets a report, soon."""
 
 import json
 import time
@@ -77,7 +77,7 @@ UNREADABLE: dict[str, Any] = {
     "deep LaTeX": r"\frac{" * 80,
 }
 EMPTY: dict[str, Any] = {"empty": "", "blank": " \t\n", "none": None, "no-break space": "\u00a0"}
-# Read, worth nothing, and all the way to the edges of floating point.
+# Readable wrong values, up to the limits of floating point.
 EXTREME: dict[str, Any] = {
     "1e308": "1e308",
     "1e308 as a number": 1e308,
@@ -104,7 +104,7 @@ EXTREME: dict[str, Any] = {
 
 
 def place_everywhere(value: Any) -> dict[str, object]:
-    """A table and a pose with ``value`` in one cell of each row."""
+    """Return a table and a pose with ``value`` in one cell of each row."""
     rows: list[list[Any]] = [list(row) for row in EXACT.rows(STANFORD)]
     for i, row in enumerate(rows):
         row[i % 4] = value
@@ -126,7 +126,7 @@ PLACES = {(str(i + 1), ("a", "alpha", "d", "theta")[i % 4]) for i in range(6)}
 
 
 @together("name", UNREADABLE)
-def test_what_cannot_be_read_costs_its_own_cells(
+def test_an_unreadable_value_affects_only_its_cells(
     name: str, given_frames: Mapping[str, Exercise]
 ) -> None:
     answers = place_everywhere(UNREADABLE[name])
@@ -146,10 +146,10 @@ def test_an_empty_cell_is_missing(name: str, given_frames: Mapping[str, Exercise
 
 
 @pytest.mark.parametrize("name", EXTREME)
-def test_extreme_values_are_wrong_and_nothing_else(
+def test_extreme_values_are_wrong_without_warnings(
     name: str, given_frames: Mapping[str, Exercise]
 ) -> None:
-    """Also under warnings as errors: no overflow is left to numpy's warnings."""
+    """Extreme values raise no warnings, which are errors in tests."""
     answers = place_everywhere(EXTREME[name])
     report, spent = timed(lambda: handed_in(given_frames[STANFORD.exercise], answers))
     check_cost(spent)
@@ -179,7 +179,7 @@ NO_TABLE: dict[str, Any] = {
 
 @together("level", list(FeedbackLevel))
 @together("name", [name for name in NO_TABLE if name != "very deep"])
-def test_what_is_no_table_is_unreadable(
+def test_an_answer_without_a_table_is_unreadable(
     name: str, level: FeedbackLevel, given_frames: Mapping[str, Exercise]
 ) -> None:
     answers = {"table": NO_TABLE[name]}
@@ -194,7 +194,7 @@ def test_what_is_no_table_is_unreadable(
     assert report.gradable is False
 
 
-def test_a_table_of_thousands_of_brackets_raises_nothing(
+def test_a_table_of_thousands_of_brackets_raises_no_error(
     given_frames: Mapping[str, Exercise],
 ) -> None:
     report = handed_in(given_frames[STANFORD.exercise], {"table": NO_TABLE["very deep"]})
@@ -204,10 +204,10 @@ def test_a_table_of_thousands_of_brackets_raises_nothing(
 @pytest.mark.parametrize(
     "row", ["0", "q1", 5, 0, 0.0, True, ["0", "0", "q1"], [], None, "", nested(50)]
 )
-def test_a_row_that_is_no_object_earns_nothing(
+def test_a_row_that_is_not_an_object_earns_nothing(
     row: object, given_frames: Mapping[str, Exercise]
 ) -> None:
-    """A lone "0" in place of a row is not four zeros."""
+    """A single "0" instead of a row is not a row of zeros."""
     answer = table(EXACT.rows(STANFORD))
     answer["rows"][2] = row
     found = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
@@ -228,7 +228,9 @@ NO_MATRIX: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("name", NO_MATRIX)
-def test_what_is_no_matrix_is_unreadable(name: str, given_frames: Mapping[str, Exercise]) -> None:
+def test_an_answer_without_a_matrix_is_unreadable(
+    name: str, given_frames: Mapping[str, Exercise]
+) -> None:
     report, spent = timed(
         lambda: handed_in(given_frames[STANFORD.exercise], {"pose": NO_MATRIX[name]})
     )
@@ -239,10 +241,10 @@ def test_what_is_no_matrix_is_unreadable(name: str, given_frames: Mapping[str, E
     assert not report.gradable
 
 
-def test_the_costliest_submission(
+def test_the_costliest_submission_is_graded_soon(
     given_frames: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
-    """Every cell another expression at the limits, none of them read before, all of them wrong."""
+    """Every cell has another wrong expression at the limits of size, none of them memoized."""
     exercise = given_frames[STANFORD.exercise]
     letters = ("q1", "q2", "q4", "q5", "q6", "d2", "d3", "d6")
 
@@ -250,7 +252,7 @@ def test_the_costliest_submission(
         calls = [f"sin({letters[(i + k) % 8]}+{i}.{k})" for k in range(50)]
         return "*".join(calls)
 
-    handed_in(exercise, {"pose": [["0"]]})  # what is built on first use is no submission's cost
+    handed_in(exercise, {"pose": [["0"]]})  # values that are computed on first use do not count
     answers = {
         "table": table([[text(4 * i + j) for j in range(4)] for i in range(12)]),
         "pose": [[text(100 + 4 * i + j) for j in range(4)] for i in range(4)],
@@ -261,11 +263,11 @@ def test_the_costliest_submission(
     assert Verdict.UNREADABLE not in [cell.verdict for cell in first]
     assert codes_at(part(report, "pose"), "4", "4") == ["too_long"]
     figure(f"64 expressions of {len(text(100))} characters: {1000 * spent:.0f} ms of process time")
-    # The figure is for the benchmarks to hold down; here only a stall is a failure.
+    # Benchmarks watch this figure; the test fails only if grading hangs.
     assert spent < STALL
 
 
-def test_a_part_that_does_not_exist(given_frames: Mapping[str, Exercise]) -> None:
+def test_an_unknown_part_raises_an_error(given_frames: Mapping[str, Exercise]) -> None:
     with pytest.raises(
         UnknownPartError, match=r"has no part 'tabel'; it has table, pose"
     ) as caught:

@@ -1,4 +1,4 @@
-"""Whatever is pasted into an answer, a report comes back, with spans inside the text."""
+"""Every pasted text gets a report, with spans inside the text."""
 
 import json
 from collections.abc import Mapping

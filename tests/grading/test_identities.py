@@ -1,6 +1,6 @@
-"""An answer that equals the expected one always counts, and one that does not never does.
+"""An answer that equals the expected one is always right, and any other answer is always wrong.
 
-Each claim is tried some hundred times; a harmless change elsewhere draws new samples each time.
+Each test tries some hundred answers; a harmless change in another cell draws new samples each time.
 """
 
 from collections.abc import Callable, Mapping
@@ -12,7 +12,7 @@ from service.grading import Verdict
 from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, RRRP, SCARA, STANFORD, Robot
 from tests.grading.support.submitting import cell, graded_pose, graded_table, not_correct
 
-# How often, for each of the four robots.
+# The number of tries for each of the four robots.
 TIMES = [25, pytest.param(500, marks=pytest.mark.campaign)]
 
 # The poses in closed form; of the Stanford arm only the bottom row.
@@ -38,7 +38,7 @@ POSES: dict[str, tuple[tuple[str, ...], ...]] = {
     STANFORD.exercise: (("0",) * 4, ("0",) * 4, ("0",) * 4, ("0", "0", "0", "1")),
 }
 ZERO = "sin(q1)^2 + cos(q1)^2 - 1"
-# Some of the entries (row, column) of each pose that are 0 for every joint value.
+# Some entries (row, column) of each pose that are 0 for all joint values.
 ZEROS = {
     "planar-rrr": [(0, 2), (1, 2), (2, 0), (2, 3), (3, 1)],
     "rrrp": [(0, 2), (1, 2), (2, 0), (3, 0), (3, 2)],
@@ -48,7 +48,7 @@ ZEROS = {
 
 
 def pose_with(exercise: str, text: str, time: int) -> list[list[object]]:
-    """The pose with ``text`` in place of each 0; its last entry is a 1 spelled anew each time."""
+    """Return the pose with ``text`` for each 0; its last entry is a 1 in another spelling."""
     matrix: list[list[object]] = [list(line) for line in POSES[exercise]]
     for i, j in ZEROS[exercise]:
         matrix[i][j] = text
@@ -109,7 +109,7 @@ def test_a_small_number_for_a_zero_is_always_wrong_in_a_pose(
 def test_a_small_number_beside_large_entries_is_always_wrong(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The other entries are a thousand times the robot's size, and so is no excuse."""
+    """Other entries that are a thousand times the robot's size do not widen the tolerance."""
     exercise = catalogue[RRRP.exercise]
     for time in range(40):
         matrix = pose_with(RRRP.exercise, "0.05", time)
@@ -137,7 +137,7 @@ def test_a_small_number_beside_large_entries_is_always_wrong(
         "1000000*(s1^2 + c1^2) - 1000000",
     ],
 )
-def test_identities_that_give_zero(text: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_identities_that_equal_zero_are_right(text: str, catalogue: Mapping[str, Exercise]) -> None:
     exercise = catalogue[PLANAR_RRR.exercise]
     for time in range(20):
         matrix = pose_with(PLANAR_RRR.exercise, text, time)
@@ -148,10 +148,10 @@ def test_identities_that_give_zero(text: str, catalogue: Mapping[str, Exercise])
     "text", ["1e16", "1e17", "1e20", "1e300", "2*pi*1e20", "q1*1e17", "q1 + 1e18"]
 )
 @pytest.mark.parametrize("column", [1, 3])
-def test_a_huge_number_of_turns_is_not_every_angle_at_once(
+def test_a_huge_number_of_turns_is_wrong(
     text: str, column: int, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """Beyond 1e16 rad a number says nothing about the direction any more: no angle is right."""
+    """A number beyond 1e16 rad has no figures left for its direction, so it is wrong."""
     rows = [list(row) for row in EXACT.rows(STANFORD)]
     for row in rows:
         row[column] = text

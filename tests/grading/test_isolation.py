@@ -1,4 +1,4 @@
-"""What a student writes is never run, and grading touches nothing outside itself."""
+"""Student input is never executed, and grading uses no files, sockets or processes."""
 
 import ast
 import subprocess
@@ -21,12 +21,12 @@ RUNNERS = {
     "literal_eval",
 }
 RUNNING_MODULES = {"pickle", "cPickle", "dill", "marshal", "shelve", "jsonpickle", "code", "runpy"}
-# A regular expression is compiled, not run.
+# re.compile compiles a regular expression and runs no code.
 HARMLESS = {("re", "compile")}
 
 
 def offences(source: str) -> Iterator[str]:
-    """Each place in a program text where something might be run that was read."""
+    """Yield the places in a program text where input might be executed."""
     for node in ast.walk(ast.parse(source)):
         match node:
             case ast.Name(id=name) | ast.alias(name=name) if name.split(".")[-1] in RUNNERS:
@@ -46,7 +46,7 @@ def offences(source: str) -> Iterator[str]:
 FILES = sorted(SERVICE.rglob("*.py"))
 
 
-def test_nothing_in_the_program_runs_what_it_reads() -> None:
+def test_the_program_executes_no_input() -> None:
     assert len(FILES) > 30
     found = {
         str(file.relative_to(SERVICE)): offending
@@ -73,7 +73,7 @@ def test_nothing_in_the_program_runs_what_it_reads() -> None:
         "compile(text, '', 'eval')",
     ],
 )
-def test_the_search_finds(text: str) -> None:
+def test_the_search_finds_execution_of_input(text: str) -> None:
     assert list(offences(text))
 
 

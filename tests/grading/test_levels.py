@@ -1,4 +1,4 @@
-"""How much a report tells: full, hints, verdicts, score."""
+"""Feedback levels of reports: full, hints, verdicts, score."""
 
 import json
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ from service.grading import (
     Verdict,
     grade,
 )
-from service.grading.feedback import told_once
+from service.grading.feedback import with_shared_messages
 from service.grading.report import messages_of
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
@@ -78,7 +78,7 @@ def test_full_gives_corrections_and_the_right_number(reports: dict[FeedbackLevel
     assert offset.values["yours"] == offset.values["d6"]
 
 
-def test_hints_are_the_same_messages_without_what_is_right(
+def test_hints_are_the_same_messages_without_corrections(
     reports: dict[FeedbackLevel, Report],
 ) -> None:
     hints, full = reports[FeedbackLevel.HINTS], reports[FeedbackLevel.FULL]
@@ -95,7 +95,7 @@ def test_hints_are_the_same_messages_without_what_is_right(
 READING = {"unbalanced_bracket", "missing"}
 
 
-def test_verdicts_tell_right_and_wrong_and_what_could_not_be_read(
+def test_verdicts_has_verdicts_and_reading_messages_only(
     reports: dict[FeedbackLevel, Report],
 ) -> None:
     verdicts, full = reports[FeedbackLevel.VERDICTS], reports[FeedbackLevel.FULL]
@@ -104,7 +104,7 @@ def test_verdicts_tell_right_and_wrong_and_what_could_not_be_read(
         assert not_correct(part(verdicts, name)) == not_correct(part(full, name))
 
 
-def test_score_tells_what_could_not_be_read_and_no_more(
+def test_score_has_reading_messages_only(
     reports: dict[FeedbackLevel, Report],
 ) -> None:
     score = reports[FeedbackLevel.SCORE]
@@ -140,10 +140,10 @@ def test_a_report_names_its_level_and_the_program(reports: dict[FeedbackLevel, R
 @pytest.mark.parametrize(
     "level", [FeedbackLevel.HINTS, FeedbackLevel.VERDICTS, FeedbackLevel.SCORE]
 )
-def test_the_reference_is_never_told_below_full(
+def test_the_reference_is_never_shown_below_full(
     level: FeedbackLevel, given_frames: Mapping[str, Exercise]
 ) -> None:
-    """Of a length that the student got wrong, the right one is not named."""
+    """The message on a wrong length does not contain the right one."""
     rows = [list(cells) for cells in EXACT.rows(STANFORD)]
     rows[1][2] = "0"
     rows[5][2] = "0"
@@ -153,7 +153,7 @@ def test_the_reference_is_never_told_below_full(
     assert "d6" not in told
 
 
-def test_a_missing_row_is_told_by_its_label(given_frames: Mapping[str, Exercise]) -> None:
+def test_a_missing_row_is_named_by_its_label(given_frames: Mapping[str, Exercise]) -> None:
     answers = {"table": table(EXACT.rows(STANFORD)[:5])}
     exercise = given_frames[STANFORD.exercise]
     hints = handed_in(exercise, answers, feedback=FeedbackLevel.HINTS)
@@ -164,7 +164,7 @@ def test_a_missing_row_is_told_by_its_label(given_frames: Mapping[str, Exercise]
     assert part(verdicts, "table").feedback == ()
 
 
-def test_the_least_of_several_levels_counts() -> None:
+def test_the_lowest_of_several_levels_counts() -> None:
     full, hints, verdicts, score = FeedbackLevel
     assert least(full, hints) is hints
     assert least(score, full, verdicts) is score
@@ -174,7 +174,7 @@ def test_the_least_of_several_levels_counts() -> None:
 # --- one slip, one message
 
 
-def test_what_several_cells_share_is_told_once_with_its_places(
+def test_a_shared_message_is_shown_once_with_its_places(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     rows = [["7", "0", "0", "q1"], ["7", "0", "0", "q2"], ["l2", "0", "0", "q3"]]
@@ -194,10 +194,12 @@ def test_what_several_cells_share_is_told_once_with_its_places(
     assert not [m for row in report.rows for cell in row.cells for m in cell.feedback]
 
 
-def test_the_correction_that_all_places_share_stands_with_the_message() -> None:
+def test_a_shared_correction_is_part_of_the_message() -> None:
     same = Correction("0", "0")
     told = Feedback("x", Severity.ERROR, "No.", correction=same)
-    report = told_once(one_row(tuple(CellReport(c, Verdict.INCORRECT, (told,)) for c in "ad")))
+    report = with_shared_messages(
+        one_row(tuple(CellReport(c, Verdict.INCORRECT, (told,)) for c in "ad"))
+    )
     [message] = report.feedback
     assert message.correction == same
     assert message.places == (Place("1", "a"), Place("1", "d"))
@@ -207,7 +209,7 @@ def test_the_correction_that_all_places_share_stands_with_the_message() -> None:
 def test_a_message_with_a_span_stays_with_its_cell() -> None:
     unread = Feedback("x", Severity.ERROR, "No.", span=(0, 1))
     report = one_row(tuple(CellReport(label, Verdict.UNREADABLE, (unread,)) for label in "ad"))
-    assert told_once(report) == report
+    assert with_shared_messages(report) == report
 
 
 def one_row(cells: tuple[CellReport, ...]) -> PartReport:
@@ -218,7 +220,7 @@ def one_row(cells: tuple[CellReport, ...]) -> PartReport:
 # --- echo
 
 
-def test_each_cell_is_told_as_it_was_understood(catalogue: Mapping[str, Exercise]) -> None:
+def test_echo_shows_how_each_cell_was_read(catalogue: Mapping[str, Exercise]) -> None:
     rows: list[list[str]] = [
         ["0", "", "0", "θ1"],
         ["l1", "0", "(", "q2"],

@@ -1,6 +1,6 @@
-"""Reports on wrong poses: the finding on the whole, and the entries that it explains.
+"""Reports on wrong poses: the message on the whole pose, and the entries that it explains.
 
-The poses are multiplied out by SymPy from elementary turns and shifts.
+SymPy multiplies out the poses from elementary turns and shifts.
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ def shift(x: sp.Expr, z: sp.Expr) -> Matrix:
 
 
 def factors(robot: Robot) -> list[tuple[Matrix, Matrix]]:
-    """What each row does about and along z, and about and along x."""
+    """Return the transforms of each row about and along z, and about and along x."""
     rows = []
     for a, alpha, d, theta in robot.rows:
         length, offset, angle = (
@@ -61,7 +61,7 @@ def product(matrices: Sequence[Matrix]) -> Matrix:
 
 
 def without_squares(entry: sp.Expr) -> sp.Expr:
-    """The entry with 1 - cos² for each sin²; trigsimp would take seconds."""
+    """Return the entry with 1 - cos² for each sin²; trigsimp would take seconds."""
     expanded = sp.expand(entry)
     sines = {sine**2: 1 - sp.cos(sine.args[0]) ** 2 for sine in expanded.atoms(sp.sin)}
     return sp.expand(expanded.subs(sines))
@@ -96,7 +96,7 @@ WHOLE = {(i, j) for i in range(3) for j in range(4)}
 ROTATION = {(i, j) for i in range(3) for j in range(3)}
 POSITION = {(i, 3) for i in range(3)}
 
-# Robot, what was handed in, the codes of the part's feedback, words of it, and what that explains.
+# Robot, answer, the codes of the part's messages, words of them, and the entries they explain.
 Slip = tuple[Robot, Matrix, list[str], str, set[tuple[int, int]]]
 SLIPS: dict[str, Slip] = {
     "inverse": (
@@ -274,7 +274,7 @@ def wrong_entries(report: PartReport) -> set[tuple[int, int]]:
 
 @pytest.mark.parametrize("slip", SLIPS.values(), ids=SLIPS.keys())
 def test_a_misconception_explains_its_matrix(slip: Slip, catalogue: Mapping[str, Exercise]) -> None:
-    """It is said once, and the entries that it explains say nothing of their own."""
+    """There is one message on the part, and none on the entries that it explains."""
     robot, matrix, expected, words, explained = slip
     report = graded_pose(catalogue[robot.exercise], text(matrix))
     assert [message.code for message in report.feedback] == expected
@@ -293,14 +293,14 @@ def test_a_misconception_explains_its_matrix(slip: Slip, catalogue: Mapping[str,
 
 
 @pytest.mark.parametrize("robot", [SCARA, STANFORD], ids=lambda robot: robot.exercise)
-def test_a_correct_matrix_draws_nothing(robot: Robot, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_correct_matrix_gets_no_messages(robot: Robot, catalogue: Mapping[str, Exercise]) -> None:
     report = graded_pose(catalogue[robot.exercise], text(product(links(robot))))
     assert full_marks(report)
     assert report.feedback == ()
     assert not any(codes(cell) for row in report.rows for cell in row.cells)
 
 
-def test_the_correction_is_kept_back(catalogue: Mapping[str, Exercise]) -> None:
+def test_the_correction_is_not_shown_below_full(catalogue: Mapping[str, Exercise]) -> None:
     answers = {"pose": text(product(STANFORD_LINKS[::-1]))}
     exercise = catalogue[STANFORD.exercise]
     [told] = part(handed_in(exercise, answers, feedback=FeedbackLevel.HINTS), "pose").feedback
@@ -311,7 +311,7 @@ def test_the_correction_is_kept_back(catalogue: Mapping[str, Exercise]) -> None:
 
 
 def test_no_frame_of_another_convention_is_named(catalogue: Mapping[str, Exercise]) -> None:
-    """The modified frame {2} of the SCARA arm, which no student of the standard one knows."""
+    """Messages on a standard table do not mention the modified frame {2} of the SCARA arm."""
     z1, x1 = factors(SCARA)[0]
     z2, _ = factors(SCARA)[1]
     report = graded_pose(catalogue[SCARA.exercise], text(product([z1, x1, z2])))
@@ -330,7 +330,7 @@ def changed(pose: Matrix, entries: Mapping[tuple[int, int], str]) -> list[list[s
     return matrix
 
 
-# Robot, what is changed, the codes of the part's feedback, the codes of each changed entry.
+# Robot, changed entries, the codes of the part's messages, the codes of each changed entry.
 SINGLE: dict[str, tuple[Robot, dict[tuple[int, int], str], list[str], list[str]]] = {
     "one sign": (SCARA, {(2, 3): "d3 + d4"}, [], ["sign"]),
     "signs apart": (
@@ -367,7 +367,7 @@ SINGLE: dict[str, tuple[Robot, dict[tuple[int, int], str], list[str], list[str]]
 
 
 @pytest.mark.parametrize("case", SINGLE.values(), ids=SINGLE.keys())
-def test_what_is_wrong_in_places_is_said_there(
+def test_wrong_entries_get_messages_of_their_own(
     case: tuple[Robot, dict[tuple[int, int], str], list[str], list[str]],
     catalogue: Mapping[str, Exercise],
 ) -> None:
@@ -391,8 +391,8 @@ def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]
     assert "columns 1 and 2 are not at right angles" in message.message
 
 
-def test_misconceptions_that_change_nothing_are_not_held(catalogue: Mapping[str, Exercise]) -> None:
-    """The links of a planar arm turn about one direction: their order leaves the rotation as is."""
+def test_misconceptions_without_effect_are_not_named(catalogue: Mapping[str, Exercise]) -> None:
+    """All links of a planar arm turn about one direction, so their order does not matter."""
     pose = product([x * z for z, x in factors(PLANAR_RRR)])
     slightly_off = changed(pose, {(0, 0): "cos(q1 + q2 + q3) + 0*q1 + c1/5000"})
     report = graded_pose(catalogue[PLANAR_RRR.exercise], slightly_off)
@@ -400,8 +400,8 @@ def test_misconceptions_that_change_nothing_are_not_held(catalogue: Mapping[str,
     assert wrong_entries(report) == {(0, 0)}
 
 
-def test_the_work_budget_ends(catalogue: Mapping[str, Exercise]) -> None:
-    """Where much is unexplained, the rest is compared and no more; it is found where little is."""
+def test_the_work_budget_limits_explanations(catalogue: Mapping[str, Exercise]) -> None:
+    """With many unexplained entries the others are only compared; with few they are explained."""
     exercise = catalogue[SCARA.exercise]
     late = {(2, 2): "cos(0)*cos(pi/2)*c1", (2, 3): "-d3 + d4"}
     nonsense = "c1*s1*c2*s2*c4*s4*a1*a2*d3*d4*c1*s1*c2*s2*c4"

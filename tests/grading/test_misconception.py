@@ -1,4 +1,4 @@
-"""The engine that finds which misconception explains an answer."""
+"""The engine that finds the misconception behind a wrong answer."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -75,7 +75,7 @@ def codes(found: Any) -> list[str]:
     return [finding.code for finding in found.findings]
 
 
-def test_the_first_that_explains_is_taken_and_none_after_it_is_tried() -> None:
+def test_the_search_ends_at_the_first_explanation() -> None:
     case = WrongNumber(1)
     assert codes(explanation(case)) == ["small"]
     assert case.tried == [1]
@@ -88,7 +88,7 @@ def test_the_rank_decides_and_not_the_order_of_registration() -> None:
     assert explanation(WrongNumber(5)) is None
 
 
-def test_two_findings_where_two_misconceptions_are_held() -> None:
+def test_two_misconceptions_give_two_findings() -> None:
     assert codes(explanation(WrongNumber(2))) == ["two", "small"]
 
 

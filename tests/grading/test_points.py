@@ -1,4 +1,4 @@
-"""Points add up, and each marking means what it says."""
+"""Points add up, and each marking works as documented."""
 
 from collections.abc import Callable, Mapping
 
@@ -45,7 +45,7 @@ RIGHT = [("a1", "0", "0", "q1"), ("a2", "0", "0", "q2")]
     robot=st.sampled_from(ROBOTS),
     wrong=st.sets(st.tuples(st.integers(0, 5), st.integers(0, 3))),
 )
-def test_a_row_is_worth_the_cells_that_one_has_to_know(
+def test_a_row_is_worth_its_content_cells(
     given_frames: Mapping[str, Exercise], robot: Robot, wrong: set[tuple[int, int]]
 ) -> None:
     rows = [list(row) for row in EXACT.rows(robot)]
@@ -74,7 +74,7 @@ def test_the_parts_add_up_to_the_score(given_frames: Mapping[str, Exercise]) -> 
     assert report.gradable is True
 
 
-def test_a_part_that_is_not_handed_in_is_missing(given_frames: Mapping[str, Exercise]) -> None:
+def test_a_part_without_an_answer_is_missing(given_frames: Mapping[str, Exercise]) -> None:
     for answers in ({}, {"table": None}, {"pose": None, "table": None}):
         report = handed_in(given_frames[STANFORD.exercise], answers)
         assert [part.verdict for part in report.parts] == [Verdict.MISSING] * 2
@@ -90,8 +90,8 @@ def test_a_wrong_answer_is_gradable(given_frames: Mapping[str, Exercise]) -> Non
 UNREAD = [("a1", "0", "0", "q1"), ("a2", "0", "(", "q2")]
 ONE_WRONG = [("a1", "0", "0", "q1"), ("a1", "0", "0", "q2")]
 TOO_MANY = [*RIGHT, ("1", "1", "1", "1")]
-# By hand: of the eight cells a1 and a2 are what one has to know; each row is worth a fifth besides,
-# and that is what the unread 0 costs.
+# By hand: a1 and a2 are the content cells of the eight; each row is worth a fifth more, which is
+# the cost of the unread 0.
 MARKINGS = {
     "content": {"wrong": 7 * 1.4 / 2.4, "unread": 7 * 2.2 / 2.4, "extra": 7 * 1.4 / 2.4},
     "cells": {"wrong": 7 * 7 / 8, "unread": 7 * 7 / 8, "extra": 7 * 1 / 2},
@@ -115,7 +115,7 @@ def test_a_part_says_how_it_is_marked(
         assert (report.verdict is Verdict.PARTIAL) is (0 < expected < 7), name
 
 
-def test_thirds_leave_no_dust(make_exercise: Callable[[str], Exercise]) -> None:
+def test_thirds_add_up_without_rounding_errors(make_exercise: Callable[[str], Exercise]) -> None:
     exercise = make_exercise(STRICT.replace("points = 1\n", "points = 0.1\n"))
     report = handed_in(exercise, {"again": table(RIGHT), "table": table(RIGHT)})
     assert (report.points, report.score) == (7.1, 1.0)
@@ -139,10 +139,10 @@ expected = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos
 """
 
 
-def test_a_wrong_entry_costs_one_of_those_that_one_has_to_know(
+def test_a_wrong_entry_costs_one_content_cell(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
-    """Four entries of a turn about x differ from those of the identity."""
+    """Four entries of a turn about x are content cells: they differ from the identity."""
     exercise = make_exercise(ROTATION)
     right = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos(q1)"]]
     for wrong, expected in (([(0, 0)], 2.25), ([(1, 2)], 2.25), ([(0, 1), (2, 2)], 1.5)):
@@ -152,8 +152,8 @@ def test_a_wrong_entry_costs_one_of_those_that_one_has_to_know(
         assert sum(row.points for row in report.rows) == pytest.approx(expected, abs=1e-5)
 
 
-def test_another_convention_named_costs_nothing(given_frames: Mapping[str, Exercise]) -> None:
-    """The table is right in the convention that is asked for; its label is not."""
+def test_the_name_of_another_convention_costs_nothing(given_frames: Mapping[str, Exercise]) -> None:
+    """The table is right in the expected convention; only the convention that it names is wrong."""
     answer = table(EXACT.rows(STANFORD)) | {"convention": "modified"}
     report = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
     assert report.points == report.max_points

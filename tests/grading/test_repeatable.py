@@ -1,4 +1,4 @@
-"""The same submission gets the same report, byte for byte, wherever and whenever it is graded."""
+"""The same submission always gets the same report, byte for byte."""
 
 import json
 import os
@@ -26,7 +26,7 @@ print(json.dumps(asdict(grade(exercise, Submission(json.load(sys.stdin))))))
 
 
 def wrong_answers() -> dict[str, Any]:
-    """A submission with counterexamples, misreadings and rounding in it."""
+    """Return a submission whose report has counterexamples, misreadings and rounding."""
     rows: list[list[Any]] = [list(row) for row in EXACT.rows(STANFORD)]
     rows[0][1] = "-1.5708"
     rows[1][3] = "q2 + d2*d6 + q5"
@@ -40,14 +40,14 @@ def as_bytes(exercise: Exercise, answers: Mapping[str, object]) -> bytes:
     return json.dumps(as_data(handed_in(exercise, answers))).encode()
 
 
-def test_in_one_process(catalogue: Mapping[str, Exercise]) -> None:
+def test_reports_are_equal_in_one_process(catalogue: Mapping[str, Exercise]) -> None:
     exercise = catalogue[STANFORD.exercise]
     reports = {as_bytes(exercise, wrong_answers()) for _ in range(5)}
     assert len(reports) == 1
     assert b"yours" in reports.pop()
 
 
-def test_in_fresh_processes_whatever_the_hash_seed(catalogue: Mapping[str, Exercise]) -> None:
+def test_reports_are_equal_for_every_hash_seed(catalogue: Mapping[str, Exercise]) -> None:
     here = as_bytes(catalogue[STANFORD.exercise], wrong_answers())
     processes = [
         subprocess.Popen(
@@ -86,7 +86,7 @@ def test_another_submission_in_between_changes_nothing(
     assert as_bytes(exercise, wrong_answers()) == before
 
 
-def test_grading_leaves_the_answers_alone(catalogue: Mapping[str, Exercise]) -> None:
+def test_grading_does_not_change_the_answers(catalogue: Mapping[str, Exercise]) -> None:
     answers = wrong_answers()
     handed_in(catalogue[STANFORD.exercise], answers)
     assert answers == wrong_answers()

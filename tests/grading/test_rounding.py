@@ -18,7 +18,7 @@ from tests.grading.support.submitting import (
 )
 from tests.together import together
 
-# An arm whose pose holds constants: sqrt(2)/2 in row 3, 2/3 as a length.
+# An arm whose pose contains constants: sqrt(2)/2 in row 3, 2/3 as a length.
 ARM = """
 title = "A tilted joint"
 source = "made for this test"
@@ -104,7 +104,7 @@ def test_three_figures_are_enough(i: int, column: str, text: str, arm: Exercise)
 
 
 @pytest.mark.parametrize(("i", "column", "text"), REFUSED)
-def test_two_figures_are_not(i: int, column: str, text: str, arm: Exercise) -> None:
+def test_two_figures_are_not_enough(i: int, column: str, text: str, arm: Exercise) -> None:
     verdict, found = graded(arm, i, column, text)
     assert verdict is Verdict.INCORRECT
     assert found == [
@@ -112,7 +112,7 @@ def test_two_figures_are_not(i: int, column: str, text: str, arm: Exercise) -> N
     ]
 
 
-def test_what_is_exact_carries_no_note(arm: Exercise) -> None:
+def test_an_exact_value_gets_no_note(arm: Exercise) -> None:
     report = graded_table(arm, ROWS)
     assert not_correct(report) == {}
     assert not [code for row in report.rows for found in row.cells for code in codes(found)]
@@ -129,7 +129,9 @@ def test_what_is_exact_carries_no_note(arm: Exercise) -> None:
         ("-0.71", Verdict.INCORRECT),
     ],
 )
-def test_constants_in_a_pose(text: str, verdict: Verdict, arm: Exercise) -> None:
+def test_rounded_constants_in_a_pose_have_this_verdict(
+    text: str, verdict: Verdict, arm: Exercise
+) -> None:
     matrix = [["0"] * 4, ["0"] * 4, ["0", "0", text, "0"], ["0", "0", "0", "1"]]
     report = graded_pose(arm, matrix)
     assert cell(report, "3", "3").verdict is verdict
@@ -147,7 +149,8 @@ def test_the_note_costs_nothing_and_says_what_to_write(arm: Exercise) -> None:
     assert "Write the exact number" in note.message
 
 
-# The cell, just inside and just outside: rounded (half a unit) and cut off (a whole unit).
+# The cell, a number just inside the limit (half a unit, or a whole one if cut off), and just
+# outside.
 NEAR = [
     (0, "a", "0.66667", "0.66668"),
     (0, "theta", "q1 + 1.57080", "q1 + 1.57081"),
@@ -168,7 +171,7 @@ def test_no_verdict_depends_on_the_draw(
 
 @pytest.mark.parametrize("blanks", range(20))
 def test_no_verdict_depends_on_blanks(blanks: int, arm: Exercise) -> None:
-    """0.051 has two figures, so it is not 0.05; nor may whole turns of q2 hide what it is."""
+    """0.051 has two figures, so it is not 0.05; whole turns of q2 must not hide that."""
     rows = [*ROWS[:1], ["0", "pi", "1000" + " " * blanks, "q2 + 0.051"]]
     assert list(not_correct(graded_table(arm, rows))) == [("2", "theta")]
 
@@ -198,7 +201,7 @@ frames = "free"
 # 0.15005 + 0.013 = 0.16305, which is rounded to 0.1631; π - 1.234 = 1.90759.
 @pytest.mark.parametrize("angle", ["1.908", "1.9076", "1.90759"])
 @pytest.mark.parametrize("offsets", [("-0.013", "0.1631"), ("0.1631", "-0.013")])
-def test_offsets_and_odd_angles_in_frames_of_ones_own(
+def test_rounded_offsets_and_angles_are_right_in_own_frames(
     offsets: tuple[str, str], angle: str, make_exercise: Callable[[str], Exercise]
 ) -> None:
     arm = make_exercise(OWN_FRAMES)
@@ -213,7 +216,7 @@ def test_offsets_and_odd_angles_in_frames_of_ones_own(
     assert report.points == report.max_points
 
 
-def test_no_short_length_hides_behind_a_long_one(
+def test_a_wrong_short_length_is_found_beside_a_long_one(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
     arm = make_exercise(OWN_FRAMES)
@@ -226,10 +229,10 @@ def test_no_short_length_hides_behind_a_long_one(
 
 
 @pytest.mark.parametrize("behind", [True, False])
-def test_more_decimals_than_are_fitted_are_taken_as_written(
+def test_decimals_beyond_the_limit_count_as_written(
     behind: bool, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """Ten rows of four decimals beside a right table: it is wrong, and it is graded."""
+    """A right table with ten more rows of four decimals is wrong, and is graded."""
     garbage = [("0.371", "0.613", "0.829", "1.273")] * 10
     right = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
     rows = [*right, *garbage] if behind else [*garbage, *right]
@@ -238,10 +241,10 @@ def test_more_decimals_than_are_fitted_are_taken_as_written(
     assert report.points < report.max_points
 
 
-def test_decimals_beside_the_variable_of_a_joint_that_slides(
+def test_decimals_beside_an_absent_variable_are_graded(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Joint 3 of the Stanford arm slides, so that no value of theta3 is drawn for the robot."""
+    """Joint 3 of the Stanford arm slides, so that theta3 is absent from the samples."""
     rows = [list(row) for row in EXACT.rows(STANFORD)]
     rows[2][3] = "theta3 + 0.127"
     report = graded_table(catalogue["stanford-arm"], rows)
@@ -254,8 +257,8 @@ def test_a_decimal_that_is_divided_by_zero_is_wrong_without_a_warning(arm: Exerc
     assert cell(report, "1", "alpha").verdict is Verdict.INCORRECT
 
 
-# One cell of a robot, what may be written for it, and what may not: a decimal of three figures or
-# more is within half a unit of its last place, or was cut off, which leaves less than a whole unit.
+# One cell of a robot, right answers and wrong ones: a decimal with three figures or more must be
+# within half a unit of its last place if rounded, and within a whole unit if cut off.
 EDGES = [
     ("a", "0.9", ["0.9", "0.90", "0.900"], ["0.899", "0.8999", "0.901", "0.9001", "0.8995"]),
     ("a", "0.8995", ["0.899", "0.900", "0.8995"], ["0.898", "0.901", "0.8994", "0.8996", "0.90"]),
@@ -291,7 +294,7 @@ LINK = {"a": "0.5", "alpha": "90deg", "d": "0.4", "theta": "30deg"}
 
 @pytest.mark.parametrize("frames", ["given", "free"])
 @together(("column", "true", "right", "wrong"), EDGES)
-def test_the_edge_of_rounding(
+def test_decimals_are_right_up_to_the_limit_of_rounding(
     column: str,
     true: str,
     right: list[str],
@@ -308,8 +311,8 @@ def test_the_edge_of_rounding(
         assert is_right == (text in right), text
 
 
-# A joint that slides has its axis anywhere: a turn of all that follows by a hundredth of a degree
-# makes up for a length.
+# The axis of a prismatic joint may be anywhere: turning all later links by a hundredth of a degree
+# compensates for a length.
 SLIDING = """
 title = "A sliding joint"
 source = "made for this test"
@@ -341,7 +344,7 @@ frames = "free"
         *(("0.89949", text, False) for text in ("0.900", "0.8993", "0.8996", "0.898")),
     ],
 )
-def test_no_rounded_right_angle_makes_up_for_a_wrong_length(
+def test_a_rounded_right_angle_does_not_excuse_a_wrong_length(
     length: str, text: str, is_right: bool, make_exercise: Callable[[str], Exercise]
 ) -> None:
     exercise = make_exercise(SLIDING.format(length=length))

@@ -1,4 +1,4 @@
-"""One slip in a table costs one cell, and says what it was."""
+"""One slip in a table costs one cell, and is named."""
 
 from collections.abc import Callable, Mapping
 
@@ -21,7 +21,7 @@ CELLS = [
     CELLS,
     ids=[f"{robot.exercise} {robot.labels[i]}.{COLUMNS[j]}" for robot, i, j in CELLS],
 )
-def test_a_slip_costs_its_own_cell_only(
+def test_a_slip_costs_only_its_own_cell(
     robot: Robot, i: int, j: int, given_frames: Mapping[str, Exercise]
 ) -> None:
     for slip in slips(robot, i, j):
@@ -35,14 +35,14 @@ def check(slip: Slip, exercise: Exercise) -> None:
 
     label, column = slip.robot.labels[slip.row], COLUMNS[slip.column]
     assert not_correct(report) == {(label, column): slip.verdict}, slip
-    # An empty cell costs what a wrong one does, an unreadable one only what it is worth.
+    # An empty cell costs as much as a wrong one, an unreadable cell only its worth.
     wrong = slip.verdict is not Verdict.UNREADABLE
     wrong = wrong or is_known(slip.robot, slip.row, slip.column)
     expected = points(slip.robot, report.max_points, [slip.row] * wrong, [slip.row] * (not wrong))
     assert report.verdict is Verdict.PARTIAL, slip
     assert [row.points for row in report.rows] == about(expected), slip
     assert report.points == pytest.approx(sum(expected), abs=1e-5), slip
-    # Nothing is partly right that earns nothing.
+    # A row that earns nothing is not partly right.
     verdict = Verdict.PARTIAL if expected[slip.row] else slip.verdict
     assert row(report, label).verdict is verdict, slip
 

@@ -1,4 +1,4 @@
-"""Corrections in the spelling of the student."""
+"""Corrections use the spelling of the student."""
 
 from collections.abc import Mapping
 
@@ -12,7 +12,7 @@ from tests.grading.support.submitting import full_marks, graded_pose, graded_tab
 
 
 def corrected(report: PartReport, row: str, column: str) -> Correction | None:
-    """The correction of a cell."""
+    """Return the correction of a cell."""
     [found] = [
         place.correction or message.correction
         for message, places, _ in messages_of(report)
@@ -37,7 +37,7 @@ def corrected(report: PartReport, row: str, column: str) -> Correction | None:
         ("1.5708", "1.5708", "radians", "-pi/2", r"-\frac{\pi}{2}"),
     ],
 )
-def test_an_angle(
+def test_a_corrected_angle_has_the_students_spelling(
     wrong: str, others: str, unit: AngleUnit, text: str, latex: str,
     given_frames: Mapping[str, Exercise],
 ) -> None:  # fmt: skip
@@ -63,7 +63,7 @@ def test_an_angle(
         ("q{}*", "q1", "q_{1}"),
     ],
 )
-def test_a_joint_variable(
+def test_a_corrected_joint_variable_has_the_students_spelling(
     typed: str, text: str, latex: str, given_frames: Mapping[str, Exercise]
 ) -> None:
     rows = [list(row) for row in EXACT.rows(STANFORD)]
@@ -74,7 +74,7 @@ def test_a_joint_variable(
     assert corrected(report, "1", "theta") == Correction(text, latex)
 
 
-def test_a_formula_of_a_matrix(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_corrected_formula_has_the_students_spelling(catalogue: Mapping[str, Exercise]) -> None:
     for cosine, text in (("c12", "c12"), ("cos(q1 + q2)", "cos(q1 + q2)")):
         pose = [["0"] * 4 for _ in range(4)]
         pose[0][3] = f"l1*{cosine.replace('12', '1').replace(' + q2', '')} - l2*{cosine}"
@@ -85,7 +85,7 @@ def test_a_formula_of_a_matrix(catalogue: Mapping[str, Exercise]) -> None:
         assert f"+ l2*{text} +" in found.text
 
 
-def test_a_hint_calls_a_joint_variable_as_the_student_does(
+def test_a_hint_uses_the_students_name_of_a_joint_variable(
     given_frames: Mapping[str, Exercise],
 ) -> None:
     rows = [list(row) for row in EXACT.rows(STANFORD)]

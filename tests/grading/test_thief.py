@@ -1,6 +1,6 @@
-"""What a report says below the level full, copied into the wrong cells, earns nothing.
+"""Copying from a report below the level full into the wrong cells earns nothing.
 
-And no message of it holds the value that a cell should have.
+No message at these levels contains the right value of a cell.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -30,7 +30,7 @@ FIRST: Mapping[str, Callable[[Exercise, PartSpec], Grid]] = {
 
 
 def thieves(exercise: Exercise, level: FeedbackLevel, first: str) -> Iterator[Thief]:
-    """A thief for each part, who begins with this answer in every cell."""
+    """Yield a thief for each part; the first answer has ``first`` in every cell."""
     for spec in exercise.parts:
         grid = FIRST[first](exercise, spec)
         known = known_before(sheet_of(spec, exercise), grid)
@@ -48,8 +48,8 @@ def test_a_thief_gains_nothing(
         assert after == before, (thief.part.id, thief.stolen)
 
 
-def test_at_full_a_thief_gets_the_table(catalogue: Mapping[str, Exercise]) -> None:
-    """So that the test above could fail."""
+def test_a_thief_gets_the_table_at_full(catalogue: Mapping[str, Exercise]) -> None:
+    """A thief succeeds at the level full, so that the test above can fail."""
     table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")
     before, after = table.steal()
     assert before == 0
@@ -57,16 +57,16 @@ def test_at_full_a_thief_gets_the_table(catalogue: Mapping[str, Exercise]) -> No
     assert {"theta1", "theta2", "a1", "a2"} <= {text.lstrip("-") for text in table.stolen}
 
 
-def test_what_can_be_stolen_from_a_sentence(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_thief_finds_expressions_in_a_sentence(catalogue: Mapping[str, Exercise]) -> None:
     words = catalogue["planar-rr"].vocabulary
     assert "theta1 + pi/2" in expressions_in("It should be theta1 + pi/2.", words)
     assert "90deg" in expressions_in("Write the unit (90deg or 90°).", words)
     assert expressions_in("Check which way the axes point.", words) == ()
 
 
-# --- no message holds the value
+# --- no message contains the value
 
-# One slip in so many is tried.
+# The share of slips that are tried: one of this number.
 EVERY = 17
 
 
@@ -83,7 +83,7 @@ class Slip(NamedTuple):
 
 
 def slips(right: Grid, every: int) -> Iterator[Slip]:
-    """Slips in each cell, one in ``every`` of them."""
+    """Yield one in ``every`` slips in each cell."""
     count = 0
     for i, row in enumerate(right):
         for j, text in enumerate(row):
@@ -97,7 +97,7 @@ def slips(right: Grid, every: int) -> Iterator[Slip]:
 
 
 def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
-    """The expressions in a report at the level hints that have the value of the slip's cell."""
+    """Return the expressions in a report with hints equal to the right value of the cell."""
     sheet = sheet_of(spec, exercise)
     answers = {spec.id: sheet.posted(slip.grid)}
     corrected = _correction(part(handed_in(exercise, answers, feedback=FULL), spec.id), sheet, slip)
@@ -116,7 +116,7 @@ def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
 
 
 def _correction(report: PartReport, sheet: Sheet, slip: Slip) -> str | None:
-    """The right formula of the slip's cell, as it is told at the level full."""
+    """Return the right formula of the slip's cell in a report at the level full."""
     at = sheet.rows[slip.row], sheet.columns[slip.column]
     for message, places, _ in messages_of(report):
         for place in places:
@@ -136,12 +136,12 @@ def _same(one: str, other: str, exercise: Exercise) -> bool:
 
 
 @pytest.mark.parametrize("exercise_id", one_in(4, IDS))
-def test_no_hint_holds_the_value_of_its_cell(
+def test_no_hint_contains_the_value_of_its_cell(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise, tried = catalogue[exercise_id], 0
     for spec, answer in zip(exercise.parts, solved(exercise).parts, strict=True):
-        if answer.text == "none":  # that there is no row is no formula
+        if answer.text == "none":  # "none" is not a formula
             continue
         for slip in slips(sheet_of(spec, exercise).grid_of(answer.answer), EVERY):
             assert leaks(exercise, spec, slip) == [], (spec.id, slip)

@@ -1,4 +1,4 @@
-"""Nothing is told beside a slip that the slip itself explains."""
+"""A slip gets one message, without others on its consequences."""
 
 from collections.abc import Mapping
 
@@ -24,7 +24,7 @@ def report(exercise: Exercise, part: str, answer: str, degrees: bool = False) ->
 
 
 def told(part: PartReport) -> list[str]:
-    """The codes of all messages but the one on the order of columns without headers."""
+    """Return the codes of all messages except the one on the order of columns without headers."""
     found = [*part.feedback, *(m for row in part.rows for m in row.feedback)]
     found += [m for row in part.rows for cell in row.cells for m in cell.feedback]
     return [m.code for m in found if m.code != "column_order"]
@@ -36,7 +36,7 @@ def test_a_unit_slip_leaves_no_remark_on_frames(catalogue: Mapping[str, Exercise
     assert told(part) == ["radians_as_degrees"]
 
 
-def test_a_row_too_many_leaves_no_other_slip(catalogue: Mapping[str, Exercise]) -> None:
+def test_an_extra_row_gets_no_other_message(catalogue: Mapping[str, Exercise]) -> None:
     first, *others = RIGHT.split("\n")
     rows = "\n".join([first, "1, 45deg, 1, 1", *others])
     assert told(report(catalogue["stanford-arm"], "table", rows)) == [
@@ -56,7 +56,9 @@ def test_a_variable_in_the_wrong_column_is_one_slip(
     assert told(report(catalogue["stanford-arm"], "table", rows)) == [code]
 
 
-def test_at_home_no_joint_is_blamed(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_message_on_the_home_pose_does_not_mention_joint_starts(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     pose = "[1, 0, 0, 1.037165; 0, 1, 0, 0; 0, 0, 1, 0.19135; 0, 0, 0, 1]"
     [message] = report(catalogue["baxter-left-arm"], "home", pose).feedback
     assert "joint 2 starts" not in message.message

@@ -1,4 +1,4 @@
-"""What could not be read, or was left empty, costs itself: nothing follows from it."""
+"""An unreadable or empty cell affects only itself."""
 
 import random
 from collections.abc import Iterator, Mapping
@@ -36,7 +36,7 @@ BLAME = {Severity.ERROR, Severity.WARNING}
 
 
 def places(answer: object, place: Place = ()) -> Iterator[Place]:
-    """Where the cells of an answer stand."""
+    """Yield the places of the cells of an answer."""
     if isinstance(answer, dict):
         for key, inside in answer.items():
             if key not in ("convention", "none"):
@@ -59,12 +59,12 @@ def changed(answer: Any, cells: list[Place], text: str) -> Any:
 
 
 def blamed(report: PartReport, unread: Verdict) -> list[tuple[object, ...]]:
-    """All that is said against the whole, and against cells that were read."""
+    """Return all verdicts and messages against the whole answer or against cells that were read."""
     verdicts = {(row.label, cell.label): cell.verdict for row in report.rows for cell in row.cells}
     messages = [
         message
         for message, told_of, _ in messages_of(report)
-        # A message on unread cells alone may stand with the part, once for all of them.
+        # One message on the part may be about several unread cells.
         if not told_of or any(verdicts.get((at.row, at.cell or "")) is not unread for at in told_of)
     ]
     wrong = [
@@ -77,14 +77,14 @@ def blamed(report: PartReport, unread: Verdict) -> list[tuple[object, ...]]:
 
 
 def subsets(cells: list[Place], rng: random.Random) -> Iterator[list[Place]]:
-    """Every other cell alone, then two cells, four, six …"""
+    """Yield every second cell alone, then two cells, four, six …"""
     yield from ([cell] for cell in cells[::2])
     for count in range(2, len(cells) + 1, 2):
         yield rng.sample(cells, count)
 
 
 @pytest.mark.parametrize("exercise_id", one_in(4, IDS))
-def test_nothing_follows_from_a_cell_of_a_right_answer(
+def test_an_unread_cell_of_a_right_answer_affects_only_itself(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     graded_exercise, rng = catalogue[exercise_id], random.Random(exercise_id)
@@ -107,8 +107,8 @@ TRIES = [(robot, name) for robot in ROBOTS for name in conventions(robot, GIVEN)
 @pytest.mark.parametrize(
     ("robot", "name"), one_in(4, TRIES), ids=lambda each: getattr(each, "name", each)
 )
-def test_nothing_follows_from_a_cell_of_a_table_in_other_frames(robot: Robot, name: str) -> None:
-    """Up to four cells anywhere, and a whole row: of the valid tables that are drawn, all."""
+def test_an_unread_cell_in_other_frames_affects_only_itself(robot: Robot, name: str) -> None:
+    """All drawn valid tables stay right with up to four unread cells, or an unread row."""
     rng = np.random.default_rng(5)
     for policy in POLICIES[:3]:
         rows = reassignment(robot, policy, name, rng)[0].texts
@@ -122,10 +122,10 @@ def test_nothing_follows_from_a_cell_of_a_table_in_other_frames(robot: Robot, na
             assert blamed(report, Verdict.UNREADABLE) == [], tried
 
 
-def test_a_slip_beside_a_cell_that_was_not_read_is_still_one(
+def test_a_slip_beside_an_unread_cell_is_found(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """A wrong twist between the first two axes: no offset of joint 2 makes up for it."""
+    """No offset of joint 2 compensates for a wrong twist between the first two axes."""
     rows = [list(row) for row in STANFORD.rows]
     rows[0][1], rows[1][2] = "-60", "thetta?"
     report = support.graded_table(catalogue["stanford-arm"], rows, "degrees")
@@ -136,7 +136,7 @@ def test_a_slip_beside_a_cell_that_was_not_read_is_still_one(
 
 
 def scara_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
-    """The distal link transform for a twist of 0 or 180°. Source: Spong et al., eq. 3.10."""
+    """Return the standard link transform for a twist of 0 or 180° (Spong et al., eq. 3.10)."""
     cos = {"0": "1", "180": "-1"}[alpha]
     c, s = f"cos({theta})", f"sin({theta})"
     return [
@@ -148,10 +148,10 @@ def scara_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
 
 
 @pytest.mark.parametrize("i", range(4))
-def test_nothing_follows_from_entries_of_a_link_in_other_frames(
+def test_unread_entries_of_a_link_in_other_frames_affect_no_other(
     i: int, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """x1 the other way, and origins moved along the parallel axes: valid by hand."""
+    """x1 is reversed, and origins are moved along the parallel axes; valid by hand."""
     right = [
         scara_link("-a1", "0", "0.3", "theta1 + pi"),
         scara_link("a2", "180", "-0.1", "theta2 - pi"),

@@ -1,4 +1,4 @@
-"""The budget for explanations: what it leaves out is said once, and no verdict depends on it."""
+"""The budget for explanations: one message on omissions; no verdict depends on the budget."""
 
 from collections.abc import Iterator, Mapping
 
@@ -11,13 +11,13 @@ from service.grading.work_budget import WorkBudget
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.solutions.solved import solved
 
-# Wrong in many ways: signs, values, variables of other joints, decimals, what has no value.
+# Many kinds of wrong entries: signs, values, variables of other joints, decimals, undefined values.
 WRONG = ["-theta1", "d2 + 0.333", "0.707", "sin(theta1)", "1", "theta3", "0^-1", "c1*s2"]
 SHIPPED = ["stanford-arm", "scara", "spatial-rrr", "planar-rpr-poe", "simple-twist"]
 
 
 def spoilt(answer: object, every: int) -> object:
-    """The answer with every so many of its cells wrong."""
+    """Return the answer with every n-th cell wrong, n = ``every``."""
     count = 0
 
     def changed(inside: object) -> object:
@@ -49,7 +49,7 @@ def marks(report: Report) -> list[tuple[object, ...]]:
 
 
 def told(report: Report) -> list[str]:
-    """The parts in which it is said that something was left out."""
+    """Return the parts with the message that something was left out."""
     return [part.part for part in report.parts for m in part.feedback if m.code == "work_limit"]
 
 
@@ -76,13 +76,13 @@ def everything_wrong(exercise: Exercise) -> dict[str, object]:
     return {part: spoilt(right, 1) for part, right in solved(exercise).answers.items()}
 
 
-def test_what_is_left_out_is_said_once(catalogue: Mapping[str, Exercise]) -> None:
-    """Twenty-four wrong cells of a table, seven wrong matrices: the table is explained first."""
+def test_an_omission_gets_one_message(catalogue: Mapping[str, Exercise]) -> None:
+    """Of 24 wrong cells of a table and seven wrong matrices, the table is explained first."""
     exercise = catalogue["stanford-arm"]
     report = grade(exercise, Submission(everything_wrong(exercise)))
     assert len(told(report)) == 1
     assert "value" in _codes(report.parts[0])
-    # That an entry cannot be read, or has no value, is found before anything is explained.
+    # Messages on unreadable or undefined entries do not need the budget for explanations.
     assert _codes(report.parts[-1]) <= {"undefined", "unknown_joint"}
 
 
@@ -91,14 +91,16 @@ def _codes(part: PartReport) -> set[str]:
 
 
 @pytest.mark.parametrize("level", [FeedbackLevel.VERDICTS, FeedbackLevel.SCORE])
-def test_where_nothing_is_explained_nothing_is_left_out(
+def test_levels_without_hints_have_no_message_on_omissions(
     level: FeedbackLevel, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue["stanford-arm"]
     assert told(grade(exercise, Submission(everything_wrong(exercise), feedback=level))) == []
 
 
-def test_an_ordinary_wrong_answer_is_explained_whole(catalogue: Mapping[str, Exercise]) -> None:
+def test_an_ordinary_wrong_answer_is_explained_completely(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     exercise = catalogue["stanford-arm"]
     rows = [list(row) for row in EXACT.rows(STANFORD)]
     rows[1][1], rows[3][1], rows[4][3] = "-pi/2", "0", "theta4"
@@ -106,7 +108,7 @@ def test_an_ordinary_wrong_answer_is_explained_whole(catalogue: Mapping[str, Exe
     assert told(grade(exercise, Submission(answers))) == []
 
 
-def test_reading_and_searches_leave_less_for_explanations() -> None:
+def test_reading_and_searches_reduce_the_work_for_explanations() -> None:
     read, searched = WorkBudget(), WorkBudget()
     assert read.charge_reading(14_000)
     searched.charge_search(200.0)
@@ -124,6 +126,6 @@ def test_searches_do_not_depend_on_explanations() -> None:
     assert not explained.affords(500.0)
     for budget in (bare, explained):
         assert budget.affords_search(200.0)
-        # What is refused costs nothing.
+        # A refused search costs nothing.
         assert not budget.affords_search(90.0)
         assert budget.affords_search(10.0)

@@ -1,6 +1,6 @@
-"""Whoever knows no geometry earns little, however the answers are dressed up.
+"""Answers without knowledge of geometry earn little, in any disguise.
 
-Every answer here can be written without looking at the robot, but for the names of its joints.
+Every answer here can be written without looking at the robot, except the names of its joints.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -17,7 +17,7 @@ from service.solutions.lazy import IDENTITY, motion
 from tests.samples import one_in
 
 IDS = [file.stem for file in exercise_files(shipped_folder())]
-# The sample begins where it has most kinds of answers.
+# The sample begins at the exercise that has most kinds of answers.
 SAMPLED = one_in(12, IDS[8:] + IDS[:8])
 PART, POSE, EXERCISE = 0.25, 0.5, 0.4
 ZERO_ROW = {"a": "0", "alpha": "0", "d": "0", "theta": "0"}
@@ -28,21 +28,21 @@ Rows = list[dict[str, str]]
 
 
 def padded(rows: Rows) -> Iterator[Rows]:
-    """Fixed rows before, between and behind, as many as may be handed in."""
+    """Yield the rows with as many fixed rows as possible before, between and after them."""
     room = MOST_ROWS - len(rows)
     for row in (ZERO_ROW, GARBAGE):
         yield [row] * room + rows
         yield rows + [row] * room
         yield [*chain.from_iterable((row, each) for each in rows)][:MOST_ROWS]
     if room >= 2 * 2:
-        # Rows that undo one another are a valid part of any table.
+        # Rows that cancel each other may be in any valid table.
         there, back = ZERO_ROW | {"d": "0.4"}, ZERO_ROW | {"d": "-0.4"}
         yield [there, back, *rows]
         yield [*rows, there, back]
 
 
 def dressed_up(rows: Rows) -> Iterator[Rows]:
-    """Numbers of one's own in the cells that somebody may choose freely."""
+    """Yield the rows with arbitrary numbers in cells that some frames leave free."""
     for column in ("d", "theta"):
         for first in range(len(rows) - 1):
             changed = [dict(row) for row in rows]
@@ -57,7 +57,7 @@ def dressed_up(rows: Rows) -> Iterator[Rows]:
 
 
 def standing_still(rows: Rows) -> Iterator[Rows]:
-    """No joint variable, or next to none."""
+    """Yield rows with no joint variables, or practically none."""
     yield [ZERO_ROW] * len(rows)
     yield [{"a": "1", "alpha": "1", "d": "1", "theta": "1"}] * len(rows)
     first = next(cell for cell in rows[0].values() if cell != "0")
@@ -73,7 +73,7 @@ def of_a_table(lazy: Mapping[str, Any]) -> Iterator[object]:
 
 
 def without_knowledge(part: PartSpec, exercise: Exercise) -> list[object]:
-    """Answers to one part."""
+    """Return answers to one part that need no knowledge."""
     answers = LAZY[part.kind](part, exercise)
     if part.kind == "dh_table":
         tables: list[Any] = [*answers]
@@ -104,13 +104,13 @@ def without_knowledge(part: PartSpec, exercise: Exercise) -> list[object]:
 
 
 def sliding(exercise: Exercise) -> list[list[str]]:
-    """Every joint slides along an axis of its own: no such arm was asked for."""
+    """Return a table in which every joint slides along its own axis, unlike the robot."""
     names = [*(joint.variable for joint in exercise.joints), "0", "0", "0"]
     return [[*row[:3], name] for row, name in zip(IDENTITY[:3], names, strict=False)] + IDENTITY[3:]
 
 
 def best_of(part: PartSpec, exercise: Exercise) -> float:
-    """The best share of a part that one of the answers earns by itself."""
+    """Return the best share of a part that one of the answers earns alone."""
     graded = (
         grade(exercise, Submission({part.id: answer}))
         for answer in without_knowledge(part, exercise)
@@ -124,7 +124,7 @@ def best_of(part: PartSpec, exercise: Exercise) -> float:
 
 
 def best_together(exercise: Exercise) -> dict[str, float]:
-    """The best shares where all parts are answered, so that one may follow from another."""
+    """Return the best shares if all parts are answered, so that one may follow from another."""
     best = dict.fromkeys((part.id for part in exercise.parts), 0.0)
     answers = {part.id: without_knowledge(part, exercise) for part in exercise.parts}
     for k in range(0, max(map(len, answers.values())), 2):
@@ -151,7 +151,7 @@ def test_zero_knowledge_earns_little(
         assert best[part.id] <= (POSE if part.kind == "transform" else PART) + 1e-6, part.id
 
 
-def test_a_guess_that_there_is_no_row_is_no_pass(catalogue: Mapping[str, Exercise]) -> None:
+def test_guessing_none_for_a_row_does_not_pass(catalogue: Mapping[str, Exercise]) -> None:
     exercise = catalogue["dh-conditions"]
     guess = {part.id: {"none": True} for part in exercise.parts}
     assert grade(exercise, Submission(guess)).score <= EXERCISE
@@ -169,7 +169,7 @@ def test_the_given_transform_is_not_its_own_inverse(catalogue: Mapping[str, Exer
 
 
 def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
-    """Each cell of the right table made wrong: the share that it costs, and that its row has."""
+    """Yield, for each cell of the right table made wrong, its cost and the share of its row."""
     right: Any = solve(exercise).answers[part.id]
     for i, row in enumerate(right["rows"]):
         for column in ZERO_ROW:
@@ -193,7 +193,7 @@ def test_one_slip_costs_a_fair_share(
             costs = [cost for cost, _ in found]
             figure(f"{exercise_id}: one slip costs {min(costs):.1%} to {max(costs):.1%}")
             assert max(costs) <= 0.45
-            # A row that is the lazy one, but for a fifth of a unit, does not matter.
+            # A row without content cells, worth a fifth of a unit, does not matter.
             matters = [cost for cost, of_row in found if of_row > min(costs) + 1e-6]
             assert min(matters, default=1.0) >= 0.05
 
@@ -226,7 +226,7 @@ SCARA = (
     ["theta1", "theta2", "d3", "theta4"],
     [["a1", "0", "0"], ["a2", "180deg", "0"], ["0", "0"], ["0", "0", "d4"]],
 )
-# What has raised a lazy table before, on arms that are not shipped.
+# Changes that once increased the points of a lazy table, on arms that are not in the catalogue.
 RAISED = {
     "offsets that cancel": (PARALLEL, "", ["0.4", "-0.4", "0"], ""),
     "offsets that cancel, free tool": (SCARA, 'tool = "free"', ["0.4", "-0.4", "0", "0"], ""),
@@ -235,7 +235,9 @@ RAISED = {
 
 
 @pytest.mark.parametrize("name", RAISED)
-def test_nothing_raises_a_lazy_table(name: str, make_exercise: Callable[[str], Exercise]) -> None:
+def test_no_change_increases_the_points_of_a_lazy_table(
+    name: str, make_exercise: Callable[[str], Exercise]
+) -> None:
     (structure, joints, constants), policy, offsets, sign = RAISED[name]
     rows = [
         [*row, joint] if kind == "R" else [*row, joint, "0"]
@@ -252,8 +254,8 @@ def test_nothing_raises_a_lazy_table(name: str, make_exercise: Callable[[str], E
     assert report.points <= PART * report.max_points + 1e-6
 
 
-def test_a_rotation_alone_carries_no_position(catalogue: Mapping[str, Exercise]) -> None:
-    """Its own invented lengths would make the position easy."""
+def test_no_position_follows_from_a_rotation_alone(catalogue: Mapping[str, Exercise]) -> None:
+    """Invented lengths would make the position easy."""
     pose = [["c12", "-s12", "0", "c1 + c12"], ["s12", "c12", "0", "s1 + s12"], *IDENTITY[2:]]
     answers = {"pose": pose, "position": ["c1 + c12", "s1 + s12"]}
     reports = {each.part: each for each in grade(catalogue["planar-rr"], Submission(answers)).parts}

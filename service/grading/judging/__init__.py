@@ -1,1 +1,1 @@
-"""Right or wrong: numbers only, no messages."""
+"""Decide what is right or wrong, by numbers; messages are made elsewhere."""

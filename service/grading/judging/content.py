@@ -1,8 +1,8 @@
-"""The cells of a right answer that one has to know something for, which its marks are earned by.
+"""The content of a right answer: the cells that need knowledge and therefore earn marks.
 
-Most cells of a DH table are 0 and every row has its joint variable in the usual place. A student
-who writes just that knows no geometry. So the right answer is compared with the lazy one, and only
-the cells in which they differ are worth something.
+Most cells of a DH table are 0, and every row has its joint variable in the usual place. Writing
+only that, the lazy answer, needs no geometry. So only those cells of the right answer that differ
+from the lazy one are content cells.
 """
 
 from collections.abc import Sequence
@@ -25,35 +25,37 @@ KnownCells = NDArray[np.bool_]
 def known_cells(
     right: Numbers, lazy: ArrayLike, scale: ArrayLike = 1.0, angle: ArrayLike = False
 ) -> KnownCells:
-    """Which cells ``(...)`` of the right answer ``(..., samples)`` differ from the lazy one.
+    """Return a mask ``(...)`` of the cells in which ``right`` ``(..., samples)`` is not ``lazy``.
 
-    ``scale`` and ``angle`` are as ``comparison.matches`` takes them.
+    ``scale`` and ``angle`` have the meaning that they have in ``comparison.matches``.
     """
     error = np.abs(difference(right, np.asarray(lazy), angle)).max(axis=-1)
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
 
 def of_rows(known: KnownCells, most: int | None = None, *, empty_is_wrong: bool = False) -> Content:
-    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws."""
+    """Return the content of rows ``(rows, cells)`` that each have a worth: tables and screws."""
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
     return Content(rows, groups, besides=True, most=most, empty_is_wrong=empty_is_wrong)
 
 
 def of_one_row(known: KnownCells) -> Content:
-    """The content of a single row ``(cells,)``."""
-    return Content(_rows(_or_all(known)[None]), ((0,) * len(known),))
+    """Return the content of a single row ``(cells,)``."""
+    return Content(_rows(_all_if_none(known)[None]), ((0,) * len(known),))
 
 
 def of_list(known: KnownCells, reference: KnownCells | None = None) -> Content:
-    """The content of a list of single values ``(values,)``."""
-    return Content(_rows(_or_all(known)[:, None]), ((0,),) * len(known), most=_count(reference))
+    """Return the content of a list of single values ``(values,)``."""
+    return Content(
+        _rows(_all_if_none(known)[:, None]), ((0,),) * len(known), most=_count(reference)
+    )
 
 
 def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
-    """The content of a rotation ``(3, 3, samples)`` or a homogeneous transform ``(4, 4, samples)``.
+    """Return the content of a rotation ``(3, 3, samples)`` or a transform ``(4, 4, samples)``.
 
-    One half is the rotation's and one the position's, where both are other than the identity's.
+    If rotation and position both differ from the identity, each is worth one half.
     """
     exercise = grading.exercise
     if grading.following:
@@ -63,7 +65,7 @@ def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
 
 @dataclass(frozen=True)
 class _Asked:
-    """The right answer to a part, which is the same at any samples."""
+    """The right answer to a part, as a cache key that does not depend on the samples."""
 
     version: str
     part: str
@@ -80,26 +82,26 @@ def _of_rigid(right: Numbers, length_scale: float) -> Content:
     known = _differs_from_identity(right, length_scale)
     halves = known[:, :3].any() and known[:, 3:].any()
     groups = tuple(int(halves and column == 3) for column in range(known.shape[1]))
-    return Content(_rows(_or_all(known)), (groups,) * len(known), equal=True)
+    return Content(_rows(_all_if_none(known)), (groups,) * len(known), equal=True)
 
 
 def of_matrix(right: Numbers, scale: Numbers) -> Content:
-    """The content of a matrix of any meaning, ``(rows, columns, samples)``.
+    """Return the content of a matrix with any meaning, ``(rows, columns, samples)``.
 
-    A matrix of zeros is as easy to write as the identity is.
+    The zero matrix and the identity are both lazy answers.
     """
     known = known_cells(right, 0.0, scale)
     if known.shape[0] == known.shape[1]:
         known &= known_cells(right, np.eye(len(right))[..., None], scale)
-    return Content(_rows(_or_all(known)), ((0,) * known.shape[1],) * len(known))
+    return Content(_rows(_all_if_none(known)), ((0,) * known.shape[1],) * len(known))
 
 
 def of_links(
     right: Matrices, reference: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
 ) -> Content:
-    """The content of link transforms ``(links, samples, 4, 4)``, each of four rows.
+    """Return the content of link transforms ``(links, samples, 4, 4)``, with four rows each.
 
-    The lazy link of a joint is its motion alone. ``reference`` are the reference's own links.
+    The lazy link of a joint is its motion alone. ``reference`` has the links of the reference.
     """
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)
@@ -110,7 +112,7 @@ def of_links(
 def _differs_from_motion(
     links: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
 ) -> KnownCells:
-    """Which entries ``(links, 4, 4)`` differ from those of the joint's motion alone."""
+    """Return a mask ``(links, 4, 4)`` of the entries that differ from the joint's motion alone."""
     lazy = np.tile(np.eye(4), (len(links), samples.count, 1, 1))
     for link, joint in zip(lazy, joints, strict=False):
         q = samples.values[joint.variable]
@@ -134,8 +136,8 @@ def _rows(known: KnownCells) -> tuple[tuple[bool, ...], ...]:
     return tuple(map(tuple, known.tolist()))
 
 
-def _or_all(known: KnownCells) -> KnownCells:
-    """The same; all cells where the right answer is the lazy one."""
+def _all_if_none(known: KnownCells) -> KnownCells:
+    """Return ``known``, or a mask of all cells if the right answer is the lazy one."""
     return known if known.any() else np.ones_like(known)
 
 

@@ -1,4 +1,4 @@
-"""The convention that a handed-in table is read in."""
+"""Choose the convention in which a submitted table is judged."""
 
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.feedback import Finding
@@ -35,10 +35,10 @@ _NOT_ASKED_FOR = register(
 def judged_in_convention(
     part: DhTableSpec, table: StudentTable, grading: Grading
 ) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
-    """The table judged in the convention that it is read in, and the findings on that convention.
+    """Return the convention of the table, its judgement in it, and findings on the convention.
 
-    Where either will do and the answer names none, it is the one with fewer wrong cells, and that
-    of the reference where both have as many.
+    If the part allows both and the answer names none, choose the one with fewer wrong cells; if
+    they are equal, that of the reference.
     """
     if part.convention == "either" and table.convention is None:
         convention, judgement = _fitting(part, table, grading)
@@ -62,7 +62,7 @@ def _fitting(
 
 
 def _misfit(judgement: Judgement) -> int:
-    """The cells that are wrong, missing or too many; frames off the tool's count as one."""
+    """Return the number of wrong, missing and extra cells; one more if the tool frame is missed."""
     return judgement.wrong + len(COLUMNS) * len(judgement.extra) + (not judgement.reached)
 
 
@@ -75,7 +75,7 @@ def _taken(convention: Convention) -> Finding:
 
 
 def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...]:
-    """The finding on an answer that names another convention than the part."""
+    """Return the finding on an answer that names another convention than the part does."""
     if table.convention in (None, asked):
         return ()
     named = table.convention.value

@@ -1,4 +1,4 @@
-"""The right answer to a part in numbers: of the robot's frames, or of the part's formulas."""
+"""The right answer to a part in numbers, from the robot's frames or the part's formulas."""
 
 import numpy as np
 
@@ -12,16 +12,16 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
-    """The numbers of the formulas that the part's file gives, ``(rows, columns, SAMPLES)``.
+    """Return the values of the formulas in the part's file, ``(rows, columns, SAMPLES)``.
 
-    None where it gives none: then the robot tells.
+    Return None if the file has no formulas; the right answer then follows from the robot.
     """
     grid = grading.exercise.formulas.get(part.id)
     return None if grid is None else grid_values(grid, grading.samples.values, SAMPLES)
 
 
 def given_values(part: PartSpec, grading: Grading) -> Numbers:
-    """The same for a part that always has formulas. Raises LookupError where it has none."""
+    """Return ``formula_values`` of a part with formulas. Raises LookupError if it has none."""
     values = formula_values(part, grading)
     if values is None:
         raise LookupError(f"part {part.id!r} has no formulas")
@@ -29,7 +29,7 @@ def given_values(part: PartSpec, grading: Grading) -> Numbers:
 
 
 def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matrices:
-    """The pose ``(SAMPLES, 4, 4)`` of the robot that the part asks for. Raises LookupError."""
+    """Return the expected pose ``(SAMPLES, 4, 4)`` of the robot. Raises LookupError."""
     robot = exercise.reference
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
@@ -45,10 +45,9 @@ def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matr
 
 
 def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
-    """The pose ``(SAMPLES, 4, 4)`` that the part asks for: of the robot, or of the student's chain.
+    """Return the expected pose ``(SAMPLES, 4, 4)``, of the student's chain if it is followed.
 
-    A student's chain has the frames that its answer has; a part that asks for another is judged by
-    the robot.
+    A part that asks for a frame that the student's chain does not have is judged by the robot.
     """
     chain = grading.student_chain
     if chain is None or not grading.following or part.home:
@@ -61,7 +60,7 @@ def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
 
 
 def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:
-    """Whether the part asks for the pose of the tool in the base frame, wherever the joints are."""
+    """True if the part asks for the pose of the tool in the base frame at all joint values."""
     return (
         exercise.reference is not None
         and exercise.formulas.get(part.id) is None
@@ -70,5 +69,5 @@ def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:
 
 
 def as_entries(matrices: Matrices) -> Numbers:
-    """``(..., SAMPLES, rows, columns)`` as ``(..., rows, columns, SAMPLES)``."""
+    """Convert ``(..., SAMPLES, rows, columns)`` to ``(..., rows, columns, SAMPLES)``."""
     return np.moveaxis(matrices, -3, -1)

@@ -1,4 +1,4 @@
-"""The points of a part: from the verdicts on its cells and what the cells are worth.
+"""The points of a part, from the verdicts on its cells and the worth of the cells.
 
 ``docs/marks.md`` explains the rules to students and tutors, with an example.
 """
@@ -21,12 +21,13 @@ from service.grading.report import (
     rounded_points,
 )
 
-# What a group of cells is worth besides those that one has to know something for; but all groups
-# together no more than a third of those cells, so that a lazy answer earns a quarter at most.
+# The worth that a group of cells has besides its content cells, which count 1 each. For all groups
+# together it is at most a third of the content cells, so that a lazy answer earns at most a
+# quarter.
 BESIDES: Final = 0.2
 MOST_BESIDES: Final = 1 / 3
-# What sums of shares may be off by.
-_DUST: Final = 1e-6
+# The rounding error that a sum of shares may have.
+_ROUNDING_ERROR: Final = 1e-6
 
 # The verdicts on the cells of each row.
 _Verdicts = Sequence[Sequence[Verdict]]
@@ -34,16 +35,16 @@ _Verdicts = Sequence[Sequence[Verdict]]
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """The share of the part's points that each row can earn, and that it earns."""
+    """The shares of the part's points that each row can earn and does earn."""
 
     possible: list[float]
     earned: list[float]
 
     def with_total(self, total: float) -> "Shares":
-        """The same with another sum of what is earned.
+        """Rescale the earned points to a new total.
 
-        The rows that have lost something lose more or less; the others only where that is not
-        enough.
+        The losses of rows that have lost something are scaled. The other rows lose points only if
+        this is not enough.
         """
         pairs = list(zip(self.possible, self.earned, strict=True))
         lost = sum(most - share for most, share in pairs)
@@ -62,7 +63,7 @@ class Shares:
 
 
 def part_report(part: PartSpec, judged: Judged) -> PartReport:
-    """The report on a part that was judged, with the points of its rows."""
+    """Return the report on a judged part, with the points of its rows."""
     shares = shares_of(judged, part.marking)
     rows = tuple(
         _with_points(row, possible * part.points, earned * part.points)
@@ -87,29 +88,30 @@ def part_report(part: PartSpec, judged: Judged) -> PartReport:
 def unjudged_report(
     part: PartSpec, verdict: Verdict, feedback: tuple[Feedback, ...] = ()
 ) -> PartReport:
-    """The report on a part of which nothing was handed in, or nothing could be read."""
+    """Return the report on a part without an answer, or with an unreadable one."""
     return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback)
 
 
 def has_earned(judged: Judged, share: float) -> bool:
-    """Whether an answer has earned its share of the points, 0 to 1, by content.
+    """True if an answer has earned at least ``share`` (0 to 1) of the points by content.
 
-    Of a rotation and a position it must be more: what follows from a right rotation alone is easy.
+    For a rotation with a position, it must be more than ``share``: later parts that follow from a
+    right rotation alone are easy.
     """
     earned = sum(shares_of(judged, "content").earned)
-    return earned > share + _DUST if judged.content.equal else earned >= share
+    return earned > share + _ROUNDING_ERROR if judged.content.equal else earned >= share
 
 
 def shares_of(judged: Judged, marking: Marking) -> Shares:
-    """The share of each row by a marking. Together they make 1 where everything is right."""
+    """Return the share of each row by a marking. The sum is 1 if everything is right."""
     if judged.is_right:
         return _of_right(judged.content, marking)
     verdicts = [[cell.verdict for cell in row.cells] for row in judged.rows]
     shares, slip_cost = _SHARES[marking](judged.content, verdicts)
     total = sum(shares.earned)
     if marking == "content" and math.isfinite(judged.lost):
-        # Another reading of the answer may lose less than the likeliest one, whose cells are wrong.
-        # For each row that is lost as a whole, it counts BESIDES; the row may be worth less.
+        # Another valid table may lose less than the likeliest one, which the verdicts are from. Its
+        # ``lost`` counts BESIDES for each row that is wrong as a whole; the row may be worth less.
         rows = round(judged.lost / BESIDES) % round(1 / BESIDES)
         lost = judged.lost - rows * (BESIDES - _besides(judged.content))
         total = max(total, 1 - slip_cost * lost)
@@ -126,16 +128,17 @@ def shares_of(judged: Judged, marking: Marking) -> Shares:
 
 @lru_cache(maxsize=1024)
 def _of_right(content: Content, marking: Marking) -> Shares:
-    """The shares where everything is right, which most answers to a part have in common."""
+    """Return the shares if everything is right; most answers to a part have these."""
     verdicts = [[Verdict.CORRECT] * len(row) for row in content.known]
     return _SHARES[marking](content, verdicts)[0]
 
 
 def _by_content(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """What one has to know, and the cost of a slip that no cell shows: that of a wrong cell.
+    """Return the shares by content, and the cost of one wrong cell.
 
-    A wrong cell costs a unit, down to the worth of its group. A student's own frames may have more
-    cells that are worth something than the reference's; a wrong cell costs no less for that.
+    The latter is also the cost of a slip outside all cells. A wrong cell costs a unit, and a group
+    cannot lose more than it is worth. A student's own frames may have more content cells than the
+    reference's; that does not reduce the cost of a wrong cell.
     """
     groups = _groups_of(content, verdicts)
     worth = sum(group.worth for group in groups)
@@ -156,10 +159,10 @@ def _by_content(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
 
 @dataclass(slots=True)
 class _Group:
-    """The worth of a group's cells in each row, the wrong ones, and the rows with unread ones.
+    """The worth of a group's cells in each row, its wrong cells, and its rows with unread ones.
 
-    A cell that was not read costs itself: a unit where one has to know something for it. The others
-    of a row cost a fifth together. An empty cell of a table costs what a wrong one does.
+    An unread content cell costs a unit; all other unread cells of a row cost a fifth together. An
+    empty cell of a table costs as much as a wrong one.
     """
 
     units: dict[int, float]
@@ -178,9 +181,9 @@ class _Group:
         return self.wrong[row] + BESIDES * (row in self.unread)
 
     def by_row(self) -> Iterator[tuple[int, float, float]]:
-        """Each row of the group, its worth and what it keeps."""
+        """Yield each row of the group with its worth and the part of it that is earned."""
         kept = {row: max(0.0, units - self.lost_in(row)) for row, units in self.units.items()}
-        # A row cannot lose more than it has; then the others lose the rest.
+        # A row cannot lose more than its worth; the other rows lose the rest.
         factor = (self.worth - self.lost) / (sum(kept.values()) or 1.0)
         for row, units in self.units.items():
             yield row, units, kept[row] * factor
@@ -212,14 +215,14 @@ def _groups_of(content: Content, verdicts: _Verdicts) -> list[_Group]:
 
 
 def _besides(content: Content) -> float:
-    """The worth of a group besides its cells that one has to know something for."""
+    """Return the worth that a group has besides its content cells."""
     groups = len({number for row in content.groups for number in row})
     count = min(content.count, content.most or content.count)
     return min(BESIDES, MOST_BESIDES * count / groups) or BESIDES
 
 
 def _by_cells(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """Each cell counts the same."""
+    """Return the shares if every cell counts the same, and the cost of a slip outside all cells."""
     cells = sum(map(len, verdicts))
     right = [row.count(Verdict.CORRECT) for row in verdicts]
     shares = Shares([len(row) / cells for row in verdicts], [count / cells for count in right])
@@ -227,13 +230,13 @@ def _by_cells(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
 
 
 def _by_rows(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """A row is right or not."""
+    """Return the shares if rows count only as a whole, and the cost of a slip outside all cells."""
     share = 1 / len(verdicts)
     return Shares([share] * len(verdicts), [share * _is_right(row) for row in verdicts]), share
 
 
 def _as_a_whole(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
-    """All or nothing."""
+    """Return the shares if all or nothing is earned, and the cost of a slip outside all cells."""
     shares, _ = _by_content(content, verdicts)
     return shares.with_total(float(all(map(_is_right, verdicts)))), 1.0
 
@@ -251,14 +254,14 @@ _SHARES: Final[Mapping[Marking, Callable[[Content, _Verdicts], tuple[Shares, flo
 
 
 def _with_points(row: RowReport, possible: float, earned: float) -> RowReport:
-    """The row with its points."""
+    """Return the row with its points."""
     points = rounded_points(earned)
     verdict = row.verdict if points else _without_points(row.verdict, [row])
     return RowReport(row.label, verdict, points, rounded_points(possible), row.cells, row.feedback)
 
 
 def _without_points(verdict: Verdict, rows: Sequence[RowReport]) -> Verdict:
-    """The verdict on rows that earn nothing: nothing is partly right that earns nothing."""
+    """Return the verdict on rows that earn nothing: never "partly right"."""
     if verdict is not Verdict.PARTIAL:
         return verdict
     of_cells = {cell.verdict for row in rows for cell in row.cells}

@@ -1,4 +1,4 @@
-"""A matrix held against the expected one, entry by entry."""
+"""Compare a matrix with the expected one, entry by entry."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True, slots=True)
 class ExpectedMatrix:
-    """The right matrix: ``values`` is ``(rows, columns, SAMPLES)``, each entry of a quantity.
+    """The right matrix: its ``values`` ``(rows, columns, SAMPLES)`` and their quantities.
 
     ``rigid`` marks a homogeneous transform (4×4) or a rotation (3×3).
     """
@@ -24,7 +24,7 @@ class ExpectedMatrix:
     rigid: bool = False
 
     def scale(self, length_scale: float) -> Numbers:
-        """The size that each entry is measured against, ``(rows, columns)``."""
+        """Return the scale of each entry's tolerance, ``(rows, columns)``."""
         return np.array(
             [[length_scale if q == "length" else 1.0 for q in row] for row in self.quantities]
         )
@@ -32,6 +32,6 @@ class ExpectedMatrix:
     def matches(
         self, student: StudentMatrix, length_scale: float, samples: Samples
     ) -> NDArray[np.int_]:
-        """The Match of each entry, ``(rows, columns)``."""
+        """Return the Match of each entry, ``(rows, columns)``."""
         scale = self.scale(length_scale)
         return entry_matches(student.expressions, student.values, self.values, scale, samples)

@@ -1,4 +1,4 @@
-"""Report rows from entries and how each of them compares with what was expected."""
+"""Make report rows from entries and their Matches with the expected values."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -28,9 +28,9 @@ def entry_rows(
     labels: Sequence[str] | None = None,
     remarks: Mapping[int, Finding] | None = None,
 ) -> tuple[RowReport, ...]:
-    """Rows of entries; ``found`` is the Match of each, ``(rows, columns)``.
+    """Return report rows of entries; ``found`` is the Match of each, ``(rows, columns)``.
 
-    Rows are labelled from "1" on unless ``labels`` says otherwise, columns from "1" on.
+    Rows and columns have the labels "1", "2" …, unless ``labels`` are given for the rows.
     ``remarks`` are findings on whole rows.
     """
     names = labels or [str(i + 1) for i in range(len(entries))]
@@ -55,30 +55,30 @@ def entry_rows(
 def value_rows(
     student: StudentValues, found: NDArray[np.int_], slips: Slips, grading: Grading
 ) -> tuple[RowReport, ...]:
-    """Rows of one value each; ``found`` is the Match of each, ``(n,)``."""
+    """Return report rows of one value each; ``found`` is the Match of each, ``(n,)``."""
     column = [[entry] for entry in student.entries]
     return entry_rows(column, found[:, None], slips, grading)
 
 
 def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
-    """The places of the marked values ``(n,)`` of a list."""
+    """Return the places of the marked values ``(n,)`` of a list."""
     return tuple(Place(str(i + 1), "1") for i in np.flatnonzero(marked).tolist())
 
 
 @lru_cache(maxsize=64)
 def _right(column: str) -> CellReport:
-    """The report on a right entry without a message, as most are."""
+    """Return the report on a right entry without a message."""
     return CellReport(column, Verdict.CORRECT)
 
 
 @lru_cache(maxsize=256)
 def right_row(label: str, columns: tuple[str, ...]) -> RowReport:
-    """The report on a row of such entries."""
+    """Return the report on a row of right entries without messages."""
     return row_report(label, tuple(map(_right, columns)))
 
 
 def is_right_throughout(entries: Sequence[Entry], found: list[int], grading: Grading) -> bool:
-    """Whether there is nothing to say of a row but that it is right; ``found`` are its Matches."""
+    """True if a row is right and has no messages; ``found`` are its Matches."""
     if grading.echo or found.count(_EXACT) < len(found):
         return False
     return all(entry.expression is not None and not entry.findings for entry in entries)
@@ -87,9 +87,9 @@ def is_right_throughout(entries: Sequence[Entry], found: list[int], grading: Gra
 def cell_report(
     entry: Entry, column: str, match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
-    """The report on an entry in its column.
+    """Return the report on an entry in its column.
 
-    ``match`` is its Match. Of a wrong entry without a ``slip`` of its own, the part says why.
+    ``match`` is its Match. If a wrong entry has no ``slip``, a message on the part explains it.
     """
     verdict, findings = entry.verdict, entry.findings
     if match == _EXACT and not findings and entry.expression is not None and not grading.echo:
@@ -104,7 +104,7 @@ def cell_report(
 
 
 def _read(entry: Entry, grading: Grading) -> ReadEntry | None:
-    """The entry as it was understood, where that was asked for."""
+    """Return the entry as it was read, if the submission asks for that."""
     if not grading.echo or entry.expression is None:
         return None
     return ReadEntry(entry.expression.text(), entry.expression.latex())

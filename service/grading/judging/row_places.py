@@ -1,4 +1,4 @@
-"""Which of the student's rows is graded as which, and which are missing or too many."""
+"""The messages on rows that are graded under another number, missing, or too many."""
 
 from typing import Final
 
@@ -61,7 +61,7 @@ _ROW_TOO_MANY = register(
 def row_places(
     table: StudentTable, judgement: Judgement, convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """The finding on rows that are graded under another number than they have in the answer."""
+    """Return the finding on rows that are graded under another number than in the answer."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)
     labels = [str(joint.index) for joint in robot.joints]
@@ -71,7 +71,7 @@ def row_places(
     graded = [judged.row and judged.row.entries for judged in judgement.rows]
     if graded == handed_in and [judged.label for judged in judgement.rows] == labels:
         return ()
-    # Rounded angles made exact make a new row of the same entries.
+    # Compare entries: rows with rounded angles made exact are new objects with the same entries.
     places = {id(row.entries): i for i, row in enumerate(table.rows)}
     moved = [
         f"row {place + 1} with {_of(judged)}"

@@ -1,8 +1,8 @@
-"""A handed-in table judged by what it should be.
+"""Judge a submitted table cell by cell.
 
-Where the frames are given, the rows are paired with the reference's. Where they are free, the rows
-are paired with the joints, and the valid table nearest to them is found (``own_frames``). The cells
-are then compared with those of that table.
+If the frames are given, the rows are paired with the reference's. If they are free, the rows are
+paired with the joints, and the valid table nearest to them is found (``own_frames``). The cells are
+then compared with those of that table.
 """
 
 import math
@@ -44,9 +44,9 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class JudgedRow:
-    """A row that was handed in, or is missing (None), and what it should be: ``(4, SAMPLES)``.
+    """A submitted row (None if missing), and its right values ``(4, SAMPLES)``.
 
-    ``shared`` says that its axis has a parallel neighbour, so that offsets along it add up.
+    ``shared`` is true if its axis has a parallel neighbour, so that offsets along both add up.
     """
 
     label: str
@@ -58,12 +58,12 @@ class JudgedRow:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A table compared with what it should be, in the frames that it is judged in.
+    """A table compared with the right one, in the frames that it is judged in.
 
     ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``roles``
-    are those of the handed-in rows, if the frames are the student's; ``departures`` is the cost of
-    the frames, infinite where nobody can say which were intended. ``extra`` are the rows that stand
-    for nothing; ``reached`` says that the rows lead to the given tool frame. ``lost`` are the
+    are those of the submitted rows if the student chose the frames. ``departures`` is the cost of
+    these frames, infinite if the intended ones are unknown. ``extra`` are the rows without a
+    counterpart; ``reached`` is true if the rows lead to the given tool frame. ``lost`` are the
     units that the wrong cells lose, in the frames in which they lose the fewest.
     """
 
@@ -78,17 +78,17 @@ class Judgement:
 
     @property
     def slips(self) -> int:
-        """How many slips no cell shows."""
+        """The number of slips that no cell shows."""
         return len(self.extra) + (not self.reached)
 
     @cached_property
     def wrong(self) -> int:
-        """How many cells are not right."""
+        """The number of cells that are not right."""
         return int(np.count_nonzero(self.matches < Match.ROUNDED))
 
     @cached_property
     def unread(self) -> NDArray[np.bool_]:
-        """Which cells ``(rows, 4)`` of the rows handed in have no value."""
+        """A mask ``(rows, 4)`` of the cells of submitted rows that have no value."""
         return np.array(
             [
                 np.zeros(len(COLUMNS), np.bool_)
@@ -100,7 +100,7 @@ class Judgement:
 
     @cached_property
     def empty(self) -> int:
-        """How many cells of the rows handed in are empty."""
+        """The number of empty cells in submitted rows."""
         return sum(
             entry.verdict is Verdict.MISSING
             for judged in self.rows
@@ -110,7 +110,7 @@ class Judgement:
 
     @property
     def wrong_as_read(self) -> int:
-        """How many cells are not right, but for those that were not read."""
+        """The number of cells that were read and are not right."""
         if not self.wrong:
             return 0
         return int(np.count_nonzero((self.matches < Match.ROUNDED) & ~self.unread))
@@ -119,7 +119,7 @@ class Judgement:
 def judged_table(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """The table judged by the reference, or by the valid table nearest to it."""
+    """Judge the table by the reference, or by the valid table nearest to it."""
     reference = grading.exercise.robot.tables.get(convention)
     if reference is None:
         return _judged_by_nearest(part, rows, convention, grading)
@@ -128,9 +128,9 @@ def judged_table(
         if part.frames == "given" or not (judgement.wrong_as_read or judgement.extra):
             return judgement
     judgement = _judged_by_nearest(part, rows, convention, grading)
-    # If most of a table is wrong, nobody can say which frames were intended; to judge it by the
-    # nearest table would reward cells that any number fits. An empty cell counts as a wrong one, so
-    # that nothing is gained by it.
+    # If most of a table is wrong, the intended frames are unknown, and the nearest valid table
+    # would reward cells that fit by chance. An empty cell counts as wrong, so that it gains
+    # nothing.
     wrong, empty = judgement.wrong_as_read, judgement.empty
     if wrong and wrong + empty > (np.count_nonzero(~judgement.unread) + empty) / 2:
         return replace(_judged_by_reference(rows, reference, grading), departures=np.inf)
@@ -140,7 +140,7 @@ def judged_table(
 def _plainly_differs(
     rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> bool:
-    """Whether the first sample already shows that the table is not the reference's own."""
+    """True if the first sample shows that the table is not the reference's own."""
     expected = reference_values(reference, grading.samples)
     if len(rows) != len(expected):
         return False
@@ -157,7 +157,7 @@ def _plainly_differs(
 def _judged_by_reference(
     rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> Judgement:
-    """The table judged by the reference's own rows."""
+    """Judge the table by the reference's rows."""
     expected = reference_values(reference, grading.samples)
     rows = without_idle_rows(rows, len(expected))
     judged, extra = [], []
@@ -174,7 +174,7 @@ def _judged_by_reference(
 def _paired(
     rows: tuple[StudentRow, ...], expected: Table, grading: Grading
 ) -> list[tuple[int | None, int | None]]:
-    """Which handed-in row stands for which expected row; in order where the numbers agree."""
+    """Pair submitted rows with expected rows; in order if their numbers are equal."""
     if len(rows) == len(expected):
         return [(i, i) for i in range(len(rows))]
     actual = values_of(rows)[:, None]
@@ -185,7 +185,7 @@ def _paired(
 def _judged_by_nearest(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """The table judged by the valid table nearest to it."""
+    """Judge the table by the valid table nearest to it."""
     roles, nearest = best_roles(part, rows, convention, grading)
     judgement = _judged_by(nearest, roles, convention, grading)
     if not all(np.isfinite(row.values).all() for row in rows):
@@ -193,7 +193,7 @@ def _judged_by_nearest(
     of_rows = ROW_COSTS[np.count_nonzero(judgement.matches < Match.ROUNDED, axis=1)].sum()
     if nearest.cost - of_rows < NO_SUCH_CELL - WRONG_CELL / 2:
         return judgement
-    # Nothing can be said of frames that do not lead to the tool.
+    # Remarks on frames make no sense if the frames do not lead to the tool.
     return replace(judgement, findings=(_UNREACHED,), reached=bool(judgement.wrong))
 
 
@@ -204,10 +204,10 @@ def _judged_as_read(
     convention: Convention,
     grading: Grading,
 ) -> Judgement:
-    """The judgement of a table not all of which was read.
+    """Judge a table with unread cells.
 
-    What was not read may have been right: where it can make the table valid, no other cell is
-    wrong. Nothing is said of the frames, for nobody knows them.
+    If some values in the unread cells make the table valid, no other cell is wrong. There are no
+    remarks on the frames, which are unknown.
     """
     if judgement.wrong_as_read or len(judgement.rows) != len(rows):
         roles = roles_in(rows, convention, grading, in_order=True)
@@ -245,7 +245,7 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """The table judged by the intended one, ``(rows, 4, SAMPLES)``; all roles have rows."""
+    """Judge the table by the ``intended`` one, ``(rows, 4, SAMPLES)``; all roles have rows."""
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
     return _judged_by(nearest, roles, convention, grading)
@@ -254,7 +254,7 @@ def judged_by_intended(
 def _judged_by(
     nearest: NearestTable, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """The rows, taken for ``roles``, judged by the nearest valid table."""
+    """Judge the rows, which have these ``roles``, by the nearest valid table."""
     right = nearest.cost < WRONG_CELL
     shared = [False] * len(nearest.roles)
     if not right:
@@ -272,7 +272,7 @@ def _judged_by(
     findings = remarks_on(nearest.frames, convention, grading.exercise)
     handed_in = [row.row is not None for row in judged]
     if not all(handed_in) and (cell_matches[handed_in] < Match.ROUNDED).any():
-        # Beside a missing row, a wrong one may imply any frames.
+        # If a row is missing, a wrong row may imply any frames.
         findings = ()
     return Judgement(
         judged,
@@ -280,13 +280,13 @@ def _judged_by(
         roles,
         departures=0.0 if right else departures_of(nearest.frames, grading),
         findings=findings,
-        # The search allows for what rounding leaves, and may have found nothing wrong.
+        # The search tolerates rounding, so it may have found nothing wrong.
         lost=nearest.lost or np.inf,
     )
 
 
 def _is_as_written(nearest: NearestTable) -> bool:
-    """Whether each number is the one that was written, and not only what rounding leaves of it."""
+    """True if each number of the nearest table is exactly the written one, without rounding."""
     rows = [role.row for role in nearest.roles if role.row is not None]
     if len(rows) < len(nearest.roles) or not all(row.is_exact for row in rows):
         return False
@@ -294,12 +294,15 @@ def _is_as_written(nearest: NearestTable) -> bool:
 
 
 def departures_of(frames: Matrices, grading: Grading) -> float:
-    """The cost of all the frames ``(joints, samples, 4, 4)``, seen from the reference's."""
+    """Return the cost of frames ``(joints, samples, 4, 4)``, given in the reference's frames."""
     return float(departure(frames, grading.exercise.length_scale).sum())
 
 
 def _labels(roles: Sequence[Role]) -> list[str]:
-    """Row labels: the joint's number; "e", "e2" … for fixed rows after the last, "0" before."""
+    """Return row labels: the joint's number; "e", "e2" … for fixed rows after the last joint.
+
+    Fixed rows before the last joint have the label "0".
+    """
     last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
     return [
         str(role.joint.index)
@@ -312,7 +315,7 @@ def _labels(roles: Sequence[Role]) -> list[str]:
 
 
 def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
-    """The Match of each cell of each row, ``(rows, 4)``."""
+    """Return the Match of each cell of each row, ``(rows, 4)``."""
     nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     expected = np.array([row.expected for row in judged])
@@ -320,7 +323,7 @@ def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int
     angle, scales = IS_ANGLE[:, None], column_scales(grading)
     found = entry_matches(expressions, actual, expected, scales, grading.samples, angle)
     if np.abs(expected[..., 0]).max() > HUGE_LENGTH * grading.exercise.length_scale:
-        # A student's own large offset must not widen what is let through.
+        # A large offset of the student's must not increase the tolerance.
         error = np.abs(difference(actual, expected, angle)).max(axis=-1)
         too_far = (found == Match.EXACT) & (error > HUGE_CELL * scales)
         found = np.where(too_far, int(Match.DIFFERENT), found)
@@ -328,7 +331,7 @@ def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int
 
 
 def column_scales(grading: Grading) -> Numbers:
-    """The scale of each column: the unit of its tolerances."""
+    """Return the scale of each column's tolerance."""
     return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 

@@ -1,4 +1,4 @@
-"""The cells of a table that one has to know something for."""
+"""The content cells of a table: the cells that need knowledge (see ``content``)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -31,10 +31,10 @@ from service.kinematics.dh import Convention
 def table_content(
     part: DhTableSpec, judgement: Judgement, convention: Convention, grading: Grading
 ) -> Content:
-    """The cells that differ from a lazy table's: 0, and the bare joint variable in its place."""
+    """Return the cells that differ from a lazy table of zeros and bare joint variables."""
     exercise = grading.exercise
     task = _Task(exercise.version, part.id, convention, part, exercise)
-    # Unreadable cells alone do not make a unit dearer.
+    # Unreadable cells alone do not increase the cost of a unit.
     is_spoiled = part.frames == "free" and bool(judgement.wrong_as_read or judgement.empty)
     if not judgement.roles:
         content = _of_reference(task)
@@ -48,17 +48,17 @@ def table_content(
 def _differs_from_lazy(
     table: Table, joints: Sequence[Joint | None], grading: Grading
 ) -> KnownCells:
-    # Two samples tell formulas apart, with other links and other joint values.
+    # Two samples with different links and joint values are enough to distinguish formulas.
     lazy = joint_variables(joints, grading.samples)[..., :: SAMPLES - 1]
     cells, angle = table[..., :: SAMPLES - 1], IS_ANGLE[:, None]
-    # A sign before the joint variable is as easily written as none.
+    # The joint variable with a minus sign is also lazy.
     either = known_cells(np.array([cells, -cells]), lazy, column_scales(grading), angle)
     return np.asarray(either.all(axis=0))
 
 
 @dataclass(frozen=True)
 class _Task:
-    """A table that is asked for; tasks are told apart by the version of their exercise."""
+    """The key of a cache for a part's table; tasks are equal if their exercise versions are."""
 
     version: str
     part_id: str
@@ -69,7 +69,7 @@ class _Task:
 
 @lru_cache(maxsize=256)
 def _of_reference(task: _Task) -> Content:
-    """The content of the reference's own table."""
+    """Return the content of the reference's table."""
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)
@@ -77,14 +77,14 @@ def _of_reference(task: _Task) -> Content:
 
 
 def _own_grading(exercise: Exercise) -> Grading:
-    """A grading of no submission, for what depends on the exercise alone."""
+    """Return a grading without a submission, for values that depend only on the exercise."""
     samples = draw(exercise, None)
     reader = Reader.of(exercise, samples, "radians")
     return Grading(exercise, samples, reader)
 
 
 def _joints_of_rows(task: _Task) -> list[Joint | None]:
-    """The joint of each row of the reference's table; None for a fixed row."""
+    """Return the joint of each row of the reference's table; None for a fixed row."""
     joints, reference = task.exercise.joints, task.exercise.robot.tables.get(task.convention)
     count = len(joints if reference is None else reference.rows)
     return [*joints, *[None] * (count - len(joints))]
@@ -92,10 +92,10 @@ def _joints_of_rows(task: _Task) -> list[Joint | None]:
 
 @lru_cache(maxsize=256)
 def _fewest(task: _Task) -> int:
-    """How few cells of a valid table differ from the lazy one.
+    """Return the smallest number of cells in which a valid table differs from the lazy one.
 
-    Along parallel axes two lengths may be added up in one cell, and a student may write numbers of
-    one's own into two others. They are worth nothing more.
+    Along parallel axes, a table may have the sum of two lengths in one cell, or arbitrary numbers
+    in other cells that cancel out. Such additional cells have no worth.
     """
     grading, joints = _own_grading(task.exercise), _joints_of_rows(task)
     lazy = joint_variables(joints, grading.samples)

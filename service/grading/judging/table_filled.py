@@ -1,4 +1,4 @@
-"""A table with other entries in its empty or unreadable cells."""
+"""Fill the empty or unreadable cells of a table."""
 
 from dataclasses import replace
 from typing import Final
@@ -16,19 +16,19 @@ from service.grading.report import Verdict
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 
-# The fractional parts of its multiples are no angles or lengths of a robot.
+# The fractional parts of its multiples are not angles or lengths of any robot.
 OUT_OF_PLACE: Final = 0.3819660112501051
 
 
 def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
-    """The table with the lazy entry in each cell that has no value."""
+    """Return the table with the lazy entry in each cell without a value."""
     roles = roles_in(answer.rows, convention, grading, in_order=True)
     lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
     return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)
 
 
 def with_wrong_cells(answer: StudentTable, grading: Grading) -> StudentTable | None:
-    """The table with a wrong number in each empty cell; None if there is none."""
+    """Return the table with a wrong number in each empty cell; None if no cell is empty."""
     empty = _empty_cells(answer)
     if not empty.any():
         return None
@@ -37,8 +37,8 @@ def with_wrong_cells(answer: StudentTable, grading: Grading) -> StudentTable | N
     return _filled(answer, empty, np.repeat(numbers[..., None], SAMPLES, axis=-1))
 
 
-def as_still(answer: StudentTable) -> Table:
-    """The numbers of the table, 0 in the empty cells: a joint whose cell is empty does not move."""
+def with_zeros(answer: StudentTable) -> Table:
+    """Return the numbers of the table, with 0 in empty cells, so that their joints do not move."""
     return np.where(_empty_cells(answer)[..., None], 0.0, answer.values)
 
 
@@ -49,7 +49,7 @@ def _empty_cells(answer: StudentTable) -> KnownCells:
 
 
 def _filled(answer: StudentTable, unread: KnownCells, numbers: Table) -> StudentTable:
-    """The table with these numbers ``(rows, 4, SAMPLES)`` in the ``unread`` cells."""
+    """Return the table with these numbers ``(rows, 4, SAMPLES)`` in the ``unread`` cells."""
     values = np.where(unread[..., None], numbers, answer.values)
     rows = tuple(
         StudentRow(

@@ -1,4 +1,4 @@
-"""A list of single values, each of its own quantity, held against the expected one."""
+"""Compare a list of single values, each with its own quantity, with the expected list."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ from service.kinematics.transforms import Numbers
 class ComparedValues:
     """A list as read and the expected values, ``(n, SAMPLES)``.
 
-    ``corrections`` are the expected values as formulas, each None where it is not known as one;
-    only the diagnosis needs them.
+    ``corrections`` are the expected values as formulas, None if the formula is unknown. Only the
+    diagnosis needs them.
     """
 
     student: StudentValues
@@ -27,12 +27,12 @@ class ComparedValues:
     corrections: Sequence[Correction | None] = ()
 
     def scales(self, grading: Grading) -> Numbers:
-        """The size that each value is measured against, ``(n,)``."""
+        """Return the scale of each value's tolerance, ``(n,)``."""
         lengths = [quantity == "length" for quantity in self.student.quantities]
         return np.where(lengths, grading.exercise.length_scale, 1.0)
 
     def matches(self, grading: Grading) -> NDArray[np.int_]:
-        """The Match of each value, ``(n,)``; angles modulo 2π."""
+        """Return the Match of each value, ``(n,)``; angles modulo 2π."""
         student, scales = self.student, self.scales(grading)
         angle = np.array([[quantity == "angle"] for quantity in student.quantities])
         return entry_matches(
@@ -41,5 +41,8 @@ class ComparedValues:
 
 
 def number_corrections(expected: Numbers, grading: Grading) -> list[Correction | None]:
-    """The expected values ``(n, SAMPLES)`` as numbers; None where one varies or none are told."""
+    """Return the expected values ``(n, SAMPLES)`` as numbers; None for a value that varies.
+
+    All are None if the report shows no corrections.
+    """
     return [number_formula(each) if grading.corrects else None for each in expected]

@@ -1,7 +1,7 @@
-"""The answer kinds: one file for each, with its name, says how answers are read and judged.
+"""The answer kinds. Each kind has a file with its name, which reads and judges its answers.
 
-The file has the functions ``read`` and ``judge`` of AnswerKind. A file without ``judge`` serves
-several kinds.
+The file has the functions ``read`` and ``judge`` of AnswerKind. A file without ``judge`` has code
+that several kinds share.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Answer kind ``dh_row``: the DH row of a transform, or that it has none."""
+"""Answer kind ``dh_row``: the DH row of a transform, or "none"."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -44,12 +44,12 @@ RowOrNone = StudentRow | Literal["none"]
 
 
 def read(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
-    """The row, or "none"."""
+    """Read a row, or "none"."""
     return "none" if _says_none(answer) else _read_row(answer, grading)
 
 
 def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
-    """One row, of four cells or of one for "none"."""
+    """Judge a row; the report has four cells, or one cell for "none"."""
     transform = np.moveaxis(given_values(part, grading), -1, 0)
     broken = violated(transform, part.convention, grading.exercise.length_scale)
     known = np.array([True])
@@ -60,7 +60,7 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
     elif broken:
         cells = _cells(answer, np.full(len(COLUMNS), int(Match.DIFFERENT)), {}, grading)
         known = np.full(len(COLUMNS), True)
-        # Only a row that was handed in is told that there is none.
+        # The message that there is no row makes sense only if the student wrote a complete row.
         findings = broken if all(entry.expression for entry in answer.entries) else []
     else:
         expected = row(transform, part.convention)
@@ -73,7 +73,7 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
 def _cells(
     written: StudentRow, found: NDArray[np.int_], slips: Mapping[int, Finding], grading: Grading
 ) -> tuple[CellReport, ...]:
-    """The four cells; ``found`` is the Match of each."""
+    """Return the reports on the four cells; ``found`` is the Match of each."""
     return tuple(
         cell_report(written.entries[i], column, match, slips.get(i), grading)
         for i, (column, match) in enumerate(zip(COLUMNS, found.tolist(), strict=True))
@@ -83,7 +83,7 @@ def _cells(
 def _against_the_row(
     written: StudentRow, expected: Table, transform: Matrices, part: DhRowSpec, grading: Grading
 ) -> tuple[tuple[CellReport, ...], list[Finding]]:
-    """The cells held against the row that the transform has, and what explains all of them."""
+    """Compare the cells with the transform's row; return their reports and shared findings."""
     scale = _scale(grading)
     found = entry_matches(
         written.expressions, written.values, expected, scale, grading.samples, IS_ANGLE[:, None]
@@ -104,7 +104,7 @@ def _against_the_row(
 
 
 def _scale(grading: Grading) -> Numbers:
-    """The size that each cell is measured against, ``(4,)``."""
+    """Return the scale of each cell's tolerance, ``(4,)``."""
     return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 
@@ -116,7 +116,7 @@ def _slip(
     spelling: Spelling,
     grading: Grading,
 ) -> Finding:
-    """The finding on a wrong cell."""
+    """Return the finding on a wrong cell."""
     angle = bool(IS_ANGLE[i])
     correction = None
     if grading.corrects:
@@ -143,9 +143,9 @@ def _slip(
 
 
 def _says_none(answer: object) -> bool:
-    """Whether the answer is that there is no row.
+    """True if the answer is "none".
 
-    Raises UnreadableAnswerError for one that gives a row all the same.
+    Raises UnreadableAnswerError if the answer contains a row, too.
     """
     if isinstance(answer, Mapping):
         named = answer.get(NONE)
@@ -158,14 +158,14 @@ def _says_none(answer: object) -> bool:
 
 
 def _gives_a_row(answer: Mapping[str, object]) -> bool:
-    """Whether a value is written for any cell, or rows are."""
+    """True if the answer has rows, or a value in any cell."""
     table = canonical_table([answer])
     cells = table["rows"][0].values() if isinstance(table, Mapping) else ()
     return any(map(_is_written, (answer.get("rows"), *cells)))
 
 
 def _is_none_in_each_cell(answer: Mapping[str, object]) -> bool:
-    """Whether "none" is all that is written, in one cell of a form or in several."""
+    """True if every cell of a form is empty or "none", and at least one is "none"."""
     written = [value for value in answer.values() if _is_written(value)]
     return bool(written) and all(isinstance(each, str) and says_none(each) for each in written)
 
@@ -175,7 +175,7 @@ def _is_written(value: object) -> bool:
 
 
 def _read_row(answer: object, grading: Grading) -> StudentRow:
-    """The one row that was handed in. Raises UnreadableAnswerError."""
+    """Read the single row of an answer. Raises UnreadableAnswerError."""
     if isinstance(answer, str):
         if (named := named_cells(answer)) is not None:
             if not named:
@@ -201,7 +201,7 @@ def _read_row(answer: object, grading: Grading) -> StudentRow:
 
 
 def _row_of(named: Mapping[str, NamedCell], grading: Grading) -> StudentRow:
-    """The row of which some cells are named in a text."""
+    """Return the row whose cells are named in a text."""
     cells = {column: cell.text for column, cell in named.items()}
     row = read_table({"rows": [{**dict.fromkeys(COLUMNS), **cells}]}, grading.reader).rows[0]
     entries = tuple(
@@ -212,7 +212,7 @@ def _row_of(named: Mapping[str, NamedCell], grading: Grading) -> StudentRow:
 
 
 def _moved(entry: Entry, start: int) -> Entry:
-    """The entry of a text that begins at ``start`` of the one that was handed in."""
+    """Return the entry with its spans moved by ``start`` characters."""
     findings = tuple(
         replace(finding, span=finding.span and (start + finding.span[0], start + finding.span[1]))
         for finding in entry.findings
@@ -221,7 +221,7 @@ def _moved(entry: Entry, start: int) -> Entry:
 
 
 def _has_rows(answer: object) -> bool:
-    """Whether the row lies in a list of rows."""
+    """True if the answer is a list of rows."""
     if isinstance(answer, Mapping):
         return "rows" in answer
     return isinstance(answer, list) and any(isinstance(row, list | dict) for row in answer)

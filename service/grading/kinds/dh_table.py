@@ -36,7 +36,7 @@ from service.grading.judging.row_places import (
 )
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content
-from service.grading.judging.table_filled import as_still, with_lazy_cells, with_wrong_cells
+from service.grading.judging.table_filled import with_lazy_cells, with_wrong_cells, with_zeros
 from service.grading.numerics.comparison import Match
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
@@ -53,31 +53,31 @@ from service.kinematics.chain import COLUMNS, D, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
 
-# The share of the points that a slip of the whole table costs: it is charged once.
+# The share of the points that a slip of the whole table costs, regardless of the number of cells.
 COST = 0.25
 COSTS = {"other_convention": 0.5}
 _QUANTITIES = tuple(QUANTITIES.values())
-# The work of finding a freedom that the joints have lost, as the budget counts it.
+# The budgeted work of finding a motion that the student's arm cannot make.
 FREEDOM_WORK = 8.0
 # The work of judging a wrong table once: with given frames, with free ones (more for each row), and
 # with a free base or tool or free directions too.
 GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 18.0, 20.0, 4.0, 60.0
-# With so many wrong cells two misconceptions at once are looked for.
+# The number of wrong cells from which two simultaneous misconceptions are searched.
 WRONG_THROUGHOUT = 3
 
 
 def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | None:
-    """The rows of a table; None where there are none."""
+    """Read the rows of a table; return None if there are none."""
     empty_is_zero = part.empty_cells == "zero"
     table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
     return table if table.rows else None
 
 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
-    """The table row by row and cell by cell.
+    """Judge the table row by row and cell by cell.
 
-    Where the joints are counted otherwise throughout, or the columns stand in another order, it is
-    judged as it was intended.
+    If all joints are numbered differently, or the columns are in another order, the intended table
+    is judged.
     """
     has_unread_cells = bool(np.isnan(answer.values).any())
     # Values for unread cells are looked for with what the judging itself leaves.
@@ -95,9 +95,9 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
 def _as_intended(
     part: DhTableSpec, answer: StudentTable, judged: Judged, work: float, grading: Grading
 ) -> Judged:
-    """A wrong table, ``judged`` as it is read; judged anew where a slip runs through it.
+    """Judge a wrong table again if one systematic slip explains it.
 
-    To judge it in one other way takes so much ``work``.
+    ``judged`` is the judgement of the table as read; ``work`` is that of judging it once more.
     """
     budget = grading.reader.budget
     if (intended := by_other_numbering(answer, grading)) is not None:
@@ -113,7 +113,7 @@ def _as_intended(
             return judged
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _count_wrong(without) <= wrong:
-            # Who writes the columns in another order multiplies the links out as they were meant.
+            # A student with columns in another order still multiplies out the intended links.
             return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
     exchanged = with_exchanged_row(answer, convention, grading)
@@ -125,7 +125,7 @@ def _as_intended(
 
 
 def _search_work(part: DhTableSpec, answer: StudentTable, grading: Grading) -> float:
-    """The work of judging a wrong table as it is written, or as it may have been intended."""
+    """Return the work of judging a wrong table once, as written or as intended."""
     rows = len(answer.rows)
     once = FREE_WORK + FREE_ROW_WORK * rows
     if part.frames == "given":
@@ -146,9 +146,10 @@ def _count_wrong(judged: Judged) -> int:
 def _with_slip(
     intended: IntendedTable, without: Judged, judged: Judged, grading: Grading
 ) -> Judged:
-    """A table with a slip that runs through it, judged ``without`` the slip and as it is read.
+    """Return the judgement of a table with a systematic slip.
 
-    The cells of the slip are wrong, and cost together what one slip of the whole table costs.
+    ``without`` judges the table without the slip, ``judged`` as read. The cells of the slip are
+    wrong, and together cost as much as a slip of the whole table.
     """
     rows = tuple(
         row_report(
@@ -180,11 +181,11 @@ def _with_slip(
 
 
 def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
-    """The table row by row, each symbol and each column taken for what it says.
+    """Judge the table as read, without other numberings or column orders.
 
-    A wrong table earns no more than it would without the rows too many, for the points belong to
-    the rows of the mechanism; and no more than with lazy entries in the cells that were not read,
-    for what they would have to be is not known, or with wrong ones in those that are empty.
+    A wrong table earns no more than it would without its extra rows, because the points belong to
+    the rows of the mechanism. It earns no more than with lazy entries in its unread cells, whose
+    right values are unknown, or with wrong entries in its empty cells.
     """
     convention, first, findings = judged_in_convention(part, answer, grading)
     judged = _judged(part, answer, convention, first, findings, grading)
@@ -193,13 +194,13 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
     fixed = replace(answer, convention=convention)
     kept = rows_of_mechanism(answer.rows, convention, grading)
     if len(kept) < len(answer.rows):
-        return _with_rows_too_many(part, fixed, kept, judged, grading)
+        return _with_extra_rows(part, fixed, kept, judged, grading)
     unread = np.isnan(answer.values).any(axis=-1)
-    # Where nothing was read, nothing is earned anyway.
+    # A table without any readable cell earns nothing anyway.
     if unread.any() and not unread.all():
         in_silence = replace(grading, explains=False)
         filled = [with_lazy_cells(fixed, convention, grading)]
-        # Beside an empty cell, the search must not find more than beside a wrong one.
+        # The search must not find more beside an empty cell than beside a wrong one.
         if judged.is_wrong and (wrong := with_wrong_cells(fixed, grading)):
             grading.reader.budget.charge_search(_search_work(part, wrong, grading))
             filled.append(wrong)
@@ -209,15 +210,15 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
     return judged
 
 
-def _with_rows_too_many(
+def _with_extra_rows(
     part: DhTableSpec, answer: StudentTable, kept: list[int], judged: Judged, grading: Grading
 ) -> Judged:
-    """A wrong table with more rows than the mechanism has; ``kept`` are the places of those."""
+    """Judge a wrong table with extra rows; ``kept`` are the indices of the mechanism's rows."""
     rows = tuple(answer.rows[i] for i in kept)
     without = _judged_as_read(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
     is_told = any(message.code in EXTRA_ROW.codes for message in judged.feedback)
-    # Where nothing that was read is wrong, the table may be right.
+    # If nothing that was read is wrong, the table may be right.
     tells = judged.is_wrong and not is_told
     messages = grading.messages(tuple(map(row_too_many, extra))) if tells else ()
     of_mechanism = {row.label for row in without.rows}
@@ -235,9 +236,9 @@ def _with_rows_too_many(
 def _explained_without(
     rows: tuple[RowReport, ...], without: tuple[RowReport, ...]
 ) -> tuple[RowReport, ...]:
-    """The rows of a table, silent where only a row too many makes a cell wrong.
+    """Return the rows without messages on cells that are wrong only because of an extra row.
 
-    ``without`` are the rows of the table without the rows too many.
+    ``without`` are the rows of the report on the table without its extra rows.
     """
     right = {
         (row.label, cell.label): cell
@@ -271,7 +272,7 @@ def _judged(
 ) -> Judged:
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
     cases = wrong_cells(judgement, grading) if judgement.wrong else {}
-    # A slip of the whole table is told once, and needs of its cells no more than the corrections.
+    # A slip of the whole table gets one message; its cells contribute only the corrections.
     slips = diagnose_cells(cases, judgement) if cases and not found else {}
     places = tuple(
         Place(judgement.rows[i].label, COLUMNS[column], case.correction)
@@ -296,7 +297,7 @@ def _judged(
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
-        stands_still=judgement.wrong > 0 and stands_still(as_still(answer), _QUANTITIES, grading),
+        stands_still=judgement.wrong > 0 and stands_still(with_zeros(answer), _QUANTITIES, grading),
         lost=first.lost,
         chain=lambda: _chain(answer, first, convention),
     )
@@ -309,9 +310,9 @@ def _of_the_whole(
     convention: Convention,
     grading: Grading,
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
-    """The explanation of a wrong table as a whole, or else the freedom that its joints have lost.
+    """Explain a wrong table as a whole, or find the motion that its arm cannot make.
 
-    Returned with the judgement that agrees with it.
+    Return the judgement that fits the explanation, the explanation, and the lost motion.
     """
     if not judgement.wrong:
         return judgement, (), ()
@@ -320,8 +321,8 @@ def _of_the_whole(
     if judgement.wrong + len(judgement.extra) > 1:
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
-    # An explained table is not the one that the student intended, so its freedom says nothing.
-    # Axes that lie wrong by another slip, such as an offset of θ, are no matter of a and α.
+    # An explained table is not the intended one, so its lost motion is irrelevant. Axes that are
+    # wrong because of another slip, such as an offset of θ, do not concern a and α.
     of_links = bool((judgement.matches[:, :D] < Match.ROUNDED).any())
     is_asked = of_links and not found and grading.affords(FREEDOM_WORK)
     lost = freedom_lost(roles, convention, grading) if is_asked else ()
@@ -331,7 +332,7 @@ def _of_the_whole(
 def _chain(
     answer: StudentTable, judgement: Judgement, convention: Convention
 ) -> StudentChain | None:
-    """A table as a chain; None where not all of it has a value."""
+    """Return the table as a chain; None unless all cells have a value."""
     if np.isnan(answer.values).any():
         return None
 
@@ -347,12 +348,12 @@ def _chain(
 
 
 def _cost_of(found: tuple[Finding, ...]) -> float:
-    """The share of the points that slips of the whole table cost."""
+    """Return the share of the points that slips of the whole table cost."""
     return sum(COSTS.get(finding.code, COST) for finding in found)
 
 
 def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:
-    """The rows with their cells."""
+    """Return the report rows with their cells."""
     return tuple(
         right_row(judged.label, COLUMNS)
         if judged.row is not None and is_right_throughout(judged.row.entries, row, grading)

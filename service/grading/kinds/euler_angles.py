@@ -1,7 +1,7 @@
 """Answer kind ``euler_angles``: three angles that describe a rotation.
 
-Every triple of the same rotation is right. Where the triple is wrong, it is held against the
-nearest of those that are right, so that a single slip costs a single angle.
+Every triple of the expected rotation is right. A wrong triple is compared with the nearest right
+one, so that a single slip costs a single angle.
 """
 
 from collections.abc import Sequence
@@ -53,13 +53,13 @@ SINGULAR = Finding(
 
 
 def read(part: EulerAnglesSpec, answer: object, grading: Grading) -> StudentValues:
-    """The angles in a list or a pasted text."""
+    """Read the angles in a list or a pasted text."""
     names = names_of_angles(part.turns, fixed=part.axes == "fixed")
     return read_list(answer, names, grading.reader)
 
 
 def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Judged:
-    """The list with one row for each angle."""
+    """Judge the angles; the report has one row for each."""
     turns, fixed = part.turns, part.axes == "fixed"
     angles, rotation = answer.values, _expected_rotation(part, grading)
     slack = [rounding_slack(each, grading.samples) if each else 0.0 for each in answer.expressions]
@@ -80,7 +80,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
 
 
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
-    """The angles that are not 0; in a singular orientation a student may choose a second one."""
+    """Return the content: the angles that are not 0, in the simplest triple if it is singular."""
     fixed = part.axes == "fixed"
     simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)
     known, most = (known_cells(triple, 0.0, angle=True) for triple in (expected, simplest))
@@ -101,7 +101,7 @@ def _found(
     part: EulerAnglesSpec,
     grading: Grading,
 ) -> NDArray[np.int_]:
-    """The Match of each angle, ``(3,)``: all are right where they describe the rotation."""
+    """Return the Match of each angle, ``(3,)``; all are right if they describe the rotation."""
     angles = student.values
     found = entry_matches(student.expressions, angles, expected, 1.0, grading.samples, angle=True)
     if np.isfinite(angles).all():
@@ -116,9 +116,9 @@ def _found(
 def _are_rounded(
     student: StudentValues, rotation: Matrices, part: EulerAnglesSpec, grading: Grading
 ) -> bool:
-    """Whether the angles describe the rotation but for their decimals, which are rounded.
+    """True if the angles describe the rotation after shifts of their rounded decimals.
 
-    In a singular orientation each by itself need not be a rounded angle: their sum counts.
+    In a singular orientation only a sum of angles matters, so that single angles may be arbitrary.
     """
     decimals = SharedDecimals(student.expressions, grading.samples)
     if not decimals.count:
@@ -140,10 +140,10 @@ def nearest_triple(
     fixed: bool = False,
     slack: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> Numbers:
-    """Of all triples ``(3, SAMPLES)`` that describe ``rotation``, the one nearest to ``angles``.
+    """Return the triple ``(3, SAMPLES)`` of ``rotation`` that is nearest to ``angles``.
 
-    Nearest is the one that the fewest angles differ from by more than ``slack``, what rounding may
-    have done to each of them. A NaN differs from nothing.
+    The nearest triple has the fewest angles that differ by more than ``slack``, the rounding error
+    of each. A NaN does not count as different.
     """
     if fixed:
         return nearest_triple(angles[::-1], rotation, sequence[::-1], slack=slack[::-1])[::-1]
@@ -158,12 +158,12 @@ def nearest_triple(
 
 
 def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Which of the two triples of a rotation is meant at each sample, ``(SAMPLES,)``.
+    """Return which of the two triples of a rotation is intended at each sample, ``(SAMPLES,)``.
 
-    ``off`` is how far each angle is from that of the triple, ``hit`` whether it is the same, both
-    ``(2, SAMPLES, 3)``. The samples may take sides differently: an atan2 is of one family, a
-    robot's own angle of both. So the most angles that can be right at all samples decide, and no
-    single sample does.
+    ``off`` is the distance of each angle from that of the triple, ``hit`` a mask of equal angles,
+    both ``(2, SAMPLES, 3)``. Samples may belong to different triples: an atan2 always gives the
+    same one, a robot's own angle does not. So the choice is the one with the most angles that are
+    right at all samples; a single sample decides nothing.
     """
     total, samples = off.sum(axis=-1), np.arange(off.shape[1])
     for count in (3, 2, 1):
@@ -177,7 +177,7 @@ def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
 
 
 def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence: str) -> Numbers:
-    """The triple with the first angle as written: the last makes up for it."""
+    """Return the triple of a singular rotation with the first angle as written."""
     first = np.where(np.isfinite(angles[0]), angles[0], one[:, 0])
     last = last_angle(sequence, np.stack([first, one[:, 1]], axis=-1), rotation)
     if not np.isfinite(angles[0]).all():
@@ -193,7 +193,7 @@ def _arctangents(entries: Sequence[Entry]) -> list[bool]:
 def _explained(
     found: NDArray[np.int_], explained: Explained | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
-    """The matches, the slips of single angles and the findings on all three together."""
+    """Return the matches, the slips of single angles, and the findings on all three together."""
     if explained is None:
         return found, {}, ()
     slipped = explained.entries
@@ -207,7 +207,7 @@ def _explained(
 def _slips(
     student: StudentValues, expected: Numbers, found: NDArray[np.int_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
-    """The findings on single wrong angles."""
+    """Return the findings on single wrong angles."""
     wrong = found < Match.ROUNDED
     corrections: list[Correction | None] = [None] * len(expected)
     if wrong.any() and grading.corrects:

@@ -1,4 +1,4 @@
-"""Answer kind ``link_transforms``: the matrices A_1 … A_n that a table's rows stand for."""
+"""Answer kind ``link_transforms``: the matrices A_1 … A_n of a table's rows."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -34,13 +34,13 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 @dataclass(frozen=True, slots=True)
 class StudentLinks:
-    """The matrices of an answer, and their values ``(k, SAMPLES, 4, 4)``, NaN where unread."""
+    """The matrices of an answer, and their values ``(k, SAMPLES, 4, 4)``, NaN if unread."""
 
     matrices: tuple[StudentMatrix, ...]
     values: Matrices
 
     def chain(self) -> StudentChain | None:
-        """The product of the links; None where not all of them have a value."""
+        """Return the product of the links; None unless all entries have a value."""
         if np.isnan(self.values).any():
             return None
         return StudentChain(products(self.values), self._tool_at)
@@ -51,9 +51,9 @@ class StudentLinks:
 
 
 def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentLinks:
-    """The matrices of a list or of one pasted text, one for each row of the table.
+    """Read the matrices of a list or of one pasted text, one for each row of the table.
 
-    A matrix that was left off at the end is one of missing entries.
+    The entries of an omitted matrix at the end are missing.
     """
     labels = grading.exercise.robot.tables[part.convention].labels
     if isinstance(answer, str):
@@ -83,7 +83,7 @@ def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[
 
 
 def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Judged:
-    """The matrices, rows "A1.1" to "An.4"."""
+    """Judge the matrices; the report has the rows "A1.1" to "An.4"."""
     labels = grading.exercise.robot.tables[part.convention].labels
     right = _expected(part, answer, grading)
     rows: list[RowReport] = []
@@ -116,21 +116,21 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
 
 
 def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
-    """The finding on all link transforms explains all of one."""
+    """Return a finding on all link transforms as the explanation of a single one."""
     return [Explanation(finding, case.mask(...))]
 
 
 def _by_other_links(
     links: Matrices, part: LinkTransformsSpec, grading: Grading, case: MatrixCase
 ) -> list[Explanation]:
-    """What explains the last of ``links`` by those before it."""
+    """Return explanations of the last of ``links`` by the earlier ones."""
     joints, count = grading.exercise.robot.joints, case.actual.shape[-1] // 2
     link = LinkAmongOthers.of(links, joints, grading.samples, part.convention, count)
     return explain_link(link, case)
 
 
 def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:
-    """The entries that differ from those of the joints' motions alone."""
+    """Return the content: the entries that differ from the joint's motion alone."""
     exercise, samples = grading.exercise, grading.samples
     table = exercise.robot.tables[part.convention]
     reference = links(table.values(samples.values, SAMPLES), part.convention)
@@ -138,12 +138,12 @@ def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Con
 
 
 def _links_of(values: list[Numbers]) -> Matrices:
-    """Entries of matrices, ``(4, 4, SAMPLES)`` each, as ``(k, SAMPLES, 4, 4)``."""
+    """Convert matrices ``(4, 4, SAMPLES)`` to one array ``(k, SAMPLES, 4, 4)``."""
     return np.moveaxis(np.array(values), -1, 1)
 
 
 def _expected(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Matrices:
-    """The right matrices, ``(k, SAMPLES, 4, 4)``."""
+    """Return the right matrices, ``(k, SAMPLES, 4, 4)``."""
     reference = grading.exercise.robot.tables[part.convention]
     chain, wanted = grading.student_chain, len(reference.rows)
     if chain is not None and grading.following and len(chain.frames) == wanted + 1:
@@ -157,9 +157,9 @@ def _expected(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) 
 
 
 def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Matrices:
-    """The link transforms of the valid table nearest to the matrices themselves.
+    """Return the link transforms of the valid table nearest to the matrices.
 
-    Each matrix that is a link transform gives its row; one that is not tells nothing.
+    Each matrix that is a link transform gives a row of the table; the other rows are missing.
     """
     joints = grading.exercise.robot.joints
     roles = tuple(
@@ -171,7 +171,7 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
 
 
 def _completed(values: Matrices, part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """The matrices; one of which not all was read follows from the others and the tool frame."""
+    """Return the matrices; compute one with unread entries from all others and the tool frame."""
     unread = np.flatnonzero(np.isnan(values).any(axis=(1, 2, 3)))
     if len(unread) != 1:
         return values

@@ -1,4 +1,4 @@
-"""Answer kind ``matrix``: a matrix of any meaning, entry by entry."""
+"""Answer kind ``matrix``: a matrix with any meaning, entry by entry."""
 
 from service.catalogue.parts.matrix import MatrixSpec
 from service.grading.judging.content import of_matrix
@@ -10,12 +10,12 @@ from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix
 
 
 def read(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
-    """The entries of a nested list or a pasted text."""
+    """Read the entries of a nested list or a pasted text."""
     return read_matrix(answer, part.quantities, grading.reader)
 
 
 def judge(part: MatrixSpec, answer: StudentMatrix, grading: Grading) -> Judged:
-    """The matrix row by row and entry by entry."""
+    """Judge the matrix entry by entry."""
     expected = ExpectedMatrix(given_values(part, grading), part.quantities)
     judged = matrix_rows(answer, expected, grading)
     content = of_matrix(expected.values, expected.scale(grading.exercise.length_scale))

@@ -1,4 +1,4 @@
-"""The rows of a report on a matrix, whatever the matrix stands for."""
+"""The rows of a report on a matrix, for all kinds with matrices."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -26,16 +26,16 @@ from service.grading.part import Grading
 from service.grading.reading.matrices.matrix import StudentMatrix
 from service.grading.report import Feedback, Place, RowReport
 
-# So many samples of each half tell whole matrices apart.
+# The number of samples of each half that distinguish whole matrices.
 SUBSET = 4
-# The work of all that may explain a whole matrix, as the budget counts it: of a single one, for
-# which the slips of a whole table are tried, and of one of several.
+# The budgeted work of all explanations: of a single matrix, for which all slips of a table are
+# tried, and of one of several matrices.
 MATRIX_WORK, LINK_WORK = 15.0, 12.0
 
 
 @dataclass(frozen=True, slots=True)
 class MatrixRows:
-    """The report rows "1".."n" of a matrix, and the messages on it as a whole."""
+    """The report rows of a matrix, and the messages on it as a whole."""
 
     rows: tuple[RowReport, ...]
     feedback: tuple[Feedback, ...] = ()
@@ -69,13 +69,13 @@ def matrix_rows(
     work_budget: float = WORK_BUDGET,
     name: str = "",
 ) -> MatrixRows:
-    """The rows of a matrix, with what explains its wrong entries.
+    """Return the report rows of a matrix, with explanations of its wrong entries.
 
-    ``chains`` gives, at the samples it is handed, the links that the matrix is the product of;
-    ``explanations`` explains the matrix by what else it is made of, and is asked first; ``motion``
-    gives, like ``chains``, what formulas say that it is made of, ``slipped`` what it becomes by
-    slips of the table. All are asked only where something is wrong. ``work_budget`` bounds how much
-    is taken apart. A ``name`` tells one matrix of several: its rows are then "A2.1" and so on.
+    These functions are called only if an entry is wrong. ``explanations`` is the first: it returns
+    explanations that only this kind of answer has. ``chains`` returns the links whose product is
+    the matrix, ``motion`` the motion in given formulas, both at given samples. ``slipped`` returns
+    the matrices that follow from slips in the table. ``work_budget`` limits the search in products.
+    If there are several matrices, ``name`` is that of this one, as in the row "A2.1".
     """
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
@@ -149,5 +149,5 @@ def matrix_rows(
 
 
 def _cells(entries: Mask, labels: Sequence[str]) -> tuple[Place, ...]:
-    """The places of the marked entries ``(rows, columns)``."""
+    """Return the places of the marked entries ``(rows, columns)``."""
     return tuple(Place(labels[i], str(j + 1)) for i, j in np.argwhere(entries).tolist())

@@ -31,21 +31,21 @@ from service.kinematics.transforms import Numbers
 
 
 def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
-    """The coordinates in a list or a pasted text."""
+    """Read the coordinates in a list or a pasted text."""
     names = names_of_coordinates(part.coordinates)
     return read_list(answer, names, grading.reader, _tails(part.coordinates))
 
 
 def _tails(coordinates: str) -> tuple[Tail, ...]:
-    """What may stand behind these coordinates."""
+    """Return the figures that may follow these coordinates."""
     if coordinates == "xy":
         return PLANAR, HOMOGENEOUS, (*PLANAR, *HOMOGENEOUS)
-    # In [x, y, 0] for x and z, nobody can say whether z is the second or the third value.
+    # If x and z are expected, z in [x, y, 0] may be the second or the third value.
     return (HOMOGENEOUS,) if len(coordinates) == len("xyz") else ()
 
 
 def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
-    """The list with one row for each coordinate."""
+    """Judge the coordinates; the report has one row for each."""
     expected = _expected(part, grading)
     compared = ComparedValues(answer, expected, number_corrections(expected, grading))
     found = compared.matches(grading)
@@ -61,7 +61,7 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:
-    """The coordinates asked for, ``(n, SAMPLES)``."""
+    """Return the expected coordinates, ``(n, SAMPLES)``."""
     given = formula_values(part, grading)
     if given is not None:
         return np.asarray(given[0])
@@ -79,7 +79,7 @@ def _explained(
     answers: SlippedAnswers | None,
     grading: Grading,
 ) -> tuple[tuple[Finding], tuple[Place, ...]] | None:
-    """What explains all wrong coordinates, with their places."""
+    """Return the finding that explains all wrong coordinates, with their places."""
     exercise = grading.exercise
     linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
     case = WrongPosition(

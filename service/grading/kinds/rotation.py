@@ -1,4 +1,4 @@
-"""Answer kind ``rotation``: a rotation matrix, of a pose or made of turns about axes."""
+"""Answer kind ``rotation``: a rotation matrix, of a pose or of several turns about axes."""
 
 from service.catalogue import Robot
 from service.catalogue.parts.rotation import RotationSpec
@@ -26,12 +26,12 @@ from service.kinematics.transforms import Numbers
 
 
 def read(part: RotationSpec, answer: object, grading: Grading) -> StudentMatrix:
-    """The entries of a nested list or a pasted text."""
+    """Read the entries of a nested list or a pasted text."""
     return read_matrix(answer, ROTATION, grading.reader)
 
 
 def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged:
-    """The matrix row by row and entry by entry."""
+    """Judge the matrix entry by entry."""
     exercise = grading.exercise
     steps = _steps(part, grading)
     linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
@@ -57,7 +57,7 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
 
 
 def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:
-    """The right rotation, ``(3, 3, SAMPLES)``."""
+    """Return the right rotation, ``(3, 3, SAMPLES)``."""
     if steps:
         return as_entries(composed([(step.rotation, step.fixed) for step in steps]))
     given = formula_values(part, grading)
@@ -65,7 +65,7 @@ def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Number
 
 
 def _steps(part: RotationSpec, grading: Grading) -> list[Step]:
-    """The turns that the rotation is made of, in numbers; none where it is not given so."""
+    """Return the turns that the part gives for the rotation, in numbers; [] if it gives none."""
     if part.steps is None:
         return []
     [angles] = given_values(part, grading)

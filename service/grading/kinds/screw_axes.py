@@ -1,4 +1,4 @@
-"""Answer kind ``screw_axes``: the screw axis (ω; v) of each joint, seen from base or tool."""
+"""Answer kind ``screw_axes``: the screw axis (ω; v) of each joint in the base or tool frame."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -42,14 +42,14 @@ from service.grids import GridError
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse
 
-# The share of the points that a slip costs which runs through all axes: it is charged once.
+# The share of the points that a slip in all axes costs, regardless of the number of axes.
 COST = 0.25
 COSTS = {"body_for_space": 0.5, "space_for_body": 0.5}
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectedScrews:
-    """The axes asked for, and the same seen from the other frame: ``(joints, 6, SAMPLES)``.
+    """The expected axes, and the same axes in the other frame: ``(joints, 6, SAMPLES)`` each.
 
     ``labels`` are the joints' numbers.
     """
@@ -60,7 +60,7 @@ class ExpectedScrews:
 
 
 def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix:
-    """One six-vector for each joint, in a list or a pasted text."""
+    """Read a six-vector for each joint, in a list or a pasted text."""
     count = part.count(grading.exercise.joints)
     quantities = (SCREW,) * count
     if isinstance(answer, str) and answer.strip():
@@ -76,9 +76,9 @@ def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix
 
 
 def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:
-    """Whether at least two more columns than rows of a square matrix are right: one is by chance.
+    """True if a square matrix has the axes in its columns, as in Lynch & Park, "Modern Robotics".
 
-    Lynch & Park, "Modern Robotics", write the axes as the columns of a matrix.
+    At least two more columns than rows must be right, because one may be right by chance.
     """
     axes = _expected(part, grading).axes
     senses = (1, -1) if part.directions == "free" else (1,)
@@ -103,7 +103,7 @@ def _by_columns(rows: StudentMatrix, note: Note, grading: Grading) -> StudentMat
 
 
 def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
-    """The axes with one row for each joint."""
+    """Judge the axes; the report has one row for each joint."""
     expected = _expected(part, grading)
     axes = expected.axes
     found = _matches(answer, axes, grading)
@@ -125,7 +125,7 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
         if i not in explained
         for (j, _), slip in _slips(answer, i, axes[i], wrong[i], grading).items()
     }
-    told, of_single_rows = _told(explained, wrong, expected.labels, grading)
+    shared, of_single_rows = _shared_messages(explained, wrong, expected.labels, grading)
     remarks = {i: remark for i, remark in remarks.items() if i not in explained}
     rows = entry_rows(
         answer.entries,
@@ -135,15 +135,15 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
         labels=expected.labels,
         remarks={**remarks, **of_single_rows},
     )
-    return Judged(rows, of_rows(_known(axes, grading)), told, whole_cost=cost)
+    return Judged(rows, of_rows(_known(axes, grading)), shared, whole_cost=cost)
 
 
 def _explained(
     answer: StudentMatrix, case: WrongScrews, grading: Grading
 ) -> tuple[dict[int, Finding], float | None]:
-    """The finding that explains the whole of a wrong axis, by its place.
+    """Return the findings that each explain a whole wrong axis, by its index.
 
-    With it the share of the points that one slip costs which runs through all axes, or None.
+    Return with them the share of the points that a slip in all axes costs, or None.
     """
     wrong = np.flatnonzero(case.wrong.any(axis=1)).tolist()
     if (throughout := explain_screws(case)) is not None:
@@ -160,34 +160,37 @@ def _explained(
 
 
 def _is_right_at_home(answer: StudentMatrix, case: WrongScrews, grading: Grading) -> bool:
-    """Whether the axes are right with 0 for every joint variable."""
+    """True if the axes are right when all joint variables are 0."""
     exercise, samples = grading.exercise, grading.samples
     home = at_home(exercise.joints, samples.values, SAMPLES)
     values = answer.values_at(Samples(home))
     return bool(case.agree(values, case.expected).all())
 
 
-def _told(
+def _shared_messages(
     explained: Mapping[int, Finding],
     wrong: NDArray[np.bool_],
     labels: Sequence[str],
     grading: Grading,
 ) -> tuple[tuple[Feedback, ...], dict[int, Finding]]:
-    """The messages that several axes share, with their places, and the findings on single ones."""
-    told: list[Feedback] = []
+    """Return the messages that several axes share, and the findings on single axes by index."""
+    shared: list[Feedback] = []
     alone: dict[int, Finding] = {}
     for finding in dict.fromkeys(explained.values()):
         axes = [i for i, each in explained.items() if each == finding]
         places = tuple(Place(labels[i], str(j + 1)) for i in axes for j in np.flatnonzero(wrong[i]))
         if len(axes) > 1:
-            told += grading.messages((finding,), places)
+            shared += grading.messages((finding,), places)
         else:
             alone[axes[0]] = finding
-    return tuple(told), alone
+    return tuple(shared), alone
 
 
 def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
-    """Which numbers ``(joints, 6)`` are neither 0 nor those of an axis that is z of the frame."""
+    """Return a mask ``(joints, 6)`` of the content cells.
+
+    These differ from 0 and from the lazy axis, which is the frame's z axis.
+    """
     turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
     lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])
     scale = _scale(grading)
@@ -221,21 +224,21 @@ def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
 
 
 def _matches(student: StudentMatrix, expected: Numbers, grading: Grading) -> NDArray[np.int_]:
-    """The Match of each number, ``(joints, 6)``."""
+    """Return the Match of each number, ``(joints, 6)``."""
     return entry_matches(
         student.expressions, student.values, expected, _scale(grading), grading.samples
     )
 
 
 def _scale(grading: Grading) -> Numbers:
-    """The size that each number of an axis is measured against, ``(6,)``."""
+    """Return the scale of the tolerance of each number of an axis, ``(6,)``."""
     return np.repeat([1.0, grading.exercise.length_scale], 3)
 
 
 def _slips(
     student: StudentMatrix, i: int, axis: Numbers, wrong: NDArray[np.bool_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
-    """The findings on single numbers of axis ``i``."""
+    """Return the findings on single numbers of axis ``i``."""
     values = StudentValues(student.entries[i], SCREW, student.values[i])
     compared = ComparedValues(values, axis, number_corrections(axis, grading))
     return slips_of(compared, wrong, grading)

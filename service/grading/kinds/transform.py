@@ -24,12 +24,12 @@ from service.kinematics.transforms import Matrices
 
 
 def read(part: TransformSpec, answer: object, grading: Grading) -> StudentMatrix:
-    """The entries of a nested list or a pasted text."""
+    """Read the entries of a nested list or a pasted text."""
     return read_matrix(answer, HOMOGENEOUS, grading.reader)
 
 
 def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judged:
-    """The matrix row by row and entry by entry."""
+    """Judge the matrix entry by entry."""
     exercise = grading.exercise
     given = formula_values(part, grading)
     values = as_entries(asked_pose(part, grading)) if given is None else given
@@ -63,7 +63,7 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
 
 
 def _chain(answer: StudentMatrix) -> StudentChain | None:
-    """The pose as a chain of one link; None where not all of it has a value."""
+    """Return the pose as a chain of one link; None unless all entries have a value."""
     if np.isnan(answer.values).any():
         return None
 

@@ -20,7 +20,7 @@ from service.grading.report import Correction
 
 
 def read(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
-    """The values in a list or a pasted text."""
+    """Read the values in a list or a pasted text."""
     names = names_of_components(
         tuple((each.name, each.quantity) for each in part.components), grading.reader.vocabulary
     )
@@ -29,7 +29,7 @@ def read(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
 
 
 def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
-    """The list with one row for each component."""
+    """Judge the values; the report has one row for each component."""
     [expected] = given_values(part, grading)
     [formulas] = grading.exercise.formulas[part.id]
     compared = ComparedValues(answer, expected)
@@ -55,7 +55,7 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
 def _slip(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> Finding | None:
-    """The slip of the table of which all wrong values follow; one alone has its own message."""
+    """Return the slip in the table that explains all wrong values, if at least two are wrong."""
     search = search_of(answers, compared, wrong, grading)
     found = search.explanation(np.ones_like(wrong)) if search else None
     return None if found is None else found.findings[0]

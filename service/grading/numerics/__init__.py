@@ -1,1 +1,1 @@
-"""Numbers at random joint values, and the tolerances for comparing them."""
+"""Random samples of joint values and link parameters, and the comparison of numbers at them."""

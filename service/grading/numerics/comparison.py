@@ -1,11 +1,11 @@
-"""When two columns of numbers are the same answer.
+"""Compare values at all samples with the expected ones.
 
-Arrays are ``(..., samples)``; what is asked of them must hold at all samples. No tolerance depends
-on the values that were drawn, so that every draw finds the same.
+Arrays are ``(..., samples)``; values are equal only if they are equal at all samples. No tolerance
+depends on the drawn samples, so that every draw gives the same result.
 
 A decimal number with three or more figures is right if it is the true number, rounded or cut off
-(``expressions.evaluation.decimals``). So an entry is right if its decimals can each be moved as far
-as rounding may have moved it, once for all samples, so that the entry is what was expected.
+(``expressions.evaluation.decimals``). So an entry is right if shifts of its decimals, each no
+larger than rounding allows and the same at all samples, make it equal to the expected one.
 """
 
 import math
@@ -27,36 +27,36 @@ from service.grading.numerics.tolerances import (
 from service.kinematics.tolerances import LARGEST_ANGLE, LARGEST_LENGTH
 from service.kinematics.transforms import Numbers
 
-# More decimals in one entry are taken as they are written: the work grows with their number.
+# If an entry has more decimals, they count as exact: the work grows with their number.
 MAX_DECIMALS = 16
 MAX_SHARED_DECIMALS = 32
 PROJECTIONS = 200
-# After so many projections a plane is looked for that keeps them from meeting.
+# The number of projections after which a plane that separates the two sets is searched.
 SEPARATIONS = 8
-# What counts as 0 in its direction, and how far apart what it separates must be, in the largest
-# unit.
+# The size of a component of the plane's normal that counts as 0, and the least distance between the
+# separated sets, in the largest unit.
 FLAT = 1e-9
 SEPARATED = 1e-3
-# Projections that go on beyond the bounds by nearly as much as they came meet sooner (Motzkin).
+# Over-relaxed projections, which continue beyond the bounds, converge faster (Motzkin).
 RELAXATION = 1.9
-# What an unknown must at least do to the errors, for its size and relative to those that do most,
-# in each step of a fit. Where two axes are parallel but for rounding, only the sum of what is
-# measured along them has an effect; the smaller the errors that are left, the better this is seen.
+# The least effect of an unknown on the errors, relative to the largest effect, in each step of a
+# fit; unknowns with less are left unchanged. If two axes are parallel except for rounding, only the
+# sum of offsets along them has an effect; this shows better the smaller the remaining errors are.
 LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
-# Half the digits of a double, as it is best for differences.
+# Half the digits of a double, the best step for differences.
 LEAST_STEP = 1e-6
-# A shift that is further out of bounds than this share of the first error will not come back.
+# A fit ends if a shift is further out of bounds than this share of the first error.
 MISSED = 0.1
-# An error so many times as large as all shifts together undo is not made by rounding.
+# A fit ends if the error is larger than the effect of all shifts together by this factor.
 OUT_OF_REACH = 10.0
-# How far outside a shift may lie, relative to the tolerance of the errors.
+# How far a shift may be out of bounds, relative to the tolerance of the errors.
 FLOATING_SHIFT = 1e-3
-# Of a number with three figures rounding leaves off up to a hundredth.
+# The largest relative error of a number that is cut off after three figures.
 LARGEST_SLACK = 0.01
 
 
 class Match(IntEnum):
-    """How an answer compares with what was expected."""
+    """The result of comparing a value with the expected one."""
 
     DIFFERENT = 0
     UNDEFINED = 1
@@ -65,12 +65,12 @@ class Match(IntEnum):
 
 
 def difference(actual: Numbers, expected: Numbers, angle: ArrayLike = False) -> Numbers:
-    """``actual − expected``; where ``angle`` (it broadcasts), turned into [−π, π] radians."""
+    """Return ``actual − expected``, modulo 2π in [−π, π] where the mask ``angle`` is true."""
     return _turned(actual - expected, angle)
 
 
 def _turned(plain: Numbers, angle: ArrayLike | bool) -> Numbers:
-    """Differences, turned into [−π, π] where they are those of an ``angle``."""
+    """Return differences, modulo 2π in [−π, π] where the mask ``angle`` is true."""
     if isinstance(angle, bool) and not angle:
         return plain
     turns = np.where(angle, np.round(plain / (2 * np.pi)), 0.0)
@@ -80,15 +80,15 @@ def _turned(plain: Numbers, angle: ArrayLike | bool) -> Numbers:
 def matches(
     actual: Numbers, expected: Numbers, scale: ArrayLike, angle: ArrayLike = False
 ) -> NDArray[np.int_]:
-    """The Match of each entry ``(...)`` as it is written, from ``(..., samples)``.
+    """Return the Match of each entry ``(...)`` as written, from values ``(..., samples)``.
 
     ``scale`` is the unit of the tolerance: 1 for angles and direction cosines, a typical length for
-    lengths. It gives the tolerance an absolute floor, so that sin² + cos² − 1 is 0 every time; the
-    floor is far too low for a wrong constant to hide beside a large entry.
+    lengths. It gives the tolerance an absolute minimum, so that sin² + cos² − 1 always equals 0.
+    The minimum is far too small to hide a wrong constant in a large entry.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         plain = actual - expected
-        # Most answers are the expected one to the last bit; NaN is not 0.
+        # Most answers equal the expected one to the last bit; NaN does not equal 0.
         if not plain.any():
             return np.full(plain.shape[:-1], int(Match.EXACT))
         error = np.abs(_turned(plain, angle)).max(axis=-1)
@@ -104,9 +104,9 @@ def entry_matches(
     samples: Samples,
     angle: ArrayLike = False,
 ) -> NDArray[np.int_]:
-    """The Match of each entry ``(...)``; those that are not exact may be rounded.
+    """Return the Match of each entry ``(...)``, also testing inexact ones for rounding.
 
-    ``expressions`` are those of the entries in order, None where there is none.
+    ``expressions`` are those of the entries in order, None for an unreadable entry.
     """
     found = matches(actual, expected, scale, angle)
     different = np.flatnonzero(found == Match.DIFFERENT).tolist()
@@ -133,7 +133,7 @@ def is_rounded(
     *,
     angle: bool = False,
 ) -> bool:
-    """Whether an entry would be the expected one, ``(samples,)``, but for its rounded decimals."""
+    """True if shifts of its rounded decimals make an entry equal to ``expected`` ``(samples,)``."""
     if not expression.has_decimal or not 0 < len(decimals_of(expression).units) <= MAX_DECIMALS:
         return False
     # A table is compared several times, and most of its cells with the same numbers.
@@ -162,9 +162,10 @@ def _is_rounded(
 
 
 def _is_rounded_number(error: Numbers, unit: float, sign: int, tolerance: float) -> bool:
-    """Whether a shift of one decimal leaves no ``error`` ``(samples,)``: the fit in closed form.
+    """True if a shift of one decimal removes the ``error`` ``(samples,)``: a fit in closed form.
 
-    Most decimals of a table stand alone, as 1.571 for π/2, and the fit takes ten times as long.
+    Most decimals of a table are the only one in their cell, such as 1.571 for π/2, and the general
+    fit takes ten times as long.
     """
     mean = float(error.mean())
     shift, outside = -sign * mean / unit, FLOATING_SHIFT * tolerance / unit
@@ -180,11 +181,11 @@ def nearly_equal(
     angle: ArrayLike = False,
     slack: float = 0.0,
 ) -> NDArray[np.bool_]:
-    """Whether values ``(..., samples)`` are equal but for what rounding does to them: ``(...)``.
+    """Return a mask ``(...)`` of the values ``(..., samples)`` that are equal except for rounding.
 
-    This is for guesses, such as which slip explains an answer, and never for a verdict. ``slack``
-    is what rounding is known to do. Values are never nearer than three figures of their size, or of
-    the largest size that the robot's own numbers have, if that is smaller.
+    Use this for guesses, such as which slip explains an answer, but never for a verdict. ``slack``
+    is a known rounding error. The tolerance is at least a thousandth of the values' size, which
+    counts at most as much as the robot's largest numbers.
     """
     error = np.abs(difference(one, other, angle)).max(axis=-1)
     size = np.sqrt(np.mean(other * other, axis=-1))
@@ -198,9 +199,9 @@ def nearly_equal(
 def same(
     one: Numbers, other: Numbers, scale: float = 1.0, angle: bool = False, slack: float = 0.0
 ) -> bool:
-    """Whether two single values ``(samples,)`` are nearly equal.
+    """True if two single values ``(samples,)`` are nearly equal.
 
-    It asks the same as ``nearly_equal``, for a fifth of its cost.
+    This is ``nearly_equal`` for one value, at a fifth of its cost.
     """
     error = one - other
     if angle:
@@ -214,10 +215,10 @@ def same(
 
 
 def rounding_slack(expression: Expression, samples: Samples) -> float:
-    """By how much rounding may have moved an entry, to first order."""
+    """Return how far rounding may have moved an entry, to first order."""
     if not expression.has_decimal:
         return 0.0
-    # A table is judged in several ways, and each of them asks for the same cells.
+    # Cache the result: a table is judged in several ways, which all need the same cells.
     return samples.cached(("slack", expression), lambda: _rounding_slack(expression, samples))
 
 
@@ -237,10 +238,10 @@ def _rounding_slack(expression: Expression, samples: Samples) -> float:
 def fitted_shifts(
     errors: Callable[[Numbers], Numbers], units: Numbers, tolerance: float
 ) -> Numbers | None:
-    """The shifts ``(m,)`` of decimals that leave no error; None if there are none.
+    """Return shifts ``(m,)`` of decimals that leave no error; None if there are none.
 
-    ``errors`` gives the errors ``(K, n)`` for shifts ``(K, m)``, ``units`` ``(m,)`` are those of
-    the decimals. Each shift is as large as rounding or cutting off leaves it.
+    ``errors`` returns the errors ``(K, n)`` for shifts ``(K, m)``; ``units`` ``(m,)`` are those of
+    the decimals. Each shift is at most as large as rounding or cutting off allows.
     """
     count = len(units)
     steps = difference_steps(units)
@@ -254,9 +255,9 @@ def fitted_shifts(
 
 
 def difference_steps(sizes: Numbers) -> Numbers:
-    """The steps ``(N,)`` of central differences for unknowns of which 1 has an effect of ``sizes``.
+    """Return steps ``(N,)`` of central differences for unknowns with effects ``sizes`` per unit.
 
-    They are as large as the unknowns, and so large that floating point does not show.
+    The steps are about as large as the unknowns, and large compared with floating-point errors.
     """
     return np.maximum(0.5, LEAST_STEP / sizes)
 
@@ -267,11 +268,11 @@ def fitted_unknowns(
     count: int,
     tolerance: float,
 ) -> Numbers | None:
-    """The unknowns ``(N,)`` that leave no error, of which the first ``count`` are shifts.
+    """Return unknowns ``(N,)`` that leave no error, or None; the first ``count`` are shifts.
 
-    None if there are none. ``linearised`` gives the errors ``(n,)`` for unknowns, and their
-    derivative ``(n, N)``; ``sizes`` ``(N,)`` is how large an error an unknown makes that acts
-    directly. All unknowns are small, so Gauss and Newton's method needs few steps.
+    ``linearised`` returns the errors ``(n,)`` for unknowns, and their derivative ``(n, N)``;
+    ``sizes`` ``(N,)`` is the direct effect of each unknown on an error. All unknowns are small, so
+    that the Gauss-Newton method needs few steps.
     """
     unknowns, first, beyond = np.zeros(len(sizes)), np.inf, 0.0
     for step, least_effect in enumerate(LEAST_EFFECTS):
@@ -279,7 +280,7 @@ def fitted_unknowns(
         if not (np.isfinite(rates).all() and np.isfinite(error).all()):
             return None
         largest = float(np.abs(error).max())
-        # Where a unit is as small as what floating point leaves, a shift is a little outside.
+        # If a unit is as small as floating-point errors, a shift may be slightly out of bounds.
         shifts, outside = unknowns[:count], FLOATING_SHIFT * tolerance / sizes[:count]
         allowed = (shifts >= -ROUNDED_UP - outside) & (shifts <= CUT_OFF + outside)
         if largest <= tolerance and allowed.all():
@@ -290,7 +291,7 @@ def fitted_unknowns(
                 return None
         elif step > 1 and (largest > first / 2 or beyond > MISSED * first):
             return None
-        # The singular values are those of the triangle, which is far smaller.
+        # The triangle of the QR decomposition has the same singular values and is far smaller.
         orthogonal, triangle = np.linalg.qr(rates / sizes)
         solver = np.linalg.pinv(triangle, rcond=least_effect) @ orthogonal.T
         moved = unknowns * sizes - solver @ error
@@ -302,13 +303,13 @@ def fitted_unknowns(
 
 
 class SharedDecimals:
-    """The rounded decimals of several entries, which may be right together and not each by itself.
+    """The rounded decimals of several entries that can only be right together.
 
-    ``units`` ``(count,)`` are theirs; ``count`` is 0 where there are none or too many.
+    ``units`` ``(count,)`` are those of the decimals; ``count`` is 0 if there are none or too many.
     """
 
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
-        """``expressions`` are those of the entries, None where there is none."""
+        """Collect the decimals of ``expressions``, which are None for unreadable entries."""
         self._parts: list[tuple[int, Decimals, slice, Mapping[str, Numbers]]] = []
         self.count = 0
         self.units = np.zeros(0)
@@ -325,7 +326,7 @@ class SharedDecimals:
             self._parts, self.count, self.units = [], 0, np.zeros(0)
 
     def shifted(self, shifts: Numbers, values: Numbers) -> Numbers:
-        """The ``values`` ``(entries, samples)`` with the decimals shifted: ``(K, entries, ...)``.
+        """Return ``values`` ``(entries, samples)`` with shifted decimals: ``(K, entries, ...)``.
 
         ``shifts`` is ``(K, count)``.
         """
@@ -336,12 +337,12 @@ class SharedDecimals:
 
 
 def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
-    """Unknowns with the same effect, the first of which are inside bounds, if there are any.
+    """Return unknowns with the same effect whose shifts are within bounds, if there are any.
 
-    ``bounds`` ``(2, count)`` are the lower and the upper ones. ``determined`` ``(N, N)`` projects
-    unknowns on those that have an effect. Of two decimals of which only the sum counts, one alone
-    may not make up for both. Projections on both sets in turn meet in their intersection (von
-    Neumann, Bregman), or end where a plane lies between the two: then there are none.
+    ``bounds`` ``(2, count)`` are the lower and upper bounds of the shifts. ``determined`` ``(N,
+    N)`` projects unknowns on those with an effect. If only the sum of two decimals has an effect,
+    both may have to share the shift. Alternating projections on the two sets converge to their
+    intersection (von Neumann, Bregman), or end if a plane separates the sets.
     """
     (lower, upper), count = bounds, bounds.shape[1]
     effect = determined @ unknowns
@@ -358,12 +359,12 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
 
 
 def _is_out_of_reach(error: Numbers, rates: Numbers) -> bool:
-    """Whether shifts alone, each as large as it may be, leave an error far from 0."""
+    """True if the largest possible shifts still leave an error far from 0."""
     return bool((np.abs(error) > OUT_OF_REACH * CUT_OFF * np.abs(rates).sum(axis=1)).any())
 
 
 def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
-    """Whether no unknowns within the bounds reach as far along ``normal`` as the effect demands."""
+    """True if the plane with this ``normal`` separates the bounds from the needed effect."""
     count, size = bounds.shape[1], math.sqrt(normal @ normal)
     if np.abs(normal[count:]).max(initial=0.0) > FLAT * size:
         return False
@@ -372,7 +373,7 @@ def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
-    """How far two values may be apart that are the same: ``(...)``."""
-    # The mean by its definition, for ``np.mean`` takes as long as all the rest.
+    """Return the largest difference of equal values: ``(...)``."""
+    # ``np.mean`` takes as long as the rest of this function, so compute the mean directly.
     size = np.sqrt((expected * expected).sum(axis=-1) / expected.shape[-1])
     return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)

@@ -1,4 +1,4 @@
-"""How values change with the joints, at the same links."""
+"""Changes of values when only the joints move."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,21 +11,21 @@ from service.kinematics.transforms import Numbers
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
-    """The two halves of values ``(..., samples)``: the same links at other joint values."""
+    """Return the two halves of values ``(..., samples)``: the same links, other joint values."""
     half = values.shape[-1] // 2
     return values[..., :half], values[..., half:]
 
 
 def changes(values: Numbers) -> Numbers:
-    """By how much values ``(..., SAMPLES)`` change when only the joints move: ``(..., HALF)``."""
+    """Return the changes ``(..., HALF)`` of values ``(..., SAMPLES)`` when only the joints move."""
     before, after = halves(values)
     return after - before
 
 
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
-    """Which values ``(..., samples)`` change with the joints as ``motion`` does, or its opposite.
+    """Return a mask of values ``(..., samples)`` that change with the joints as ±``motion`` does.
 
-    ``motion`` is ``(..., samples / 2)``. NaN does not.
+    ``motion`` is ``(..., samples / 2)``. The mask is false for NaN.
     """
     either_sign = np.array([motion, -motion])
     shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
@@ -36,13 +36,13 @@ def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np
 def joint_counts(
     values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
-    """Whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
+    """Return whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
 
-    ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Returns the counts ``(cells,
-    joints)`` and which cells are of that form ``(cells,)``, an angle up to whole turns.
+    ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Return the counts ``(cells,
+    joints)`` and a mask ``(cells,)`` of the cells with that form, angles up to whole turns.
 
-    It is one least-squares problem for all cells: the two halves of the samples differ in the
-    joints only.
+    All cells are one least-squares problem, because the two halves of the samples differ only in
+    the joints.
     """
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
@@ -60,7 +60,7 @@ def joint_counts(
     counts = np.round(change @ solver)
     counts = np.clip(counts, -99, 99)
     linear = finite & (np.abs(counts @ moves - change).max(axis=-1) < SAME_MOTION)
-    # Whole turns hide the share of a joint from least squares; then one joint alone is tried.
+    # Whole turns spoil the least squares; for such cells, try each joint alone.
     turned = np.flatnonzero(finite & ~linear & angle)
     if len(turned):
         either_sign = np.array([moves, -moves])
@@ -75,7 +75,7 @@ def joint_counts(
 def coefficients(
     values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
 ) -> list[tuple[int, ...] | None]:
-    """The counts of ``joint_counts`` for each cell; None for a cell of another form."""
+    """Return the counts of ``joint_counts`` for each cell; None for a cell of another form."""
     counts, linear = joint_counts(values, joints, samples, angle)
     found = zip(counts.tolist(), linear.tolist(), strict=True)
     return [tuple(cell) if is_linear else None for cell, is_linear in found]

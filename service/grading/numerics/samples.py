@@ -1,7 +1,7 @@
-"""The values that answers are compared at, drawn for each submission.
+"""The random values at which answers are compared, drawn for each submission.
 
-The seed is a hash of exercise version and answers, so that a student cannot foresee the draw and a
-regrade repeats it to the last bit, on every machine and with every version of numpy.
+The seed is a hash of exercise version and answers. So students cannot predict the values, and a
+regrade uses the same ones to the last bit, on every machine and with every version of numpy.
 """
 
 import hashlib
@@ -32,8 +32,8 @@ class Samples:
     """Values of every symbol, each of shape ``(SAMPLES,)``.
 
     Samples 0..15 are drawn freely. Samples 16..31 repeat their link parameters with other joint
-    values, so that a change between the halves is due to the joints alone. ``in_degrees`` are the
-    angles whose values a student reads in degrees, ``bare_count`` is the number of samples where
+    values, so that changes between the halves are due to the joints alone. ``in_degrees`` are the
+    angles that are shown to the student in degrees. ``bare_count`` is the number of samples if
     there are no symbols.
     """
 
@@ -51,9 +51,9 @@ class Samples:
         return {}
 
     def cached(self, key: Hashable, compute: Callable[[], _T]) -> _T:
-        """What depends on the exercise and these samples alone, computed on first use.
+        """Return a value that depends only on the exercise and these samples, computed once.
 
-        It must not be written to.
+        Do not modify the value.
         """
         if key not in self._cache:
             self._cache[key] = compute()
@@ -62,11 +62,11 @@ class Samples:
 
     @property
     def count(self) -> int:
-        """How many values each symbol has."""
+        """The number of values of each symbol."""
         return next(map(len, self.values.values()), self.bare_count)
 
     def subset(self, count: int) -> "Samples":
-        """The first ``count`` samples of each half: enough to tell generic tables apart."""
+        """Return the first ``count`` samples of each half."""
         return self.cached(
             count,
             lambda: Samples(
@@ -76,31 +76,31 @@ class Samples:
         )
 
     def with_names(self, names: Iterable[str]) -> "Samples":
-        """The same samples with values of more symbols, in no relation to any other value.
+        """Return these samples with random values of more symbols.
 
-        They are drawn from the samples themselves, and so are the same for the same samples.
+        The seed is the samples themselves, so that equal samples get equal values.
         """
         drawn = next((values.tobytes().hex() for values in self.values.values()), "")
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
 
     def values_for(self, expression: Expression) -> Mapping[str, Numbers]:
-        """The values of all symbols, with those in it that the robot does not have."""
+        """Return the values of all symbols, including absent variables of the expression."""
         absent = expression.symbols.difference(self.values)
         return self.with_names(absent).values if absent else self.values
 
     def renamed(self, meanings: Mapping[str, str]) -> "Samples":
-        """The same samples with each symbol of ``meanings`` standing for another one."""
+        """Return these samples with the values of other symbols, as in ``meanings``."""
         values = {name: self.values[meaning] for name, meaning in meanings.items()}
         return Samples({**self.values, **values}, self.in_degrees)
 
     @staticmethod
     def subset_of(values: Numbers, count: int) -> Numbers:
-        """The samples of ``subset`` of values ``(..., SAMPLES)``."""
+        """Return the values ``(..., SAMPLES)`` at the samples of ``subset``."""
         return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
-        """The values of the named symbols in one sample, short enough to be read."""
+        """Return the values of the named symbols in one sample, with four figures."""
         units = {name: math.degrees if name in self.in_degrees else float for name in names}
         return {
             name: float(f"{units[name](values[sample]):.4g}")
@@ -110,7 +110,7 @@ class Samples:
 
 
 def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Samples:
-    """The samples for these answers to this exercise."""
+    """Draw the samples for these answers to this exercise."""
     ranges = _ranges_of(_Symbols(exercise.version, exercise.variables))
     moving, count = ranges.moving, len(ranges.names)
     split = moving * SAMPLES
@@ -126,7 +126,7 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
 
 @dataclass(frozen=True, slots=True)
 class _Symbols:
-    """The symbols of an exercise, told from those of others by its version."""
+    """The symbols of an exercise; equal if the exercise versions are."""
 
     version: str
     variables: tuple[Variable, ...] = field(compare=False)
@@ -134,7 +134,7 @@ class _Symbols:
 
 @dataclass(frozen=True, slots=True)
 class _Ranges:
-    """The ranges that an exercise's symbols are drawn from, ``(n, 1)``: first the joints' own.
+    """The ranges of an exercise's symbols, ``(n, 1)``; those of the joints are first.
 
     ``moving`` is the number of joint variables, ``angles`` are the names of all angles.
     """
@@ -161,7 +161,7 @@ def _ranges_of(symbols: _Symbols) -> _Ranges:
 
 
 def _canonical(answers: object) -> str:
-    """The answers as text that does not depend on the order of keys."""
+    """Return the answers as text that does not depend on the order of keys."""
     try:
         return _ENCODER.encode(answers)
     except (TypeError, ValueError, RecursionError):
@@ -169,9 +169,9 @@ def _canonical(answers: object) -> str:
 
 
 def _pieces(answers: object) -> Iterator[str]:
-    """The answers that JSON refuses, piece by piece: a number of thousands of digits, TOML's dates.
+    """Yield the text of answers that JSON cannot write, such as huge numbers and TOML's dates.
 
-    No depth and no circle stops it: a list or table that was met before is not entered again.
+    Depth and cycles do no harm: each list or table is entered only once.
     """
     waiting, met = [answers], set[int]()
     while waiting:
@@ -187,13 +187,13 @@ def _pieces(answers: object) -> Iterator[str]:
         elif isinstance(value, bool | str | float | date | time | None):
             yield f"{value!r};"
         elif isinstance(value, int):
-            # Python refuses thousands of digits in decimals only.
+            # Python limits the digits of integers in decimal, but not in hexadecimal.
             yield f"{value:x};"
         else:
             yield f"{type(value).__name__};"
 
 
 def _uniform(seed: str, count: int) -> Numbers:
-    """``count`` numbers in [0, 1) from an extendable hash of the seed."""
+    """Return ``count`` numbers in [0, 1) from an extendable hash of the seed."""
     stream = hashlib.shake_128(seed.encode("utf-8", "surrogatepass")).digest(4 * count)
     return np.frombuffer(stream, dtype="<u4") * 2.0**-32

@@ -1,4 +1,4 @@
-"""Matching a written chain with a reference chain, link by link.
+"""Match a written chain with a reference chain, link by link.
 
 A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two tables describe one
 mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
@@ -24,10 +24,10 @@ from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What a row leads to.
+    """The target of a row.
 
-    ``reference`` is the transform ``(L, 4, 4)`` to this target's frame from that of the last joint,
-    both the reference's; None for a fixed frame that the reference does not have.
+    ``reference`` is the reference's transform ``(L, 4, 4)`` from the last joint's frame to the
+    target's; None for a fixed frame that the reference does not have.
     """
 
     kind: TargetKind
@@ -35,7 +35,7 @@ class Target:
 
     @property
     def rebases(self) -> bool:
-        """Whether the reference's frame here is the one that the next target is seen from."""
+        """True if the next target's ``reference`` starts from the frame at this target."""
         return self.reference is not None and self.kind is not TargetKind.FIXED
 
 
@@ -43,12 +43,11 @@ class Target:
 class RowConstants:
     """The constants of a row as written.
 
-    ``written`` is ``(4, L)``, NaN where there is no usable number. Of the cells ``(4,)``,
-    ``is_gradable`` says which can be right or wrong, ``wrong_regardless`` which are wrong whatever
-    the frames, ``absent`` for which the table has no room (they are 0), and ``slack`` how far each
-    may be off because it was rounded. ``variable`` is the column of the variable of the joint that
-    the row starts from, None where it starts from none; ``joint_sign`` the sign of that variable:
-    +1, −1, or 0 where it is not known.
+    ``written`` is ``(4, L)``, NaN without a usable number. These are ``(4,)``: ``is_gradable``
+    marks the cells that can be right or wrong, ``wrong_regardless`` those that are wrong in any
+    frames, ``absent`` those that the table does not have (they are 0), and ``slack`` is the
+    rounding error of each cell. ``variable`` is the column of the joint variable that the row
+    starts from, or None. ``joint_sign`` is the sign of that variable: +1, −1, or 0 if unknown.
     """
 
     written: Numbers
@@ -62,11 +61,11 @@ class RowConstants:
 
 @dataclass(frozen=True, slots=True)
 class ChainMatch:
-    """A valid table, and how its frames lie to the reference's.
+    """A valid table, and its frames relative to the reference's.
 
-    ``rows`` ``(rows, 4, L)`` is what each row should be; ``relative_poses`` ``(rows, L, 4, 4)`` are
-    those at each target; ``cost`` is how far the written table is from this one, ``lost`` the units
-    of the marks that it loses (``frame_choice``).
+    ``rows`` ``(rows, 4, L)`` are the right rows; ``relative_poses`` ``(rows, L, 4, 4)`` are those
+    at each target; ``cost`` is the distance of the written table from this one, ``lost`` the units
+    of marks that it loses (``frame_choice``).
     """
 
     rows: Numbers
@@ -76,7 +75,7 @@ class ChainMatch:
 
     @property
     def joint_signs(self) -> list[int]:
-        """The sign that the joint variable of each target should have."""
+        """The right sign of the joint variable of each target."""
         signs: list[int] = joint_signs_of(self.relative_poses).tolist()
         return signs
 
@@ -89,9 +88,9 @@ def match_as_written(
     directions_given: bool = True,
     start: Matrices | None = None,
 ) -> ChainMatch | None:
-    """The written table itself where nothing in it is wrong; else None. ``match_tables`` says how.
+    """Return the written table if nothing in it is wrong, else None; see ``match_tables``.
 
-    ``directions_given`` says that each joint's positive sense is.
+    ``directions_given`` is true if each joint's positive direction is given.
     """
     if any(row.wrong_regardless.any() for row in rows):
         return None
@@ -109,12 +108,12 @@ def match_tables(
     tolerance: float = SAME_POSE,
     start: Matrices | None = None,
 ) -> tuple[NDArray[np.bool_], Matrices]:
-    """Which of many tables are valid as they stand, without any search.
+    """Test which of many tables are valid as written, without any search.
 
     ``written`` is ``(tables, rows, 4, L)``, ``joint_signs`` ``(tables, rows)`` as in RowConstants,
     0 where the direction is free. ``start`` ``(L, 4, 4)``, or one for each table, is the relative
-    pose of frame 0, None for the identity. Returns ``(tables,)`` and the relative poses at the
-    targets, ``(rows, tables, L, 4, 4)``. NaN makes a table invalid.
+    pose of frame 0, None for the identity. Return a mask ``(tables,)`` and the relative poses at
+    the targets, ``(rows, tables, L, 4, 4)``. A table with NaN is invalid.
     """
     count = written.shape[-1]
     links = standard_link(*np.moveaxis(written, 2, 0))
@@ -136,10 +135,10 @@ def match_tables(
 
 
 def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
-    """How relative poses miss what the targets demand, ``(tables, n, L)``: 0 where they do not.
+    """Return the errors of relative poses at the targets, ``(tables, n, L)``: 0 for valid ones.
 
-    ``poses`` ``(rows, tables, L, 4, 4)`` are those of ``match_tables``. The direction of the axes
-    is left out.
+    ``poses`` ``(rows, tables, L, 4, 4)`` are those of ``match_tables``. The directions of the axes
+    are ignored.
     """
     unit = np.array([1.0, 1.0, 1.0, length_scale])
     missed: list[Numbers] = []
@@ -156,7 +155,7 @@ def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> 
 
 
 def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
-    """By how much relative poses ``(T, L, 4, 4)`` miss what a target demands: ``(T,)``."""
+    """Return the error of relative poses ``(T, L, 4, 4)`` at a target: ``(T,)``."""
     error: Numbers = np.abs(pose[:, :, :2, 2]).max(axis=(1, 2))
     if kind in (TargetKind.FIXED, TargetKind.OPEN):
         return np.where(np.isnan(error), np.nan, 0.0)
@@ -168,8 +167,8 @@ def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
 
 
 def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
-    """+1 where the writer's z points the way of the reference's, −1 where it is turned over.
+    """Return +1 if the writer's z has the direction of the reference's, −1 if it is reversed.
 
-    ``(N,)`` from relative poses ``(N, L, 4, 4)``.
+    The result is ``(N,)`` for relative poses ``(N, L, 4, 4)``.
     """
     return np.where(pose[:, 0, 2, 2] > 0, 1, -1)

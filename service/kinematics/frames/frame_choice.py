@@ -1,15 +1,14 @@
-"""The valid table nearest to the one that was written.
+"""Find the valid table nearest to a written one.
 
-Denavit-Hartenberg tables are not unique (``chain_match`` says when two describe one mechanism). So
-the search goes from the base to the tool row by row, and at each row compares what was written with
-every value that it could have had under the choices of frames made so far. A wrong cell costs 1,
-each further one in the same row of the table less: a row that is wrong altogether is blamed on
-itself. A frame other than the reference's costs a little, so that an uncompensated shift is blamed
-where it was made and not where it surfaces. Only the cheapest hypotheses are kept (a beam search).
+Denavit-Hartenberg tables are not unique (``chain_match`` explains when two describe one mechanism).
+So the search proceeds from the base to the tool. It compares each written row with all rows that
+are valid after the choices of frames so far. A wrong cell costs 1, and each further one in the same
+row less, so that one wrong row is cheaper than errors in several rows. A frame other than the
+reference's has a small cost, so that an uncompensated shift is found in the row where it was made.
+Only the cheapest hypotheses are kept (a beam search).
 
 Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
-a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame as seen from the
-reference's.
+a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame in the reference's.
 """
 
 from collections.abc import Sequence
@@ -34,20 +33,20 @@ from service.kinematics.transforms import Matrices, Numbers, identity, inverse, 
 
 BEAM_WIDTH = 8
 MAX_CONTINUATIONS = 20
-# A hypothesis this far behind the best is dropped: it would take a table with as many more slips.
+# A hypothesis that costs this much more than the best is dropped: it needs as many more slips.
 MAX_COST_BEHIND = 2.5
 
-# What a hypothesis costs. A cell that the table has no room for cannot be blamed on a slip, so that
-# a hypothesis which needs it is a last resort.
+# The costs of a hypothesis. A slip cannot be in a cell that the table does not have, so that a
+# hypothesis which needs such a cell is a last resort.
 WRONG_CELL = 1.0
-# The cost of 0 to 4 wrong cells in one row of the table: less than in several rows.
+# The cost of 0 to 4 wrong cells in one row of the table; several rows cost more.
 ROW_COSTS = WRONG_CELL * np.array([0.0, 1.0, 1.9, 2.7, 3.4])
-# SPARING hypotheses are kept because they lose few marks: a row loses 1 for each wrong cell, but
-# for several cells at most BESIDES and 1 for each cell that is not 0.
+# The search also keeps the SPARING hypotheses that lose the fewest marks. A row loses 1 for each
+# wrong cell, but for several cells at most BESIDES plus 1 for each cell that is not 0.
 BESIDES = 0.2
 NOT_ZERO = 1e-9
 SPARING = 4
-# If two of them lose the same, the cheaper one is kept.
+# The weight of the cost between hypotheses that lose the same marks: the cheaper one is kept.
 SAME_LOSS = 1e-3
 NO_SUCH_CELL = 3.0
 UNREACHABLE = 3.0
@@ -55,7 +54,7 @@ TURNED_OVER = 0.010
 TURNED_ABOUT = 0.004
 MOVED = 0.020
 
-# Each row so far: what it should be, and the relative pose that it leads to.
+# For each row so far, its right values and the relative pose after it.
 _Path = tuple[tuple[Numbers, Matrices], ...]
 
 
@@ -63,8 +62,8 @@ _Path = tuple[tuple[Numbers, Matrices], ...]
 class _Beam:
     """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them.
 
-    ``lost`` ``(H,)`` are the units of the marks that they lose. ``begun`` counts
-    the cells of a row of the table that is not yet complete.
+    ``lost`` ``(H,)`` are the units of marks that they lose. ``begun`` has the counts of a row of
+    the table that is not yet complete.
     """
 
     pose: Matrices
@@ -76,7 +75,7 @@ class _Beam:
 
 @dataclass(frozen=True, slots=True)
 class _RowCounts:
-    """How many cells ``(N,)`` of a row of the table are wrong, were not read, and are not 0."""
+    """The numbers ``(N,)`` of wrong, unread and nonzero cells in a row of the table."""
 
     wrong: NDArray[np.int_]
     unread: NDArray[np.int_]
@@ -115,13 +114,13 @@ def nearest_table(
     start: Matrices | None = None,
     z_ends_rows: bool = False,
 ) -> ChainMatch:
-    """The valid table nearest to the written ``rows``, the i-th of which leads to the i-th target.
+    """Return the valid table nearest to ``rows``, the i-th of which leads to the i-th target.
 
-    ``z_ends_rows`` says that a row of the table has its X before its Z.
+    ``z_ends_rows`` is true if a row of the table has its X before its Z.
 
-    ``base_given`` says that it is known where frame 0 lies: at ``start`` ``(L, 4, 4)`` in the
-    reference's, or there. ``directions_given`` says that each joint's positive sense is known, so
-    that a z axis turned over asks for a variable with the opposite sign.
+    ``base_given`` is true if frame 0 is known: at ``start`` ``(L, 4, 4)`` in the reference's frame
+    0, or equal to that. ``directions_given`` is true if each joint's positive direction is given,
+    so that a reversed z axis needs a variable with the opposite sign.
     """
     samples = rows[0].written.shape[-1]
     if base_given:
@@ -142,7 +141,10 @@ def nearest_table(
 
 
 def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFreedom]:
-    """On the first axis, z either way: from a free base, the row that leads there is right."""
+    """Return the hypotheses on the first axis, z in either direction, for a free base.
+
+    The row from a free base to the first axis is always right.
+    """
     samples = first.written.shape[-1]
     poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
     row = np.nan_to_num(first.written)
@@ -160,7 +162,7 @@ def _next_beam(
     freedom: BaseFreedom,
     z_ends_rows: bool,
 ) -> _Beam:
-    """The cheapest hypotheses one row further on."""
+    """Return the cheapest hypotheses after one more row."""
     parents, rows, distance, unreachable = _continuations(beam, row, target, length_scale, freedom)
     expected = freedom.with_written_angle(rows, row.written)
     wrong = _wrong_cells(row, expected, length_scale)
@@ -209,7 +211,7 @@ def _with_others(chosen: NDArray[np.int_], others: NDArray[np.int_]) -> NDArray[
 def _counts(
     wrong: NDArray[np.bool_], expected: Numbers, row: RowConstants, length_scale: float
 ) -> tuple[_RowCounts, _RowCounts]:
-    """Return the counts of the X and of the Z of each of N rows."""
+    """Return the counts of the cells in X (a, α) and of those in Z (d, θ), for N rows."""
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
     of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
     # A constant beside a wrong joint variable does not count.
@@ -224,11 +226,11 @@ def _counts(
 def _continuations(
     beam: _Beam, row: RowConstants, target: Target, length_scale: float, freedom: BaseFreedom
 ) -> tuple[NDArray[np.int_], Numbers, Numbers, NDArray[np.bool_]]:
-    """Every row that the hypotheses allow, in N ways.
+    """Return all N ways to continue the hypotheses by a row.
 
-    Of each way the hypothesis ``(N,)`` that it continues, its row ``(N, 4, L)``, the distance
-    ``(N, L)`` that the frame must be slid along what is left of the base's freedom, and whether no
-    row leads to the target ``(N,)``.
+    For each way, return the index of its hypothesis ``(N,)``, its row ``(N, 4, L)``, the distance
+    ``(N, L)`` to slide the frame along the remaining freedom of the base, and a mask ``(N,)`` of
+    the ways in which no row leads to the target.
     """
     reference = target.reference
     if reference is None:
@@ -263,7 +265,7 @@ def _continuations(
 
 
 def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
-    """Poses ``(N, L, 4, 4)`` slid by ``distance`` ``(N, L)`` along the base's freedom."""
+    """Return poses ``(N, L, 4, 4)`` slid by ``distance`` ``(N, L)`` along the base's freedom."""
     if freedom.slide is None:
         return pose
     moved = pose.copy()
@@ -272,12 +274,12 @@ def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
 
 
 def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArray[np.bool_]:
-    """Which cells of the written row differ from each of ``rows``: ``(N, 4)``."""
+    """Return a mask ``(N, 4)`` of the cells in which the written row differs from ``rows``."""
     error = np.abs(row.written - rows)
     turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
     error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
     scale = np.array([length_scale, 1.0, length_scale, 1.0])
-    # The cells that this one is computed from may be rounded, too.
+    # The cells from which this one is computed may be rounded, too.
     slack = np.where(row.slack > 0, np.maximum(row.slack, ROUNDED_CELL * scale), EXACT_CELL * scale)
     with np.errstate(invalid="ignore"):
         right = error.max(axis=-1) <= slack
@@ -285,7 +287,7 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
 
 
 def departure(pose: Matrices, length_scale: float) -> Numbers:
-    """The cost ``(N,)`` of frames that are not the reference's: small, but not 0.
+    """Return the cost ``(N,)`` of frames that are not the reference's: small, but not 0.
 
     ``pose`` are their relative poses ``(N, L, 4, 4)``.
     """
@@ -297,7 +299,7 @@ def departure(pose: Matrices, length_scale: float) -> Numbers:
 
 
 def _distinct(pose: Matrices, cost: Numbers, length_scale: float) -> NDArray[np.int_]:
-    """The cheapest BEAM_WIDTH hypotheses with different frames; of equal frames the cheapest."""
+    """Return the cheapest BEAM_WIDTH hypotheses with different frames."""
     order = np.argsort(cost, kind="stable")
     frames = pose[order, 0, :3].reshape(len(order), -1)
     difference = np.abs(frames[:, None] - frames[None]).max(axis=-1)

@@ -1,1 +1,1 @@
-"""Other values of a few cells that make a table right."""
+"""Repair a table by other values of a few cells."""

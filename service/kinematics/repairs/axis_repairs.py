@@ -1,17 +1,17 @@
-"""Other values of one cell of a table that make its joint axes right, where an end of it is free.
+"""Repair the joint axes of a table by one cell, if base or tool is free.
 
-If a cell is wrong, what stands before its factor and what stands behind it are two rigid bodies,
-each with joint axes fixed to it. Where the first body lies is known: from a given frame 0, or from
-its own axes, which lie as the reference's do. So each axis of the second body must lie on the
-reference's axis, as seen from the frame before the factor, and one axis that the cell moves gives
-its value. Another axis may contradict; so each value is still to be checked on the whole table.
+If one cell is wrong, the factors before and after its factor are two rigid bodies with fixed joint
+axes. The pose of the first body is known from a given frame 0, or from its own axes, which lie on
+the reference's. So each axis of the second body must lie on the reference's axis, seen from the
+frame before the wrong factor, and one axis that the cell moves gives its value. Other axes may
+contradict this value, so the caller must test it on the whole table.
 
 A turn t about the axis e takes a direction u to v if t = atan2(e·(u × v), u·v − (e·u)(e·v)). A
-shift along e brings a point p onto a line through r with the direction v, as near as one does, if
-it is e·(1 − v vᵀ)(r − p) / (1 − (e·v)²).
+shift along e brings a point p as near as possible to a line through r with the direction v if it is
+e·(1 − v vᵀ)(r − p) / (1 − (e·v)²).
 
-The joints are all at 0. Seen from the other end, the table is the inverse product: so a given last
-frame serves as a given first one (``reversed_factors``).
+All joints are at 0. Seen from the other end, the table is the inverse product, so a given last
+frame can replace a given first one (``reversed_factors``).
 
 Shapes: L samples, K factors, n joints. Lengths are in a unit that suits the robot; angles in
 radians.
@@ -26,12 +26,12 @@ from service.kinematics.factors import SHIFT, TURN, Factors, Integers, screws
 from service.kinematics.tolerances import CLEARLY_NOT_PARALLEL
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
-# A factor, SHIFT or TURN, and another value of it ``(L,)``.
+# A factor, SHIFT or TURN, and its new value ``(L,)``.
 FactorRepair = tuple[int, int, Numbers]
 
 
 def reversed_factors(factors: Factors) -> Factors:
-    """The factors of the inverse product: in the opposite order, each the other way."""
+    """Return the factors of the inverse product: inverses in the opposite order."""
     return Factors(factors.convention, -factors.sizes[::-1], factors.axes[::-1])
 
 
@@ -42,11 +42,11 @@ def repairs_by_axes(
     axes: Matrices,
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Values of single cells that bring one joint axis behind them onto the reference's.
+    """Yield values of single cells that bring one later joint axis onto the reference's.
 
-    ``starts`` ``(K, L, 4, 4)`` is where the frame before each factor lies, ``joints`` ``(n,)`` the
-    factor along whose z each joint acts, ``axes`` ``(n, L, 4, 4)`` where the axes should lie. Of a
-    ``sliding`` axis the direction alone counts. Either end of an axis may be its positive one.
+    ``starts`` ``(K, L, 4, 4)`` are the poses of the frames before each factor, ``joints`` ``(n,)``
+    the factors along whose z the joints act, ``axes`` ``(n, L, 4, 4)`` the right poses of the axes.
+    For a ``sliding`` axis only the direction counts. Axes may be reversed.
     """
     behind = joints > np.arange(len(factors.axes))[:, None]
     wanted = inverse(starts)[:, None] @ axes
@@ -65,7 +65,7 @@ def _shifts(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """The shift of each factor that brings the next axis across it onto the wanted one."""
+    """Yield the shift of each factor that brings the next axis across it onto the wanted one."""
     k = np.arange(len(axes))
     v = wanted[..., :3, 2]
     cosine = v[k, :, :, axes]
@@ -85,7 +85,7 @@ def _turns(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """The turns of each factor that bring the next axis that it turns to where it is wanted."""
+    """Yield the turns of each factor that bring the next axis that it turns to the wanted one."""
     by_direction, turned = _turn(seen[..., :3, 2], wanted[..., :3, 2], axes)
     by_point, carried = _turn(seen[..., :3, 3], wanted[..., :3, 3], axes)
     turned &= behind
@@ -94,13 +94,13 @@ def _turns(
         joint = int(np.argmax(turned[factor]))
         yield factor, TURN, by_direction[factor, joint]
         yield factor, TURN, by_direction[factor, joint] + np.pi
-    # Axes that are all parallel to the factor's: it moves them about.
+    # All axes are parallel to the factor's, so that a turn changes only their positions.
     for factor in np.flatnonzero(carried.any(axis=1) & ~turned.any(axis=1)).tolist():
         yield factor, TURN, by_point[factor, int(np.argmax(carried[factor]))]
 
 
 def _turn(u: Numbers, v: Numbers, axes: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
-    """The turn ``(K, n, L)`` that takes ``u`` to ``v`` ``(K, n, L, 3)``, and where there is one."""
+    """Return the turns ``(K, n, L)`` from ``u`` to ``v`` ``(K, n, L, 3)``, and if they exist."""
     k = np.arange(len(axes))
     one, two = (axes + 1) % 3, (axes + 2) % 3
     u1, u2, v1, v2 = (w[k, :, :, across] for w in (u, v) for across in (one, two))

@@ -1,4 +1,4 @@
-"""Other values of one or two cells of a table that make its pose right.
+"""Repair the pose of a table by one or two cells.
 
 The pose is a product of factors, screws about x and z in turn (``factors``). If one factor alone is
 wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S that after it and T the true
@@ -36,10 +36,9 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 @dataclass(frozen=True, slots=True)
 class CellRepair:
-    """Other values ``(k, L)`` for k cells that make the pose right.
+    """Values ``(k, L)`` for k cells that make the pose right.
 
-    Whether such a value may stand in its cell (a constant, or the joint variable plus a constant)
-    is not examined here.
+    The values need not be valid in their cells (a constant, or the joint variable plus a constant).
     """
 
     cells: tuple[CellIndex, ...]
@@ -47,7 +46,7 @@ class CellRepair:
 
 
 def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
-    """The repairs of one factor: first those by one of its cells, then those by both."""
+    """Return the repairs of one factor: first those by one of its cells, then those by both."""
     needed = factors.inverse_before[:-1] @ pose @ factors.inverse_after[1:]
     sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
@@ -59,9 +58,9 @@ def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
 
 
 def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]:
-    """The repairs of one cell in each of two factors.
+    """Yield the repairs of one cell in each of two factors.
 
-    Most pairs of cells fail in the first sample; only the others are solved in all samples.
+    Most pairs of cells fail at the first sample; only the others are solved at all samples.
     """
     a, b = np.triu_indices(len(factors.axes), 1)
     kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(a), axis=1)
@@ -78,9 +77,9 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
 
 
 def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]) -> Numbers | None:
-    """What these cells, one or two, must be for the pose to be right: ``(k, L)``, or None.
+    """Return the values ``(k, L)`` of one or two cells that make the pose right, or None.
 
-    It gives the values of the CellRepair with these cells at other samples.
+    Use this for the values of a CellRepair at other samples.
     """
     positions = [factors.position(cell) for cell in cells]
     (a, kind_a), (b, kind_b) = min(positions), max(positions)
@@ -97,7 +96,7 @@ def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]
 
 
 def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
-    """Which shifts and turns ``(K, 2, L)`` are as written: ``(K, 2)``."""
+    """Return a mask ``(K, 2)`` of the shifts and turns ``(K, 2, L)`` that are as written."""
     error = sizes - written
     error[:, TURN] -= 2 * np.pi * np.round(error[:, TURN] / (2 * np.pi))
     return np.asarray(np.abs(error).max(axis=-1) < SAME_POSE)
@@ -106,9 +105,9 @@ def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
 def _solved(
     factors: Factors, pose: Matrices, pairs: Integers, samples: slice = slice(None)
 ) -> tuple[Numbers, NDArray[np.bool_]]:
-    """The x and y of each pair, ``(2, C, L)``, and whether they are a solution at all L samples.
+    """Return x and y of each pair, ``(2, C, L)``, and a mask of the pairs solved at all L samples.
 
-    Pairs ``(4, C)`` are the factors A and B, and of each whether its SHIFT or TURN is wrong.
+    Pairs ``(4, C)`` are the factors A and B, and for each its wrong cell, SHIFT or TURN.
     """
     a, b, kind_a, kind_b = pairs
     a_turns, b_turns = (kind_a == TURN)[:, None], (kind_b == TURN)[:, None]
@@ -133,7 +132,7 @@ def _solved(
 def _right_part(
     factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_], samples: slice
 ) -> Matrices:
-    """The factors with their right cell alone, the wrong one at 0: ``(C, L, 4, 4)``."""
+    """Return the factors with only their right cell, the wrong one at 0: ``(C, L, 4, 4)``."""
     sizes = factors.sizes[which, :, samples]
     shifts, turns = sizes[:, SHIFT], sizes[:, TURN]
     return screws(
@@ -146,9 +145,10 @@ def _right_part(
 def _turn_of_a(
     m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """The turn about A's axis that takes what B leaves unchanged from M to N: ``(C, L)``.
+    """Return the turn ``(C, L)`` about A's axis, from directions and points that B does not change.
 
-    For u → v about the axis a it is atan2(a·(u×v), u·v − (a·u)(a·v)); several are summed.
+    The turn about a from u (in M) to v (in N) is atan2(a·(u×v), u·v − (a·u)(a·v)); the arguments of
+    several pairs are summed.
     """
     c = np.arange(len(axis_a))
     unchanged = np.where(b_turns, 0.0, [[1.0, 1.0, 1.0, 0.0]])
@@ -166,10 +166,9 @@ def _turn_of_a(
 def _shift_of_a(
     m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """The shift along A's axis that takes the origin of M to that of N: ``(C, L)``.
+    """Return the shift along A's axis that takes the origin of M to that of N: ``(C, L)``.
 
-    Where B shifts too, least squares tell the two shares of the way; along parallel axes they
-    cannot be told.
+    If B also shifts, least squares separate the two shifts; along parallel axes this is impossible.
     """
     c = np.arange(len(axis_a))
     way = n[..., :3, 3] - m[..., :3, 3]

@@ -1,4 +1,4 @@
-"""Other values of one row of a table that make its pose right.
+"""Repair the pose of a table by one row.
 
 The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
 where P is the product before it, S the product after it and T the true pose. If A is a link
@@ -24,7 +24,7 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 def one_row_repairs(
     factors: Factors, pose: Matrices, wrong: Set[CellIndex] = frozenset()
 ) -> list[CellRepair]:
-    """The repairs of one row each: the cells of the row that have to be changed.
+    """Return the repairs of single rows: the cells that must be changed, and their values.
 
     The ``wrong`` cells are always among them.
     """

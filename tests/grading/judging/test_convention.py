@@ -1,4 +1,4 @@
-"""The convention that a table is read in, where the exercise leaves it to the student."""
+"""The convention in which a table is judged if the exercise allows both."""
 
 from collections.abc import Callable, Mapping
 
@@ -34,7 +34,7 @@ STANDARD = [
     ("a2", "0", "0", "theta2"),
     ("a3", "0", "0", "theta3"),
 ]
-# By hand: the columns a and alpha one row lower, and a fixed last row.
+# Converted by hand: the columns a and alpha are one row lower, and the last row is fixed.
 MODIFIED = [
     ("0", "0", "0", "theta1"),
     ("0", "90deg", "0", "theta2"),
@@ -63,7 +63,7 @@ def taken(report: PartReport) -> list[str]:
 
 
 @pytest.mark.parametrize(("rows", "name"), [(STANDARD, "standard"), (MODIFIED, "modified")])
-def test_the_one_that_fits_is_taken_and_named(
+def test_the_convention_that_fits_is_chosen_and_named(
     rows: list[tuple[str, ...]], name: str, arm: Exercise
 ) -> None:
     for answer in (table(rows), pasted(rows), {"rows": pasted(rows)}):
@@ -76,18 +76,18 @@ def test_the_one_that_fits_is_taken_and_named(
         assert taken(wrong) == [name]
 
 
-def test_on_a_tie_it_is_that_of_the_reference(arm: Exercise) -> None:
+def test_a_tie_is_judged_in_the_convention_of_the_reference(arm: Exercise) -> None:
     assert taken(graded(arm, table([("7", "7", "7", "7")] * 3))) == ["standard"]
 
 
-def test_the_one_that_is_named_is_kept(arm: Exercise) -> None:
+def test_a_named_convention_is_used(arm: Exercise) -> None:
     report = graded(arm, {**table(MODIFIED), "convention": "standard"})
     assert report.verdict is not Verdict.CORRECT
     assert taken(report) == []
     assert full_marks(graded(arm, {**table(MODIFIED), "convention": "modified"}))
 
 
-def test_the_links_of_a_script_name_one(arm: Exercise) -> None:
+def test_a_script_names_its_convention(arm: Exercise) -> None:
     links = [f"Link([0 {d} {a} {alpha.replace('90deg', 'pi/2')}])" for a, alpha, d, _ in STANDARD]
     report = graded(arm, f"SerialLink([{' '.join(links)}])")
     assert full_marks(report)
@@ -96,6 +96,6 @@ def test_the_links_of_a_script_name_one(arm: Exercise) -> None:
     assert not full_marks(graded(arm, modified))
 
 
-def test_a_part_with_a_convention_takes_none(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_part_with_a_fixed_convention_chooses_none(catalogue: Mapping[str, Exercise]) -> None:
     rows = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
     assert taken(graded(catalogue["planar-rr"], table(rows))) == []

@@ -1,4 +1,4 @@
-"""What a slip costs, worked out by hand on the tables of the textbooks."""
+"""The cost of slips in tables of textbooks, computed by hand."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,8 @@ from tests.grading.support.robots import EXACT, SCARA, STANFORD, Row
 from tests.grading.support.submitting import graded_table
 from tests.grading.support.worth import worth_of_rows
 
-# SCARA by hand: a1; a2 and the half turn; nothing; d4. Each row has a fifth besides.
+# Content cells of the SCARA, by hand: a1; a2 and the half turn; none; d4. Each row has a fifth
+# more.
 SCARA_WORTH = 1.2 + 2.2 + 0.2 + 1.2
 
 
@@ -26,7 +27,7 @@ def stanford(*changes: tuple[int, int, str]) -> list[Row]:
 
 
 def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exercise]) -> None:
-    """Every twist has the wrong sign: a quarter, where four wrong cells would cost 4 of 7.2."""
+    """Wrong signs of all twists cost a quarter; four separate wrong cells would cost 4 of 7.2."""
     turned = {"pi/2": "-pi/2", "-pi/2": "pi/2", "0": "0"}
     rows = [(a, turned[alpha], d, theta) for a, alpha, d, theta in EXACT.rows(STANFORD)]
     report = graded_table(catalogue[STANFORD.exercise], rows)
@@ -36,7 +37,7 @@ def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exerc
 
 
 def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> None:
-    """The rows of the arm in the modified convention, by moving a and α by a row."""
+    """The rows are those of the arm in the modified convention: a and α are moved by a row."""
     rows = EXACT.rows(STANFORD)
     ends = [("0", "0"), *((a, alpha) for a, alpha, _, _ in rows)]
     moved = [(*ends[i], d, theta) for i, (_, _, d, theta) in enumerate(rows)]
@@ -45,15 +46,17 @@ def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> N
     assert report.points == pytest.approx(6)
 
 
-def test_it_costs_no_more_than_its_cells_would(catalogue: Mapping[str, Exercise]) -> None:
-    """In the SCARA's table one cell alone has a twist: its slip costs a unit at most."""
+def test_a_slip_of_the_whole_table_costs_no_more_than_its_cells(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """The SCARA's table has only one twist, so that wrong twists cost at most one unit."""
     rows = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2"), *EXACT.rows(SCARA)[2:]]
     report = graded_table(catalogue[SCARA.exercise], rows)
     assert report.points == pytest.approx(8 * (1 - 1 / SCARA_WORTH), abs=1e-5)
 
 
-def test_numbers_of_one_s_own_dilute_nothing(catalogue: Mapping[str, Exercise]) -> None:
-    """Offsets that cancel along parallel axes are right, and worth nothing beside a slip."""
+def test_cancelling_offsets_do_not_make_a_slip_cheaper(catalogue: Mapping[str, Exercise]) -> None:
+    """Offsets that cancel along parallel axes are right, but do not make a slip cheaper."""
     rows = [("a1", "0", "0.4", "theta1"), ("a1", "pi", "-0.4", "theta2"), *EXACT.rows(SCARA)[2:]]
     report = graded_table(catalogue[SCARA.exercise], rows)
     assert report.points == pytest.approx(8 * (1 - 1 / SCARA_WORTH), abs=1e-5)
@@ -62,7 +65,7 @@ def test_numbers_of_one_s_own_dilute_nothing(catalogue: Mapping[str, Exercise]) 
 
 @pytest.mark.parametrize("extra", [("0", "0", "0", "0"), ("0.3", "0.5", "0.7", "0.9")])
 @pytest.mark.parametrize("place", [0, 2, 6])
-def test_a_row_too_many_never_helps(
+def test_an_extra_row_never_helps(
     extra: Row, place: int, catalogue: Mapping[str, Exercise]
 ) -> None:
     wrong = stanford((1, 1, "0"), (3, 1, "0"), (4, 1, "0"))
@@ -72,13 +75,13 @@ def test_a_row_too_many_never_helps(
     assert report.points <= without.points + 1e-6
 
 
-def test_nothing_is_partly_right_that_earns_nothing(catalogue: Mapping[str, Exercise]) -> None:
+def test_rows_that_earn_nothing_are_not_partly_right(catalogue: Mapping[str, Exercise]) -> None:
     rows = stanford(*((i, j, "0.123") for i in range(6) for j in (1, 2)))
     report = graded_table(catalogue[STANFORD.exercise], rows)
     for row in report.rows:
         assert (row.verdict is Verdict.PARTIAL) <= (row.points > 0)
 
 
-def test_the_worth_on_paper_is_that_of_the_design() -> None:
+def test_the_worth_computed_by_hand_is_right() -> None:
     assert sum(worth_of_rows(SCARA)) == pytest.approx(SCARA_WORTH)
     assert sum(worth_of_rows(STANFORD)) == pytest.approx(7.2)

@@ -1,4 +1,4 @@
-"""Rows that are graded under another number than they have in the answer."""
+"""The message on rows that are graded under another number than in the answer."""
 
 from collections.abc import Mapping
 
@@ -22,27 +22,27 @@ def told(exercise: Exercise, rows: list[Row]) -> str:
     return " ".join(each.message for each in report.feedback if each.code == "rows_matched")
 
 
-def test_a_row_too_few(scara: Exercise) -> None:
+def test_rows_after_a_missing_one_are_named(scara: Exercise) -> None:
     message = told(scara, [ROWS[0], *ROWS[2:]])
     assert "Your rows were compared in this way: row 2 with joint 3, row 3 with joint 4." in message
     assert "row 1" not in message
 
 
-def test_a_row_too_many(scara: Exercise) -> None:
+def test_rows_after_an_extra_one_are_named(scara: Exercise) -> None:
     message = told(scara, [ROWS[0], ("7", "1", "7", "7"), *ROWS[1:]])
     assert "row 3 with joint 2, row 4 with joint 3" in message
     assert "row 5 with joint 4" in message
 
 
 @pytest.mark.parametrize("rows", [ROWS, [*ROWS, ZERO], ROWS[:3], [ROWS[0], ROWS[2], *ROWS[2:]]])
-def test_nothing_is_told_of_rows_in_their_places(rows: list[Row], scara: Exercise) -> None:
+def test_rows_in_their_places_get_no_message(rows: list[Row], scara: Exercise) -> None:
     assert told(scara, rows) == ""
 
 
-def test_of_an_end_row_that_is_meant_as_such_nothing_is_told(
+def test_an_end_row_in_its_place_gets_no_message(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The proximal table of the planar arm has a row "e", which stands where it should."""
+    """The modified table of the planar arm has a row "e" in its expected place."""
     exercise = catalogue["planar-rrr"]
     reference = exercise.robot.tables[exercise.robot.convention]
     assert reference.labels[-1] == "e"

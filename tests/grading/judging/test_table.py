@@ -1,4 +1,4 @@
-"""Tables of another length or order than the robot's, and how far a cell may be off."""
+"""Tables of another length or order than the robot's; the tolerance of a cell."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,7 @@ NOTHING: Row = ("0", "0", "0", "0")
 
 
 def codes(report: PartReport) -> list[str]:
-    """The codes of the part's messages but for infos."""
+    """Return the codes of the part's messages, without infos."""
     return [each.code for each in report.feedback if each.severity is not Severity.INFO]
 
 
@@ -37,7 +37,7 @@ MISSING_ROWS = [(robot, i) for robot in ROBOTS for i in range(len(robot.rows))]
     MISSING_ROWS,
     ids=[f"{robot.exercise} {robot.labels[i]}" for robot, i in MISSING_ROWS],
 )
-def test_a_missing_row_costs_that_row_only(
+def test_a_missing_row_costs_only_that_row(
     robot: Robot, missing: int, given_frames: Mapping[str, Exercise]
 ) -> None:
     rows = EXACT.rows(robot)
@@ -55,7 +55,7 @@ def test_a_missing_row_costs_that_row_only(
 
 
 @pytest.mark.parametrize("place", range(7))
-def test_an_extra_row_is_left_out_and_costs_what_a_wrong_cell_costs(
+def test_an_extra_row_costs_as_much_as_a_wrong_cell(
     place: int, given_frames: Mapping[str, Exercise]
 ) -> None:
     rows = EXACT.rows(STANFORD)
@@ -106,14 +106,14 @@ def test_twelve_rows_are_read_and_thirteen_are_not(given_frames: Mapping[str, Ex
     assert "13" in thirteen.feedback[0].message
 
 
-def test_extra_rows_never_cost_more_than_there_is(given_frames: Mapping[str, Exercise]) -> None:
+def test_extra_rows_cost_at_most_all_points(given_frames: Mapping[str, Exercise]) -> None:
     report = graded_table(given_frames[PLANAR_RRR.exercise], [("1", "1", "1", "1")] * 12)
     assert report.points == 0
     assert report.verdict in (Verdict.INCORRECT, Verdict.PARTIAL)
 
 
 @pytest.mark.parametrize("i", range(5))
-def test_exchanged_rows_are_wrong_where_they_differ(
+def test_exchanged_rows_are_wrong_in_the_cells_that_differ(
     i: int, given_frames: Mapping[str, Exercise]
 ) -> None:
     rows = EXACT.rows(STANFORD)
@@ -131,8 +131,10 @@ def test_a_table_without_rows_is_missing(given_frames: Mapping[str, Exercise]) -
     assert report.gradable is False
 
 
-def test_missing_and_extra_at_once(given_frames: Mapping[str, Exercise]) -> None:
-    """As many rows as joints, so each is judged in its place."""
+def test_a_missing_and_an_extra_row_are_judged_in_place(
+    given_frames: Mapping[str, Exercise],
+) -> None:
+    """There are as many rows as joints, so that each row is judged in its place."""
     rows = [*EXACT.rows(STANFORD)[:5], ("1", "1", "1", "1")]
     report = graded_table(given_frames[STANFORD.exercise], rows)
     assert {label for label, _ in not_correct(report)} == {"6"}
@@ -148,7 +150,7 @@ def test_the_table_may_name_its_convention(
 
 
 @pytest.mark.parametrize("named", ["distel", 5, [], True, "\ud800"])
-def test_an_unknown_convention_is_told_and_left_aside(
+def test_an_unknown_convention_is_ignored_with_a_message(
     named: object, given_frames: Mapping[str, Exercise]
 ) -> None:
     answer = table(EXACT.rows(STANFORD)) | {"convention": named}
@@ -158,10 +160,10 @@ def test_an_unknown_convention_is_told_and_left_aside(
     assert found.feedback[0].severity is Severity.WARNING
 
 
-def test_an_offset_of_one_s_own_does_not_widen_the_tolerance(
+def test_a_large_offset_does_not_widen_the_tolerance(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Along parallel axes any offset may be written, but not to be lost in its own rounding."""
+    """Along parallel axes any offset is valid, but a huge one must not hide a wrong cell."""
     for first, second in (("1000.0", "-999.5"), ("5.0", "-4.996"), ("5000.0", "-5000.0 + a1")):
         rows = [["a1", "0", first, "theta1"], ["a2", "0", second, "theta2"]]
         report = graded_table(catalogue["planar-rr"], rows)

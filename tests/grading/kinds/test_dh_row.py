@@ -1,4 +1,4 @@
-"""The row of a transform, or that it has none."""
+"""The DH row of a transform, or "none"."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -62,7 +62,7 @@ def conditions(catalogue: Mapping[str, Exercise]) -> Exercise:
         ("third", {"a": "n/a", "alpha": "", "d": None, "theta": "n/a"}),
     ],
 )
-def test_what_is_right(part_id: str, answer: object, conditions: Exercise) -> None:
+def test_right_rows_get_full_marks(part_id: str, answer: object, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {part_id: answer}), part_id)
     assert full_marks(report), report
     assert [row.label for row in report.rows] == ["1"]
@@ -76,7 +76,7 @@ def test_what_is_right(part_id: str, answer: object, conditions: Exercise) -> No
         ("third", {"a": "l", "alpha": "phi", "d": "h", "theta": 0}, "dh_not_intersecting"),
     ],
 )
-def test_a_row_for_none_and_none_for_a_row(
+def test_a_row_instead_of_none_and_none_instead_of_a_row(
     part_id: str, answer: object, code: str, conditions: Exercise
 ) -> None:
     report = part(handed_in(conditions, {part_id: answer}), part_id)
@@ -96,7 +96,7 @@ def test_a_row_for_none_and_none_for_a_row(
         ({"d": "(2"}, {"d"}, {"unbalanced_bracket"}),
     ],
 )
-def test_a_wrong_cell_costs_itself(
+def test_a_wrong_cell_affects_only_itself(
     cells: Cells, blamed: set[str], codes: set[str], conditions: Exercise
 ) -> None:
     report = part(handed_in(conditions, {"fourth": FOURTH | cells}), "fourth")
@@ -109,7 +109,7 @@ def test_a_wrong_cell_costs_itself(
 @pytest.mark.parametrize(
     "answer", [[], 1, "", "no idea", {"none": "yes"}, {"rows": [FIRST, FIRST]}, {"rows": 3}, [1, 2]]
 )
-def test_another_shape_is_no_answer(answer: object, conditions: Exercise) -> None:
+def test_an_answer_of_another_shape_is_unreadable(answer: object, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"first": answer}), "first")
     assert report.points == 0
     assert report.verdict in (Verdict.UNREADABLE, Verdict.MISSING)
@@ -136,7 +136,7 @@ def test_none_with_a_row_contradicts_itself(
 
 
 @pytest.mark.parametrize("text", ["no", "-", "impossible", "3, 0, 2", "3 0 2", "3,0\n2,1"])
-def test_text_that_is_no_row_is_told_what_a_row_is(text: str, conditions: Exercise) -> None:
+def test_text_without_a_row_gets_a_message_on_rows(text: str, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"fourth": text}), "fourth")
     assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
     [message] = report.feedback
@@ -157,7 +157,7 @@ transform = [
 )
 
 
-def test_the_modified_convention(make_exercise: Make) -> None:
+def test_a_modified_row_is_right(make_exercise: Make) -> None:
     """Rot_x(−90°) Trans_x(l) Rot_z(φ) Trans_z(k), multiplied out by hand."""
     exercise = make_exercise(MODIFIED)
     row = {"a": "l", "alpha": "-pi/2", "d": "k", "theta": "phi"}
@@ -165,8 +165,8 @@ def test_the_modified_convention(make_exercise: Make) -> None:
     assert all_codes(graded(exercise, "none")) == {"dh_row_exists"}
 
 
-def test_the_row_of_the_other_convention(make_exercise: Make) -> None:
-    """A turn about z alone and a shift along x, which either convention could begin with."""
+def test_a_row_of_the_other_convention_is_named(make_exercise: Make) -> None:
+    """A turn about z and a shift along x are a row in both conventions."""
     exercise = make_exercise(
         one_part(
             "dh_row",
@@ -179,7 +179,7 @@ def test_the_row_of_the_other_convention(make_exercise: Make) -> None:
     assert all_codes(graded(exercise, inverse)) >= {"sign"}
 
 
-def test_the_place_of_what_cannot_be_read_in_a_row_by_names(conditions: Exercise) -> None:
+def test_an_unreadable_named_cell_has_its_span(conditions: Exercise) -> None:
     text = "a = 3, d = 2 + foo, theta = 90deg, alpha = 0"
     report = part(handed_in(conditions, {"fourth": text}), "fourth")
     assert not_correct(report) == {("1", "d"): Verdict.UNREADABLE}
@@ -188,7 +188,7 @@ def test_the_place_of_what_cannot_be_read_in_a_row_by_names(conditions: Exercise
     assert text[slice(*message.span)] == "foo"
 
 
-def test_what_is_not_named_is_missing(conditions: Exercise) -> None:
+def test_an_unnamed_cell_is_missing(conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"fourth": "a=3, theta=pi/2"}), "fourth")
     assert not_correct(report) == {
         ("1", "alpha"): Verdict.MISSING,
@@ -199,12 +199,12 @@ def test_what_is_not_named_is_missing(conditions: Exercise) -> None:
 @pytest.mark.parametrize(
     "text", ["a=3, a=2, d=0, theta=0", "b=3, d=2", "3 - 2 pi", "-", "x: 3, alpha: 0", "(3)(0)"]
 )
-def test_no_other_text_is_a_row(text: str, conditions: Exercise) -> None:
+def test_other_texts_are_not_rows(text: str, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"fourth": text}), "fourth")
     assert report.verdict is Verdict.UNREADABLE
 
 
-def test_a_text_about_no_joint_names_no_home_configuration(conditions: Exercise) -> None:
+def test_a_message_without_joints_does_not_mention_home(conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"fourth": "3, 0, 2, 0"}), "fourth")
     [message] = report.rows[0].cells[3].feedback
     assert message.code == "quarter_turn"

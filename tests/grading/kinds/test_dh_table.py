@@ -1,4 +1,4 @@
-"""Tables that were once judged wrongly, each found by trying to break the grader."""
+"""Tables that were once judged wrongly, found by attempts to break the grader."""
 
 from collections.abc import Mapping
 
@@ -56,7 +56,7 @@ BLAMED: dict[str, tuple[str, Rows, list[tuple[str, str]]]] = {
 
 
 @pytest.mark.parametrize(("exercise", "rows", "wrong"), BLAMED.values(), ids=list(BLAMED))
-def test_these_cells_are_wrong_and_no_others(
+def test_only_these_cells_are_wrong(
     exercise: str, rows: Rows, wrong: list[tuple[str, str]], catalogue: Mapping[str, Exercise]
 ) -> None:
     assert list(not_correct(graded_table(catalogue[exercise], rows))) == wrong
@@ -65,14 +65,14 @@ def test_these_cells_are_wrong_and_no_others(
 def test_a_millimetre_beside_a_thousand_kilometres_is_wrong(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """In which of the two rows cannot be told: only the sum of the offsets counts."""
+    """The wrong row of the two is unknown, because only the sum of the offsets counts."""
     rows = [("a1", "0", "1e6", "theta1"), ("a2", "0", "-1e6 + 0.0009", "theta2")]
     wrong = list(not_correct(graded_table(catalogue["planar-rr"], rows)))
     assert wrong in ([("1", "d")], [("2", "d")])
 
 
-def test_an_unread_cell_reddens_no_other(catalogue: Mapping[str, Exercise]) -> None:
-    """Row 3 may hold d3 + 0.5, so that nothing is wrong with row 4."""
+def test_an_unread_cell_makes_no_other_wrong(catalogue: Mapping[str, Exercise]) -> None:
+    """The unread cell of row 3 may be d3 + 0.5, so that row 4 is not wrong."""
     rows = [
         ("a1", "0", "0", "theta1"),
         ("a2", "pi", "0", "theta2"),
@@ -92,18 +92,18 @@ def test_a_missing_row_in_the_middle_is_found_by_the_variables(
     rows = [("0", "0", "0", "q1"), ("l2", "0", "0", "q3"), ("l3", "0", "0", "0")]
     report = graded_table(catalogue["planar-rrr"], rows)
     assert codes(report) == ["missing_row", "rows_matched"]
-    # Rows 2, 3 and e have a length that one has to know; each row is worth a fifth besides.
+    # Rows 2, 3 and e have a length as a content cell; each row is worth a fifth more.
     assert report.points == pytest.approx(report.max_points * 2.6 / 3.8, abs=1e-5)
 
 
-def test_of_an_axis_with_no_other_offset_no_sum_is_told(catalogue: Mapping[str, Exercise]) -> None:
+def test_an_axis_with_one_offset_gets_no_message_on_sums(catalogue: Mapping[str, Exercise]) -> None:
     rows = [*EXACT.rows(STANFORD)[:5], ("0", "0", "0", "theta6")]
     report = graded_table(catalogue["stanford-arm"], rows)
     [message] = [m.message for cell in report.rows[5].cells for m in cell.feedback]
     assert "sum" not in message
 
 
-def test_frames_that_lead_nowhere_are_not_called_a_valid_choice(
+def test_frames_that_miss_the_tool_are_not_a_valid_choice(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     rows = [
@@ -115,7 +115,7 @@ def test_frames_that_lead_nowhere_are_not_called_a_valid_choice(
     assert codes(graded_table(catalogue["rrrp-proximal"], rows)) == ["tool_not_reached"]
 
 
-# The Stanford arm with the signs of all α turned.
+# The Stanford arm with the wrong sign of every α.
 SIGNS_TURNED = [
     ("0", "90deg", "0", "theta1"),
     ("0", "-90deg", "d2", "theta2"),
@@ -126,8 +126,8 @@ SIGNS_TURNED = [
 ]
 
 
-def test_a_slip_of_the_whole_table_and_its_cells_agree(catalogue: Mapping[str, Exercise]) -> None:
-    """Two half turns of θ would mend the table as well; that is not what was meant."""
+def test_the_cells_agree_with_a_slip_of_the_whole_table(catalogue: Mapping[str, Exercise]) -> None:
+    """Two half turns of θ would also repair the table, but are not the slip."""
     report = graded_table(catalogue["stanford-arm"], SIGNS_TURNED)
     assert codes(report) == ["column_sign"]
     assert set(not_correct(report)) == {(row, "alpha") for row in "1245"}
@@ -140,7 +140,7 @@ def test_a_slip_of_the_whole_table_and_its_cells_agree(catalogue: Mapping[str, E
     }
 
 
-def test_two_half_turns_are_not_taken_for_a_slip_of_the_whole_table(
+def test_two_half_turns_are_not_a_slip_of_the_whole_table(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     rows = [list(row) for row in EXACT.rows(STANFORD)]
@@ -152,7 +152,7 @@ def test_two_half_turns_are_not_taken_for_a_slip_of_the_whole_table(
     assert told == [("1", "half_turn"), ("6", "half_turn")]
 
 
-def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
+def test_the_number_of_repaired_cells_is_bounded(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     rows = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(7)]
@@ -162,8 +162,8 @@ def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
     assert helped == [True] * MAX_REPAIRS + [False] * (28 - MAX_REPAIRS)
 
 
-def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Exercise]) -> None:
-    """Their rows are made anew each time, and must not be told apart by their values."""
+def test_rounded_angles_and_a_fixed_row_raise_no_error(catalogue: Mapping[str, Exercise]) -> None:
+    """The rows are new objects each time, and comparing them must not compare arrays."""
     rows = [
         ("0", "0", "l1", "q1"),
         ("l2", "3.14", "0", "-q2"),
@@ -174,7 +174,7 @@ def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Ex
     assert not_correct(graded_table(catalogue["rrrp-proximal"], rows))
 
 
-def test_a_value_under_an_unknown_name_is_not_said_to_be_missing(
+def test_a_value_under_an_unknown_name_is_not_missing(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     answer = table(EXACT.rows(STANFORD))

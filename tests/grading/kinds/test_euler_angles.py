@@ -1,4 +1,4 @@
-"""Three angles: every triple of the rotation is right; where it is wrong, few are blamed."""
+"""Three angles: every triple of the rotation is right; a slip costs as few angles as possible."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -54,7 +54,7 @@ def test_every_triple_of_the_rotation_is_right(name: str, spatial: Exercise) -> 
     assert [row.label for row in report.rows] == ["1", "2", "3"]
 
 
-def test_degrees(spatial: Exercise) -> None:
+def test_angles_may_be_in_degrees(spatial: Exercise) -> None:
     assert full_marks(graded(spatial, ["theta1", "-theta2-theta3", 90], "degrees"))
 
 
@@ -78,7 +78,7 @@ def test_the_erratum_in_the_shipped_exercise(catalogue: Mapping[str, Exercise]) 
     assert all_codes(part(printed, "rpy")) == {"sign"}
 
 
-def test_a_hint_does_not_give_the_correction_away(spatial: Exercise) -> None:
+def test_a_hint_does_not_contain_the_correction(spatial: Exercise) -> None:
     answers = {"it": ["theta1", "theta2 + theta3", "90deg"]}
     report = part(handed_in(spatial, answers, feedback=FeedbackLevel.HINTS), "it")
     [message] = report.rows[1].cells[0].feedback
@@ -103,22 +103,22 @@ WRONG: dict[str, tuple[list[Any], set[str], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_slip_costs_the_angles_that_it_spoils(name: str, spatial: Exercise) -> None:
+def test_a_slip_costs_only_the_angles_that_it_changes(name: str, spatial: Exercise) -> None:
     answer, blamed, codes = WRONG[name]
     report = graded(spatial, answer)
     assert {row for row, _ in not_correct(report)} == blamed
     assert report.points == pytest.approx(6 - 2 * len(blamed))
-    # The reader's note on the order of the arguments would say the same again.
+    # There is no note on the order of the arguments, because the message already mentions it.
     assert all_codes(report) == codes
 
 
-def test_an_unreadable_angle_costs_itself_only(spatial: Exercise) -> None:
+def test_an_unreadable_angle_affects_only_itself(spatial: Exercise) -> None:
     report = graded(spatial, ["theta1", "(theta2", ""])
     assert not_correct(report) == {("2", "1"): Verdict.UNREADABLE, ("3", "1"): Verdict.MISSING}
 
 
 @pytest.mark.parametrize("answer", [[], ["0"] * 4, {"a": 1}, 5, True, [["0", "0"], ["0", "0"]]])
-def test_another_shape_cannot_be_read(answer: object, spatial: Exercise) -> None:
+def test_an_answer_of_another_shape_is_unreadable(answer: object, spatial: Exercise) -> None:
     report = graded(spatial, answer)
     assert report.points == 0
     assert all_codes(report) <= {"wrong_shape", "wrong_type", "missing"}
@@ -132,17 +132,19 @@ SINGULAR = one_part("euler_angles", 'sequence = "ZYZ"\nexpected = ["phi", "0", "
     "answer",
     [["phi", "0", "psi"], ["psi", "0", "phi"], ["phi + psi", "0", "0"], [1, 0, "phi+psi-1"]],
 )
-def test_in_a_singular_configuration_the_sum_counts(answer: object, make_exercise: Make) -> None:
+def test_only_the_sum_counts_in_a_singular_configuration(
+    answer: object, make_exercise: Make
+) -> None:
     report = graded(make_exercise(SINGULAR), answer)
     assert full_marks(report)
     assert all_codes(report) == {"singular_orientation"}
 
 
 @pytest.mark.parametrize("answer", [["phi", "0", "0"], ["phi", "0", "-psi"], ["phi", "0.1", "psi"]])
-def test_in_a_singular_configuration_not_everything_is_right(
+def test_a_wrong_sum_in_a_singular_configuration_is_wrong(
     answer: object, make_exercise: Make
 ) -> None:
-    """One has to know the sum only: what is wrong there leaves nothing."""
+    """Only the sum of the angles needs knowledge: if it is wrong, the answer earns nothing."""
     report = graded(make_exercise(SINGULAR), answer)
     assert (report.verdict, report.points) == (Verdict.INCORRECT, 0)
     assert len(not_correct(report)) == 1
@@ -150,7 +152,7 @@ def test_in_a_singular_configuration_not_everything_is_right(
 
 @pytest.mark.parametrize("axes", ["moving", "fixed"])
 @pytest.mark.parametrize("sequence", SEQUENCES)
-def test_every_sequence(sequence: str, axes: str, make_exercise: Make) -> None:
+def test_every_sequence_of_axes_is_graded(sequence: str, axes: str, make_exercise: Make) -> None:
     fields = f'sequence = "{sequence}"\naxes = "{axes}"\nexpected = ["phi", "psi + 0.3", "k - 0.5"]'
     exercise = make_exercise(one_part("euler_angles", fields))
     middle = "-psi - 0.3" if sequence in PROPER else "pi - psi - 0.3"
@@ -160,7 +162,7 @@ def test_every_sequence(sequence: str, axes: str, make_exercise: Make) -> None:
 
 
 def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
-    """The same three turns about fixed axes, for moving ones."""
+    """The answer describes the same rotation by angles of another sequence."""
     fields = 'sequence = "XYZ"\naxes = "moving"\nexpected = ["0.3", "0.5", "0.7"]'
     exercise = make_exercise(one_part("euler_angles", fields))
     turns = Rotation.from_euler("XYZ", [0.3, 0.5, 0.7])
@@ -184,7 +186,7 @@ def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
 def test_the_nearest_triple_keeps_two_of_three_angles(
     sequence: str, fixed: bool, angles: tuple[float, float, float], slipped: int
 ) -> None:
-    """However the rotation's own angles come out, two right angles are found to be right."""
+    """Two right angles are right, whichever triple the rotation itself gives."""
     name = sequence.lower() if fixed else sequence
     rotation = Rotation.from_euler(name, angles).as_matrix()[None]
     written = np.array(angles)[:, None].copy()

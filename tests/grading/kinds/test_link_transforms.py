@@ -1,4 +1,4 @@
-"""Link transforms, in the frames of the reference and in those of the student's table."""
+"""Link transforms in the frames of the reference, and in those of the student's table."""
 
 from collections.abc import Callable
 
@@ -40,8 +40,8 @@ def test_the_printed_link_transforms_are_right(scara: Exercise) -> None:
     ]
 
 
-def test_they_are_graded_in_the_frames_that_the_student_s_table_chose(scara: Exercise) -> None:
-    """z2 is left pointing up and turned over one row later: α2 = 0, α3 = π, d3 reversed."""
+def test_links_are_graded_in_the_frames_of_the_table(scara: Exercise) -> None:
+    """z2 points up and is reversed one row later: α2 = 0, α3 = π, d3 reversed."""
     own = [TABLE[0], ("a2", "0", "0", "q2"), ("0", "pi", "-d3", "0"), TABLE[3]]
     own_links = [
         A1,
@@ -61,16 +61,16 @@ def test_without_a_table_a_wrong_matrix_is_named(scara: Exercise) -> None:
     assert wrong_cells(part) == {("A2.1", "4"), ("A2.2", "4")}
 
 
-def test_a_matrix_left_off_is_missing_and_the_others_are_graded(scara: Exercise) -> None:
+def test_an_omitted_matrix_is_missing_and_others_are_graded(scara: Exercise) -> None:
     part = graded(scara, table=table(TABLE), links=LINKS[:3])["links"]
     assert {row for row, _ in wrong_cells(part)} == {"A4.1", "A4.2", "A4.3", "A4.4"}
-    # A1 has 2 entries that differ from those of the joint's motion, A2 5, A3 none and A4 1.
+    # The entries that differ from the joint's motion: 2 of A1, 5 of A2, 0 of A3 and 1 of A4.
     worth = [2.2, 5.2, 0.2, 1.2]
     assert part.points == pytest.approx(8 * sum(worth[:3]) / sum(worth), abs=1e-5)
 
 
 @pytest.mark.parametrize("answer", [5, "x", {}, [5], [[["1"]] * 9], [IDENTITY] * 5, [[]]])
-def test_what_is_no_list_of_matrices_is_unreadable(scara: Exercise, answer: object) -> None:
+def test_an_answer_without_matrices_is_unreadable(scara: Exercise, answer: object) -> None:
     part = graded(scara, links=answer)["links"]
     assert part.verdict is Verdict.UNREADABLE
     assert part.points == 0

@@ -13,18 +13,18 @@ from tests.grading.support.submitting import full_marks, handed_in, not_correct,
 MATRIX = one_part("matrix", 'expected = [["1", "l", "phi"], ["k^2", "sin(phi)", "0"]]')
 
 
-def test_a_matrix_of_any_size(make_exercise: Make) -> None:
+def test_a_matrix_of_any_size_is_graded(make_exercise: Make) -> None:
     exercise = make_exercise(MATRIX)
     assert full_marks(graded(exercise, [[1, "l", "phi"], ["k*k", "sin phi", 0]]))
     assert full_marks(graded(exercise, "[1 l phi; k^2 sin(phi) 0]"))
     report = graded(exercise, [[1, "l", "-phi"], ["k", "sin phi", 0]])
     assert set(not_correct(report)) == {("1", "3"), ("2", "1")}
-    # Five entries are other than 0; two of them are wrong.
+    # Five entries are not 0; two of them are wrong.
     assert report.points == pytest.approx(6 * 3 / 5)
 
 
 @pytest.mark.parametrize("answer", [[[1, 2, 3]] * 3, [], 4, [["1"]] * 2])
-def test_a_matrix_of_another_size(answer: object, make_exercise: Make) -> None:
+def test_a_matrix_of_the_wrong_size_is_unreadable(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(MATRIX), answer)
     assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
 

@@ -1,4 +1,4 @@
-"""Matrices entry by entry: shapes, unreadable entries, what is said to a wrong one."""
+"""Matrices entry by entry: shapes, unreadable entries, messages on wrong ones."""
 
 from collections.abc import Mapping
 
@@ -54,14 +54,14 @@ PLACES = [(i, j) for i in range(4) for j in range(4)]
         (True, Verdict.UNREADABLE, "wrong_type"),
     ],
 )
-def test_a_bad_entry_costs_itself_only(
+def test_a_bad_entry_affects_only_itself(
     i: int, j: int, text: object, verdict: Verdict, code: str, arm: Exercise
 ) -> None:
     report = graded_pose(arm, with_entry(i, j, text))
     place = (str(i + 1), str(j + 1))
     assert not_correct(report) == {place: verdict}
-    # Four entries of the rotation and two of the position differ from those of the identity.
-    # A wrong entry costs a unit; one that was not read costs that only where it is worth it.
+    # Four entries of the rotation and two of the position differ from the identity. A wrong entry
+    # costs a unit; an unread one costs a unit only if it is a content cell.
     known = POSE[i][j] not in ("0", "1")
     units = 1.0 if known or verdict is Verdict.INCORRECT else 0.2
     cost = units / 2 / (2 if j == 3 else 4)
@@ -72,7 +72,7 @@ def test_a_bad_entry_costs_itself_only(
     elif code == "value" and known:
         code = "independent_of"
     elif code == "quantity" and POSE[i][j] == "0":
-        # A zero is no more a length than a number, but nothing may change it.
+        # An expected 0 fits every quantity: the message is on the joint variable.
         code = "joint_variable_extra"
     assert (code, (Place(*place),)) in [(m.code, places) for m, places, _ in messages_of(report)]
 
@@ -95,7 +95,7 @@ SLIPS = [
 
 
 @pytest.mark.parametrize(("i", "j", "text"), SLIPS)
-def test_a_slip_in_an_entry(i: int, j: int, text: str, arm: Exercise) -> None:
+def test_a_slip_in_an_entry_is_named(i: int, j: int, text: str, arm: Exercise) -> None:
     report = graded_pose(arm, with_entry(i, j, text))
     assert not_correct(report) == {(str(i + 1), str(j + 1)): Verdict.INCORRECT}
     codes_said = {m.code for m in (*report.rows[i].cells[j].feedback, *report.feedback)}
@@ -111,16 +111,16 @@ def test_a_whole_matrix_of_unreadable_entries_is_not_gradable(arm: Exercise) -> 
 
 
 def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
-    """A 3×4 matrix lacks the bottom row, and is told so; the rest is graded."""
+    """The missing bottom row of a 3×4 matrix is reported; the other rows are graded."""
     report = graded_pose(arm, POSE[:3])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
-    # Nothing in the row is worth a unit: in either half it costs a fifth.
+    # The row has no content cell, so that it costs a fifth in each half.
     assert report.points == pytest.approx(report.max_points * (3.8 / 4 + 1.8 / 2) / 2)
     assert report.verdict is Verdict.PARTIAL
 
 
 @pytest.mark.parametrize("entries", [["0", "0", "0"], ["0"] * 5, [], "0 0 0 1", 1, {"1": "0"}])
-def test_a_row_of_another_length_costs_that_row(entries: object, arm: Exercise) -> None:
+def test_a_row_of_the_wrong_length_affects_only_itself(entries: object, arm: Exercise) -> None:
     report = graded_pose(arm, [*POSE[:3], entries])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.UNREADABLE]
     assert codes_at(report, "4", "1") == ["row_length"]
@@ -147,7 +147,7 @@ def test_a_counterexample_shows_the_students_own_number(arm: Exercise) -> None:
     assert feedback.values["yours"] == pytest.approx(2 * float(feedback.values["l1"]), abs=2e-3)
 
 
-def test_where_an_entry_has_no_value_the_joint_values_are_told(arm: Exercise) -> None:
+def test_an_undefined_entry_is_shown_with_its_joint_values(arm: Exercise) -> None:
     report = graded_pose(arm, with_entry(0, 0, "sqrt(q1) + l2"))
     [feedback] = cell(report, "1", "1").feedback
     assert feedback.code == "undefined"

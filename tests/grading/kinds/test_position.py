@@ -22,7 +22,7 @@ COORDINATES_XY = one_part("position", 'coordinates = "xy"', SPATIAL_RRR)
         "[c1*(L2*c23+L1*c2+R), s1*(L2*c23+L1*c2+R), L2*s23+L1*s2]",
     ],
 )
-def test_a_position_in_each_shape(answer: object, make_exercise: Make) -> None:
+def test_a_position_in_each_shape_gets_full_marks(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), answer)
     assert full_marks(report), report
     assert [(row.label, [cell.label for cell in row.cells]) for row in report.rows] == [
@@ -43,7 +43,7 @@ def test_a_position_in_each_shape(answer: object, make_exercise: Make) -> None:
         ([SPATIAL[0], SPATIAL[1], "1/0"], {"3"}, {"undefined"}),
     ],
 )
-def test_a_wrong_position(
+def test_a_slip_in_a_position_is_named(
     answer: list[str], blamed: set[str], codes: set[str], make_exercise: Make
 ) -> None:
     report = graded(make_exercise(POSITION), answer)
@@ -52,22 +52,20 @@ def test_a_wrong_position(
 
 
 @pytest.mark.parametrize("answer", [[], ["0"] * 4, [["0", "0", "0"]] * 2, {"u": 1}, 1, None])
-def test_a_position_of_another_shape(answer: object, make_exercise: Make) -> None:
+def test_a_position_of_another_shape_is_unreadable(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), answer)
     assert report.points == 0
     assert report.verdict in (Verdict.UNREADABLE, Verdict.MISSING)
 
 
-def test_a_third_zero_of_a_planar_position_is_left_aside(make_exercise: Make) -> None:
+def test_a_third_zero_of_a_planar_position_is_ignored(make_exercise: Make) -> None:
     report = graded(make_exercise(COORDINATES_XY), [*SPATIAL[:2], 0])
     assert full_marks(report)
     assert all_codes(report) == {"zero_left_aside"}
 
 
 @pytest.mark.parametrize("answer", [[*SPATIAL, 1], f"[{'; '.join(SPATIAL)}; 1]"])
-def test_the_one_of_homogeneous_coordinates_is_left_aside(
-    answer: object, make_exercise: Make
-) -> None:
+def test_the_one_of_homogeneous_coordinates_is_ignored(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), answer)
     assert full_marks(report)
     assert all_codes(report) == {"homogeneous_one"}
@@ -84,7 +82,7 @@ def test_the_one_of_homogeneous_coordinates_is_left_aside(
         ([0, 0], {"wrong_shape"}),
     ],
 )
-def test_what_may_stand_behind_two_coordinates(
+def test_these_values_may_follow_two_coordinates(
     tail: list[object], codes: set[str], make_exercise: Make
 ) -> None:
     report = graded(make_exercise(COORDINATES_XY), [*SPATIAL[:2], *tail])
@@ -93,13 +91,13 @@ def test_what_may_stand_behind_two_coordinates(
 
 
 @pytest.mark.parametrize("coordinates", ["xz", "yz"])
-def test_which_coordinate_a_zero_is_may_not_be_plain(coordinates: str, make_exercise: Make) -> None:
-    """[x, y, 0], handed in for x and z, must not be read with y for z."""
+def test_an_ambiguous_zero_is_refused(coordinates: str, make_exercise: Make) -> None:
+    """[x, y, 0] as an answer for x and z must not be read with y as z."""
     text = one_part("position", f'coordinates = "{coordinates}"', SPATIAL_RRR)
     assert all_codes(graded(make_exercise(text), ["0", "0", 0])) == {"wrong_shape"}
 
 
-def test_three_values_with_a_zero_behind_them_are_refused(make_exercise: Make) -> None:
+def test_a_zero_after_three_values_is_refused(make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), [*SPATIAL, 0])
     assert all_codes(report) == {"wrong_shape"}
     [message] = report.feedback
@@ -112,13 +110,13 @@ def test_two_coordinates_leave_the_third_missing(make_exercise: Make) -> None:
 
 
 @pytest.mark.parametrize("coordinates", ["xy", "xz", "yz"])
-def test_some_coordinates_only(coordinates: str, make_exercise: Make) -> None:
+def test_a_part_may_ask_for_some_coordinates(coordinates: str, make_exercise: Make) -> None:
     text = one_part("position", f'coordinates = "{coordinates}"', SPATIAL_RRR)
     answer = [SPATIAL["xyz".index(letter)] for letter in coordinates]
     assert full_marks(graded(make_exercise(text), answer))
 
 
-def test_a_line_that_cannot_be_read_is_shown_where_it_stands(make_exercise: Make) -> None:
+def test_an_unreadable_line_has_its_span(make_exercise: Make) -> None:
     text = "c1*(L2*c23+L1*c2+R)\n\n(s1\nL2*s23+L1*s2"
     report = graded(make_exercise(POSITION), text)
     assert not_correct(report) == {("2", "1"): Verdict.UNREADABLE}

@@ -1,4 +1,4 @@
-"""Rotation matrices: of turns about fixed and moving axes, of a robot, and of their own entries."""
+"""Rotation matrices of turns about fixed and moving axes, and of robots."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,7 @@ phi, theta, psi = sp.symbols("phi theta psi")
 
 
 def turn(axis: str, angle: Any) -> Any:
-    """The fundamental rotation as *Direct Kinematics (Part 2)*, §1.4, prints that about x."""
+    """Return the fundamental rotation, in the form of *Direct Kinematics (Part 2)*, §1.4."""
     c, s = sp.cos(angle), sp.sin(angle)
     return {
         "x": sp.Matrix([[1, 0, 0], [0, c, -s], [0, s, c]]),
@@ -33,7 +33,7 @@ COMPOSITES = {"fixed": Y * X * Z, "mobile": Z * X * Y, "mixed": Y * Z * X}
 
 
 @pytest.mark.parametrize("axis", "xyz")
-def test_the_fundamental_rotations(axis: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_the_fundamental_rotations_are_right(axis: str, catalogue: Mapping[str, Exercise]) -> None:
     part_id = f"about-{axis}"
     answers = {part_id: entries(turn(axis, phi))}
     assert full_marks(part(handed_in(catalogue["fundamental-rotations"], answers), part_id))
@@ -45,7 +45,7 @@ def test_the_fundamental_rotations(axis: str, catalogue: Mapping[str, Exercise])
 
 
 @pytest.mark.parametrize("part_id", COMPOSITES)
-def test_the_composite_rotations(part_id: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_the_composite_rotations_are_right(part_id: str, catalogue: Mapping[str, Exercise]) -> None:
     answers = {part_id: entries(COMPOSITES[part_id])}
     assert full_marks(part(handed_in(catalogue["composite-rotations"], answers), part_id))
 
@@ -62,7 +62,7 @@ def test_the_composite_rotations(part_id: str, catalogue: Mapping[str, Exercise]
         ("mobile", Z * X, "missing_turn", "Turn 3"),
     ],
 )
-def test_what_is_said_of_another_composite(
+def test_a_wrong_composition_is_named(
     part_id: str, matrix: Any, code: str, said: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     answers = {part_id: entries(matrix)}
@@ -72,7 +72,7 @@ def test_what_is_said_of_another_composite(
     assert all_codes(report) == {code}
 
 
-def test_a_slip_in_one_entry_is_told_there(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_slip_in_one_entry_is_named_there(catalogue: Mapping[str, Exercise]) -> None:
     matrix = entries(COMPOSITES["fixed"])
     matrix[2][0] = f"-({matrix[2][0]})"
     report = part(handed_in(catalogue["composite-rotations"], {"fixed": matrix}), "fixed")
@@ -84,14 +84,14 @@ def test_a_slip_in_one_entry_is_told_there(catalogue: Mapping[str, Exercise]) ->
 SPATIAL = [["c1 c23", "-c1 s23", "s1"], ["s1 c23", "-s1 s23", "-c1"], ["s23", "c23", "0"]]
 
 
-def test_the_rotation_of_a_robot(make_exercise: Make) -> None:
+def test_the_rotation_of_a_robot_is_right(make_exercise: Make) -> None:
     exercise = make_exercise(one_part("rotation", "", SPATIAL_RRR))
     assert full_marks(graded(exercise, SPATIAL))
     transposed = [list(column) for column in zip(*SPATIAL, strict=True)]
     assert all_codes(graded(exercise, transposed)) == {"transposed_rotation"}
 
 
-def test_the_rotation_between_two_frames_of_a_robot(make_exercise: Make) -> None:
+def test_the_rotation_between_two_frames_is_right(make_exercise: Make) -> None:
     exercise = make_exercise(one_part("rotation", "from = 1\nto = 2", SPATIAL_RRR))
     assert full_marks(graded(exercise, [["c2", "-s2", 0], ["s2", "c2", 0], [0, 0, 1]]))
     back = make_exercise(one_part("rotation", 'from = "tool"\nto = "base"', SPATIAL_RRR))
@@ -100,7 +100,7 @@ def test_the_rotation_between_two_frames_of_a_robot(make_exercise: Make) -> None
 
 
 @pytest.mark.parametrize("answer", [[], "", [[1] * 3] * 4, {"rows": []}, 7])
-def test_another_shape_cannot_be_read(answer: object, make_exercise: Make) -> None:
+def test_an_answer_of_another_shape_is_unreadable(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(one_part("rotation", "", SPATIAL_RRR)), answer)
     assert report.points == 0
     assert report.verdict in (Verdict.UNREADABLE, Verdict.MISSING)

@@ -1,4 +1,4 @@
-"""Screw axes: space and body, sliding joints, signs, and what a row is worth."""
+"""Screw axes: space and body frame, prismatic joints, signs, and the worth of a row."""
 
 import json
 from collections.abc import Mapping
@@ -34,14 +34,14 @@ def changed(screws: Screws, i: int, row: list[Any]) -> Screws:
         ("space-screws", "[0 0 1 0 0 0; 0 0 0 1 0 0; 0 0 1 0 -L1 0]"),
     ],
 )
-def test_the_lectures_axes(part_id: str, screws: object, rpr: Exercise) -> None:
+def test_the_axes_of_the_lecture_are_right(part_id: str, screws: object, rpr: Exercise) -> None:
     report = part(handed_in(rpr, {part_id: screws}), part_id)
     assert full_marks(report), report
     assert [row.label for row in report.rows] == ["1", "2", "3"]
     assert {cell.label for row in report.rows for cell in row.cells} == set("123456")
 
 
-# robots.md, "Planar RPR": what is changed, in which row, and what is said of it.
+# Slips in the planar RPR arm: the changed axes, the changed row, and the message.
 SLIPS: dict[str, tuple[str, int, list[Any], str]] = {
     "v = ω × q": ("space-screws", 2, [0, 0, 1, 0, "L1", 0], "moment_sign"),
     "body for space": ("space-screws", 2, BODY[2], "body_for_space"),
@@ -77,29 +77,29 @@ def test_a_slip_is_named_in_its_row(name: str, rpr: Exercise) -> None:
     assert report.points < 6
 
 
-def test_another_slip_is_told_number_by_number(rpr: Exercise) -> None:
+def test_an_unexplained_slip_is_reported_number_by_number(rpr: Exercise) -> None:
     screws = changed(SPACE, 2, [0, 0, 0.5, 0, "-L1", 0])
     report = part(handed_in(rpr, {"space-screws": screws}), "space-screws")
     assert not_correct(report) == {("3", "3"): Verdict.INCORRECT}
     assert report.rows[2].cells[2].feedback
 
 
-def test_a_wrong_number_costs_itself(rpr: Exercise) -> None:
+def test_a_wrong_number_costs_a_unit(rpr: Exercise) -> None:
     screws = changed(SPACE, 2, [0, 0, 1, 0, "-L1 - L2", 0])
     report = part(handed_in(rpr, {"space-screws": screws}), "space-screws")
     assert not_correct(report) == {("3", "5"): Verdict.INCORRECT}
-    # v2 and ω are what one has to know in row 3, ...
+    # The content cells of row 3 are v2 and ω, ...
     assert report.points == pytest.approx(6 * (1 - 1 / 2.6), abs=1e-5)
 
 
 def test_zeros_earn_little(rpr: Exercise) -> None:
-    """Fifteen of the eighteen numbers are 0, and two of the others are those of any joint."""
+    """Fifteen of the eighteen numbers are 0, and two of the others are the same for all joints."""
     report = part(handed_in(rpr, {"space-screws": [[0] * 6] * 3}), "space-screws")
     assert len(not_correct(report)) == 4
     assert report.points <= report.max_points / 6
 
 
-def test_a_missing_joint_and_a_short_row(rpr: Exercise) -> None:
+def test_a_missing_joint_and_a_short_row_affect_only_themselves(rpr: Exercise) -> None:
     answer = [SPACE[0], [0, 0, 0]]
     report = part(handed_in(rpr, {"space-screws": answer}), "space-screws")
     verdicts = [row.verdict for row in report.rows]
@@ -107,7 +107,7 @@ def test_a_missing_joint_and_a_short_row(rpr: Exercise) -> None:
 
 
 @pytest.mark.parametrize("answer", [[], [[0] * 6] * 4, {"rows": []}, 1, [0] * 6])
-def test_another_shape_cannot_be_read(answer: object, rpr: Exercise) -> None:
+def test_an_answer_of_another_shape_is_unreadable(answer: object, rpr: Exercise) -> None:
     report = part(handed_in(rpr, {"space-screws": answer}), "space-screws")
     assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
     assert all_codes(report) == {"wrong_shape"}
@@ -119,7 +119,7 @@ FREE = one_part(
 )
 
 
-def test_where_directions_are_free_an_axis_may_be_reversed(make_exercise: Make) -> None:
+def test_an_axis_may_be_reversed_if_directions_are_free(make_exercise: Make) -> None:
     exercise = make_exercise(FREE)
     report = graded(exercise, [[0, 0, -1, 0, "l", 0]])
     assert full_marks(report)
@@ -129,7 +129,7 @@ def test_where_directions_are_free_an_axis_may_be_reversed(make_exercise: Make) 
     assert all_codes(graded(given, [[0, 0, -1, 0, "l", 0]])) == {"axis_reversed"}
 
 
-# Lynch & Park, "Modern Robotics" (2017), example 4.5: the space axes of the UR5, as columns.
+# Lynch & Park, "Modern Robotics" (2017), example 4.5: the space axes of the UR5 as columns.
 UR5 = [
     ["0", "0", "0", "0", "0", "0"],
     ["0", "1", "1", "1", "0", "1"],
@@ -164,8 +164,8 @@ def test_one_axis_needs_no_list_around_it(make_exercise: Make) -> None:
     assert full_marks(graded(make_exercise(FREE), [0, 0, 1, 0, "-l", 0]))
 
 
-def test_the_axes_of_a_robot_that_is_given_by_its_table(make_exercise: Make) -> None:
-    """Spatial RRR at home: z0 up through the origin, then two axes along −y at x = R, R + L1."""
+def test_the_axes_of_a_robot_with_a_table_are_right(make_exercise: Make) -> None:
+    """Spatial RRR at home: z0 points up through the origin; two axes are along −y at R, R + L1."""
     space = make_exercise(one_part("screw_axes", 'frame = "space"', SPATIAL_RRR))
     answer: Screws = [
         [0, 0, 1, 0, 0, 0],

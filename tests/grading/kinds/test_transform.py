@@ -1,4 +1,4 @@
-"""Transforms other than the pose of the tool: given, inverse, at home, and by exponentials."""
+"""Transforms other than the tool's pose: given, inverse, at home, and by exponentials."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,7 +11,7 @@ from service.grading import Verdict
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
-# robots.md, "Planar RPR by product of exponentials".
+# The planar RPR arm by product of exponentials.
 RPR = [
     ["c13", "-s13", "0", "(L1 + theta2) c1 + L2 c13"],
     ["s13", "c13", "0", "(L1 + theta2) s1 + L2 s13"],
@@ -26,7 +26,7 @@ def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
     return catalogue["planar-rpr-poe"]
 
 
-def test_the_lectures_poses(rpr: Exercise) -> None:
+def test_the_poses_of_the_lecture_are_right(rpr: Exercise) -> None:
     report = handed_in(rpr, {"home": HOME, "pose": RPR, "position": [RPR[0][3], RPR[1][3]]})
     for part_id in ("home", "pose", "position"):
         assert full_marks(part(report, part_id)), part(report, part_id)
@@ -43,7 +43,7 @@ def planar(angle: Any, x: Any, y: Any) -> Any:
 
 
 def about(angle: Any, x: Any) -> Any:
-    """A turn about the axis along z through (x, 0, 0)."""
+    """Return the turn about the axis along z through (x, 0, 0)."""
     return planar(angle, x - x * sp.cos(angle), -x * sp.sin(angle))
 
 
@@ -55,7 +55,7 @@ def entries(matrix: Any) -> list[list[str]]:
     return [[str(matrix[i, j]) for j in range(4)] for i in range(4)]
 
 
-def test_the_product_by_hand(rpr: Exercise) -> None:
+def test_the_product_by_hand_is_right(rpr: Exercise) -> None:
     assert full_marks(part(handed_in(rpr, {"pose": entries(E1 * E2 * E3 * M)}), "pose"))
 
 
@@ -74,7 +74,7 @@ def test_another_product_is_named(matrix: Any, code: str, rpr: Exercise) -> None
     assert report.verdict is Verdict.PARTIAL
 
 
-def test_a_transform_that_the_exercise_gives(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_transform_given_by_the_exercise_is_right(catalogue: Mapping[str, Exercise]) -> None:
     inverse = [
         ["cos(phi)", "sin(phi)", "0", "-px cos(phi) - py sin(phi)"],
         ["-sin(phi)", "cos(phi)", "0", "px sin(phi) - py cos(phi)"],
@@ -96,7 +96,7 @@ def test_a_transform_that_the_exercise_gives(catalogue: Mapping[str, Exercise]) 
     assert all_codes(report) == {"inverse_transform"}
 
 
-def test_the_inverse_of_a_robots_pose(make_exercise: Make) -> None:
+def test_the_inverse_of_a_robots_pose_is_right(make_exercise: Make) -> None:
     exercise = make_exercise(
         one_part("transform", 'from = 2\nto = "base"\nhome = true', SPATIAL_RRR)
     )
@@ -105,7 +105,7 @@ def test_the_inverse_of_a_robots_pose(make_exercise: Make) -> None:
     assert full_marks(graded(exercise, answer))
 
 
-def test_a_product_that_no_misconception_explains_is_told_entry_by_entry(rpr: Exercise) -> None:
+def test_an_unexplained_product_is_reported_entry_by_entry(rpr: Exercise) -> None:
     report = part(handed_in(rpr, {"pose": entries(E1 * E2 * about(three, l2) * M)}), "pose")
     assert set(not_correct(report)) == {("1", "4"), ("2", "4")}
     assert all_codes(report).isdisjoint(

@@ -32,7 +32,7 @@ def test_an_angle_of_a_vector_counts_modulo_whole_turns(
         (["a1 c1 + a2 c2", TASK[1], "theta1 + theta2"], "1", "relative_angle"),
     ],
 )
-def test_a_slip_in_a_vector(
+def test_a_slip_in_a_vector_is_named(
     answer: list[str], row: str, code: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     report = part(handed_in(catalogue["planar-rr"], {"task-space": answer}), "task-space")
@@ -41,13 +41,13 @@ def test_a_slip_in_a_vector(
     assert [message.code for message in cell(report, row, "1").feedback] == [code]
 
 
-def test_a_length_is_no_angle(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_length_is_not_an_angle(catalogue: Mapping[str, Exercise]) -> None:
     answer = [f"{TASK[0]} + 2*pi", TASK[1], "theta1 + theta2"]
     report = part(handed_in(catalogue["planar-rr"], {"task-space": answer}), "task-space")
     assert not_correct(report) == {("1", "1"): Verdict.INCORRECT}
 
 
-def test_the_twists_of_the_lecture(catalogue: Mapping[str, Exercise]) -> None:
+def test_the_twists_of_the_lecture_are_right(catalogue: Mapping[str, Exercise]) -> None:
     """Screw Theory, Example: Simple Twist: S_ω = (0, 0, 1), S_v = (0, −2, 0)."""
     answers: dict[str, Any] = {
         "zero-pitch": [[0, 0, 1, 0, -2, 0]],

@@ -1,4 +1,4 @@
-"""When two columns of numbers are the same answer."""
+"""Comparison of values with expected values."""
 
 from collections.abc import Mapping
 
@@ -17,14 +17,14 @@ TURNS = st.integers(-20, 20)
 
 
 @given(ANGLES, TURNS)
-def test_whole_turns_are_no_difference(angle: float, turns: int) -> None:
+def test_whole_turns_do_not_count(angle: float, turns: int) -> None:
     turned = np.array([angle + 2 * np.pi * turns])
     assert abs(difference(turned, np.array([angle]), True)[0]) < 1e-12 * (1 + abs(turns)) * 50
 
 
 @given(ANGLES, ANGLES)
 def test_the_difference_of_angles_is_the_shorter_way(one: float, other: float) -> None:
-    """The angle between two unit vectors, by their inner and outer products."""
+    """The expected value is the angle between two unit vectors, by inner and outer products."""
     shorter = difference(np.array([one]), np.array([other]), True)[0]
     assert abs(shorter) <= np.pi + 1e-9
     assert np.cos(shorter) == pytest.approx(np.cos(one - other), abs=1e-9)
@@ -47,11 +47,11 @@ def test_the_difference_of_angles_is_the_shorter_way(one: float, other: float) -
         (1e308, 1.0, Match.DIFFERENT),
     ],
 )
-def test_the_match_of_a_constant(actual: float, expected: float, match: Match) -> None:
+def test_a_constant_has_this_match(actual: float, expected: float, match: Match) -> None:
     assert matches(np.full(4, actual), np.full(4, expected), 1.0) == match
 
 
-def test_one_lane_is_enough_to_differ() -> None:
+def test_values_differ_if_they_differ_at_one_sample() -> None:
     expected = np.linspace(-1, 1, 32)
     actual = expected.copy()
     assert same(actual, expected)
@@ -66,7 +66,7 @@ def test_a_half_turn_is_the_same_both_ways() -> None:
     assert not same(np.array([np.pi]), np.array([-np.pi]))
 
 
-def test_the_floor_follows_the_scale() -> None:
+def test_the_tolerance_follows_the_scale() -> None:
     dust = np.array([5e-8])
     assert same(dust, np.zeros(1), scale=100.0)
     assert not same(dust, np.zeros(1), scale=1.0)
@@ -75,10 +75,10 @@ def test_the_floor_follows_the_scale() -> None:
 @given(
     st.sampled_from(["1.571", "-1.571", "0.866", "100.25"]), st.floats(-2, 2), st.integers(-1, 1)
 )
-def test_a_decimal_alone_is_rounded_where_the_same_in_a_sum_is(
+def test_a_single_decimal_is_rounded_like_a_decimal_in_a_sum(
     catalogue: Mapping[str, Exercise], text: str, units: float, turns: int
 ) -> None:
-    """The closed form finds what the fit of a formula finds."""
+    """The closed form for one decimal agrees with the general fit."""
     exercise = catalogue["stanford-arm"]
     samples = draw(exercise, None)
     alone, in_sum = (read(each, exercise.vocabulary) for each in (text, f"0 + {text}"))

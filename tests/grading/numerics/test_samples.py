@@ -1,4 +1,4 @@
-"""The values that answers are compared at."""
+"""The random values at which answers are compared."""
 
 import tomllib
 from collections.abc import Mapping
@@ -44,7 +44,7 @@ def test_the_second_half_repeats_the_links_and_moves_the_joints(
         assert repeated.all() if variable.joint is None else not repeated.any()
 
 
-def test_every_submission_and_every_version_has_its_own_draw(
+def test_each_submission_and_version_has_its_own_draw(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     exercise = catalogue["scara"]
@@ -67,7 +67,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("refused", REFUSED, ids=range(len(REFUSED)))
-def test_what_json_refuses_has_a_draw_and_so_has_what_stands_beside_it(
+def test_answers_that_json_refuses_change_the_draw(
     refused: object, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue["scara"]
@@ -86,14 +86,14 @@ def test_numbers_of_thousands_of_digits_differ(catalogue: Mapping[str, Exercise]
     assert len(draws) == 3
 
 
-def test_answers_in_a_circle_have_a_draw(catalogue: Mapping[str, Exercise]) -> None:
+def test_cyclic_answers_have_a_draw(catalogue: Mapping[str, Exercise]) -> None:
     circle: list[object] = ["q1"]
     circle.append(circle)
     assert draw(catalogue["scara"], circle).values["a1"][0] > 0
 
 
 def test_the_values_fill_their_range(catalogue: Mapping[str, Exercise]) -> None:
-    """Mean and variance of 32,000 values, against those of the uniform distribution."""
+    """Mean and variance of 32,000 values are those of the uniform distribution."""
     exercise = catalogue["stanford-arm"]
     [joint] = [variable for variable in exercise.variables if variable.name == "theta1"]
     values = np.concatenate([draw(exercise, i).values["theta1"] for i in range(1000)])

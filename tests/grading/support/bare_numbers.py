@@ -1,4 +1,4 @@
-"""Exercises without a robot and without symbols: numbers alone, one part of each kind."""
+"""Exercises without a robot and without symbols: only numbers, one part of each kind."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +9,7 @@ TURN = [["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]]
 TURNED_BACK = [["1", "0", "0"], ["0", "0", "1"], ["0", "-1", "0"]]
 # A turn by 90 degrees about x, and the point (0.5, 0, 2): the row a = 0.5, α = 90°, d = 2, θ = 0.
 POSE = [["1", "0", "0", "0.5"], ["0", "0", "-1", "0"], ["0", "1", "0", "2"], ["0", "0", "0", "1"]]
-# Its third column is not its image: the origin lies off both axes, so that there is no row.
+# This transform has no row, because its origin is on neither axis.
 SKEW = [["1", "0", "0", "0.5"], ["0", "0", "-1", "2"], ["0", "1", "0", "0"], ["0", "0", "0", "1"]]
 IDENTITY = [["1", "0", "0", "0"], ["0", "1", "0", "0"], ["0", "0", "1", "0"], ["0", "0", "0", "1"]]
 ROW = {"a": "0.5", "alpha": "90deg", "d": "2", "theta": "0"}
@@ -23,7 +23,7 @@ COMPONENTS = """components = [
 
 @dataclass(frozen=True)
 class BareExercise:
-    """The text of an exercise file, the right answer to its part, and wrong ones."""
+    """An exercise file with one part, the right answer to it, and wrong ones."""
 
     kind: str
     fields: str
@@ -32,7 +32,7 @@ class BareExercise:
 
     @property
     def text(self) -> str:
-        """The file."""
+        """The text of the exercise file."""
         return one_part(self.kind, self.fields, setting="")
 
 
@@ -115,5 +115,5 @@ BARE = (
     ),
     BareExercise("dh_row", f"transform = {_toml(SKEW)}", {"none": True}, (ROW,)),
 )
-# The kinds whose answer is that of a robot by its table.
+# The kinds that need a robot with a table.
 OF_A_ROBOT = {"dh_table", "link_transforms"}

@@ -1,4 +1,4 @@
-"""Exercise files for single parts, put together from what a test needs."""
+"""Write exercise files with a single part for tests."""
 
 from collections.abc import Callable
 
@@ -40,18 +40,18 @@ k = { kind = "number", description = "a number" }
 
 
 def one_part(kind: str, fields: str, setting: str = ANGLES) -> str:
-    """The text of an exercise with one part "it" of this kind, worth 6 points."""
+    """Return the text of an exercise with one part "it" of this kind, worth 6 points."""
     part_text = f'[[parts]]\nid = "it"\nkind = "{kind}"\ntitle = "It"\npoints = 6\n{fields}\n'
     return HEAD + setting + part_text
 
 
 def graded(exercise: Exercise, answer: object, angle_unit: AngleUnit = "radians") -> PartReport:
-    """The report on the part "it"."""
+    """Grade an answer to the part "it" and return the report on it."""
     return part(handed_in(exercise, {"it": answer}, angle_unit), "it")
 
 
 def all_codes(report: PartReport) -> set[str]:
-    """All codes in the report, wherever they stand."""
+    """Return all codes in the report."""
     messages = [*report.feedback]
     for row in report.rows:
         messages += row.feedback

@@ -1,7 +1,7 @@
-"""The four reference tables, written down from the textbooks and not from the catalogue.
+"""The four reference tables, copied from the textbooks and not from the catalogue.
 
-Twists are whole degrees here; joint variables carry the textbook's star. A table can be spelled in
-each way that a student may choose.
+Twists are in whole degrees; joint variables have the textbook's star. A Spelling writes a table as
+a student may write it.
 
 Sources: planar RRR and RRRP from Robotic Fundamentals (UMFM4X-15-M), Forward Kinematics, Examples 1
 and 2; Stanford arm and SCARA from Spong, Hutchinson, Vidyasagar, Robot Modeling and Control,
@@ -21,7 +21,7 @@ AngleUnit = Literal["radians", "degrees"]
 
 @dataclass(frozen=True)
 class Robot:
-    """``exercise`` is its id in the catalogue; ``joints`` and ``lengths`` are all its letters."""
+    """A robot: its id in the catalogue, its table, and its letters (``joints``, ``lengths``)."""
 
     exercise: str
     joints: tuple[str, ...]
@@ -85,7 +85,7 @@ ROBOTS = (PLANAR_RRR, RRRP, SCARA, STANFORD)
 
 @dataclass(frozen=True)
 class Spelling:
-    """One way to write the same table: twists by ``twist``, turning and sliding joints by name."""
+    """One way to write a table: the spelling of twists and of joint variables."""
 
     name: str
     angle_unit: AngleUnit
@@ -94,7 +94,7 @@ class Spelling:
     sliding: str = ""
 
     def rows(self, robot: Robot) -> list[Row]:
-        """The robot's table in this spelling."""
+        """Return the robot's table in this spelling."""
         return [
             (a, self.twist(int(alpha)), _named(d, self.sliding), _named(theta, self.turning))
             for a, alpha, d, theta in robot.rows
@@ -102,7 +102,7 @@ class Spelling:
 
 
 def _named(cell: str, pattern: str) -> str:
-    """A joint variable's cell by another name; ``#`` in the pattern is the joint's number."""
+    """Return a cell with another name of its variable; ``#`` in the pattern is the number."""
     name = cell.removesuffix("*")
     if name == cell:
         return cell

@@ -1,4 +1,4 @@
-"""The SCARA arm, in four parts of which each follows from the one before."""
+"""The SCARA arm in four parts, each of which follows from the previous one."""
 
 from collections.abc import Sequence
 from typing import Any

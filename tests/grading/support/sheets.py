@@ -1,4 +1,4 @@
-"""A part's answer as a grid of texts, whatever its kind."""
+"""Convert the answer to a part of any kind to a grid of texts, and back."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ Grid = list[list[str]]
 
 @dataclass(frozen=True)
 class Sheet:
-    """The rows and columns of an answer by their labels in the report, and how it is posted."""
+    """The labels of an answer's rows and columns, and the JSON shape of the answer."""
 
     kind: str
     rows: tuple[str, ...]
@@ -22,7 +22,7 @@ class Sheet:
         return [[text] * len(self.columns) for _ in self.rows]
 
     def posted(self, grid: Sequence[Sequence[str]]) -> Any:
-        """The grid as the JSON value of an answer."""
+        """Return the grid as the JSON value of an answer."""
         if self.kind in ("dh_table", "dh_row"):
             rows = [dict(zip(COLUMNS, row, strict=True)) for row in grid]
             return {"rows": rows} if self.kind == "dh_table" else rows[0]
@@ -33,7 +33,7 @@ class Sheet:
         return list(map(list, grid))
 
     def grid_of(self, answer: Any) -> Grid:
-        """The grid of a posted answer: of ``posted`` the other way round."""
+        """Return the grid of a posted answer, the inverse of ``posted``."""
         if self.kind == "dh_table":
             answer = answer["rows"]
         if self.kind == "dh_row":
@@ -47,7 +47,7 @@ class Sheet:
 
 
 def sheet_of(part: PartSpec, exercise: Exercise) -> Sheet:
-    """The sheet of a part."""
+    """Return the sheet of a part."""
     shape = dict(part.shape(exercise.reference))
     rows = tuple(shape.get("rows") or ("1",))
     if "matrices" in shape:

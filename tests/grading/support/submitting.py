@@ -1,4 +1,4 @@
-"""Handing in answers, and finding one's way about the report."""
+"""Submit answers, and find cells and messages in the report."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -20,7 +20,7 @@ from tests.grading.support.robots import COLUMNS, AngleUnit
 
 
 def table(rows: Iterable[Sequence[object]]) -> dict[str, Any]:
-    """A table as the answer to a ``dh_table`` part."""
+    """Return a table as the answer to a ``dh_table`` part."""
     return {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in rows]}
 
 
@@ -65,7 +65,7 @@ def codes(cell: CellReport) -> list[str]:
 
 
 def codes_at(report: PartReport, row_label: str, cell_label: str) -> list[str]:
-    """The codes of the messages on a cell, whether they stand there or with the part."""
+    """Return the codes of the messages on a cell, in the cell or in the part."""
     return [
         message.code
         for message, places, _ in messages_of(report)
@@ -74,7 +74,7 @@ def codes_at(report: PartReport, row_label: str, cell_label: str) -> list[str]:
 
 
 def not_correct(report: PartReport) -> dict[tuple[str, str], Verdict]:
-    """The verdict of each cell that is not correct, by its row and its own label."""
+    """Return the verdict of each cell that is not correct, by the labels of row and cell."""
     return {
         (row.label, cell.label): cell.verdict
         for row in report.rows
@@ -93,5 +93,5 @@ def full_marks(report: PartReport) -> bool:
 
 
 def as_data(report: Report) -> dict[str, Any]:
-    """The report as nested dicts and lists, ready for ``json.dumps``."""
+    """Return the report as nested dicts and lists, ready for ``json.dumps``."""
     return asdict(report)

@@ -1,4 +1,4 @@
-"""A student who knows nothing, and copies whatever a report says into the cells that are wrong."""
+"""A thief: a student without knowledge who copies from a report into the wrong cells."""
 
 import re
 from collections.abc import Iterator
@@ -12,13 +12,13 @@ from service.grading import PartReport, Submission, Verdict, grade
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
 
 ROUNDS = 10
-# So many words of a message may make one formula: theta1 + pi / 2.
+# The most words of a message that form one formula, such as theta1 + pi / 2.
 WORDS = 5
 _SAYING = ("message", "suggestion", "text", "latex")
 
 
 def said(report: PartReport) -> Iterator[str]:
-    """All texts and numbers in a report that might be a value."""
+    """Yield all texts and numbers in a report that might be a value."""
 
     def visit(value: Any, key: str) -> Iterator[str]:
         if isinstance(value, dict):
@@ -40,14 +40,14 @@ def said(report: PartReport) -> Iterator[str]:
 
 @lru_cache(maxsize=4096)
 def expressions_in(text: str, vocabulary: Vocabulary) -> tuple[str, ...]:
-    """Everything in a text that can be read as an entry: words, and words in a row."""
+    """Return all parts of a text that are readable entries: single words and sequences of words."""
     found: dict[str, None] = {}
     for words in (text.split(), re.sub(r"[()]", " ", text).split()):
         plain = [word.strip(".,;:?!`") for word in words]
         for i in range(len(plain)):
             for j in range(i + 1, min(i + WORDS, len(plain)) + 1):
                 tried = " ".join(plain[i:j]).strip()
-                # Several names in a row are words, unless something joins them.
+                # Several names in sequence are prose, unless an operator joins them.
                 joined = j == i + 1 or re.search(r"[-+*/^0-9]", tried)
                 if tried and joined and _reads(tried, vocabulary):
                     found[tried] = None
@@ -63,12 +63,12 @@ def _reads(text: str, vocabulary: Vocabulary) -> bool:
 
 
 def is_trivial(text: str) -> bool:
-    """Whether a text is a trivial value, however it is written: 0.0."""
+    """True if a text is a trivial value in any spelling, such as 0.0."""
     return re.fullmatch(r"-?[01](\.0*)?", text) is not None
 
 
 def shortened(text: str) -> str:
-    """The text without the zeros behind its point: 7.0 is 7."""
+    """Return the text without zeros after its decimal point: 7 for 7.0."""
     return re.sub(r"\.0*$", "", text)
 
 
@@ -76,8 +76,8 @@ def shortened(text: str) -> str:
 class Thief:
     """A thief at work on one part, at one level.
 
-    ``known`` is what need not be stolen. The trivial values 0, 1 and -1, which stand in most cells
-    of every answer, are not worth a theft either.
+    ``known`` are the values that need no theft. The trivial values 0, 1 and -1, which are in most
+    cells of every answer, do not count as stolen either.
     """
 
     exercise: Exercise
@@ -99,7 +99,7 @@ class Thief:
         return next(part for part in report.parts if part.part == self.part.id)
 
     def steal(self) -> tuple[float, float]:
-        """The points of the first answer, and those after ten rounds of copying."""
+        """Return the points of the first answer, and those after ten rounds of copying."""
         report = self.report(self.grid)
         first = report.points
         for _ in range(ROUNDS):
@@ -117,7 +117,7 @@ class Thief:
         return first, report.points
 
     def _copied(self, text: str, report: PartReport) -> PartReport:
-        """The report with ``text`` in every wrong cell that it helps."""
+        """Return the report after copying ``text`` into every wrong cell that it improves."""
         everywhere = [
             [own if self._is_right(report, i, j) else text for j, own in enumerate(row)]
             for i, row in enumerate(self.grid)
@@ -129,7 +129,7 @@ class Thief:
                 for i, pairs in enumerate(map(zip, self.grid, everywhere))
             ]
             report = self._kept(helped, text, report)
-        # Where frames are free, or cells have no verdicts, the points must tell, cell by cell.
+        # If frames are free, or cells have no verdicts, compare the points cell by cell.
         for i, row in enumerate(self.grid):
             for j in range(len(row)):
                 if not self._is_right(report, i, j):
@@ -149,20 +149,20 @@ class Thief:
         return trial
 
     def _is_right(self, report: PartReport, i: int, j: int) -> bool:
-        """Whether the report says that a cell is right; its rows may be fewer than the sheet's."""
+        """True if the report has the cell and says that it is right."""
         by_label = {row.label: row for row in report.rows}
         row = by_label.get(self.sheet.rows[i])
         return row is not None and j < len(row.cells) and row.cells[j].verdict is Verdict.CORRECT
 
 
 def worth(report: PartReport) -> tuple[float, int]:
-    """What a thief goes by: the points, and the cells that are said to be right."""
+    """Return the thief's measure of success: the points, and the number of right cells."""
     cells = [cell.verdict for row in report.rows for cell in row.cells]
     return report.points, cells.count(Verdict.CORRECT)
 
 
 def known_before(sheet: Sheet, grid: Grid) -> set[str]:
-    """What a student knows without a report: what was written, and the labels."""
+    """Return the texts that a student knows without a report: the answer and the labels."""
     labels = {piece for label in (*sheet.rows, *sheet.columns) for piece in label.split(".")}
     return {*labels, *(cell for row in grid for cell in row)}
 
@@ -173,7 +173,7 @@ def thief(exercise: Exercise, part: PartSpec, level: FeedbackLevel, grid: Grid) 
 
 
 def lazy(exercise: Exercise, part: PartSpec) -> Grid:
-    """What takes no thought: the bare joint variables in a table, the identity, and else zeros."""
+    """Return the lazy answer: bare joint variables in a table, the identity, or zeros."""
     sheet = sheet_of(part, exercise)
     grid = sheet.filled("0")
     if part.kind == "dh_table":

@@ -1,4 +1,4 @@
-"""The marks of a table as a tutor works them out on paper, from its text."""
+"""The marks of a table as a tutor computes them by hand from its text."""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,12 +8,12 @@ from tests.grading.support.robots import Robot
 
 
 def worth_of_rows(robot: Robot) -> list[float]:
-    """A unit for each cell that is neither 0 nor the bare joint variable, and a fifth besides."""
+    """Return the worth of rows: a unit per cell that is not lazy, and a fifth for each row."""
     return [0.2 + sum(is_known(robot, i, j) for j in range(4)) for i in range(len(robot.rows))]
 
 
 def is_known(robot: Robot, row: int, column: int) -> bool:
-    """Whether one has to know something for a cell."""
+    """True if the cell needs knowledge: it is neither 0 nor the bare joint variable."""
     cell = robot.rows[row][column]
     return cell != "0" and not cell.endswith("*")
 
@@ -21,7 +21,7 @@ def is_known(robot: Robot, row: int, column: int) -> bool:
 def points(
     robot: Robot, most: float, wrong: Iterable[int], unread: Iterable[int] = ()
 ) -> list[float]:
-    """The points of each row of a table worth ``most``.
+    """Return the points of each row of a table worth ``most``.
 
     ``wrong`` is the row of each cell that costs a unit, ``unread`` the rows in which other cells
     were not read.
@@ -33,5 +33,5 @@ def points(
 
 
 def about(values: Sequence[float]) -> object:
-    """The values up to the rounding of points."""
+    """Return a value that equals ``values`` up to the rounding of points."""
     return pytest.approx(list(values), abs=2e-6)

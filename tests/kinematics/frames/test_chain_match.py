@@ -1,4 +1,4 @@
-"""A chain in other frames matches, another chain does not. The identities are those of the docs."""
+"""A chain in other frames matches; another chain does not. The identities are from the docs."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ Rows = Sequence[tuple[float, float, float, float]]
 
 SAMPLES = 3
 PI = np.pi
-# Two parallel axes, a third across them, a tool: rows (a, α, d, θ) that lead from base to tool.
+# Rows (a, α, d, θ) from base to tool: two parallel axes, a third one across them, and the tool.
 REFERENCE: Rows = [(0, 0, 0, 0), (0.5, 0, 0.2, 0), (0.4, PI / 2, 0, 0), (0.1, 0, 0.3, 0)]
 SIGNS = np.array([0, 1, 1, 1])
 KINDS = [TargetKind.REVOLUTE, TargetKind.REVOLUTE, TargetKind.REVOLUTE, TargetKind.TOOL]
@@ -70,20 +70,20 @@ def test_a_table_is_valid_if_it_describes_the_same_mechanism(name: str) -> None:
     assert poses.shape == (4, 1, SAMPLES, 4, 4)
 
 
-def test_the_relative_poses_say_how_the_frames_depart() -> None:
+def test_the_relative_poses_are_those_of_the_other_frames() -> None:
     table, signs = EQUIVALENT["z1 turned over"]
     _, poses = match_tables(rows_of(table)[None], np.array([signs]), TARGETS, 1.0)
     np.testing.assert_allclose(poses[1, 0, 0], rot_x(PI), atol=1e-12)
     assert [int(joint_signs_of(pose)[0]) for pose in poses] == [1, -1, 1, 1]
 
 
-def test_free_directions_take_either_sign() -> None:
+def test_free_directions_allow_both_signs() -> None:
     rows = rows_of(REFERENCE)[None]
     assert not match_tables(rows, np.array([[0, 1, -1, 1]]), TARGETS, 1.0)[0].any()
     assert match_tables(rows, np.zeros((1, 4), np.int_), TARGETS, 1.0)[0].all()
 
 
-def test_the_base_may_lie_elsewhere() -> None:
+def test_the_base_may_have_another_pose() -> None:
     start = np.broadcast_to(trans(0, 0, 0.3), (SAMPLES, 4, 4))
     table = [(0, 0, -0.3, 0), *REFERENCE[1:]]
     signs = SIGNS[None]
@@ -99,7 +99,7 @@ def written(*, wrong: bool) -> list[RowConstants]:
     ]
 
 
-def test_a_table_as_written_matches_itself_unless_a_cell_is_wrong_regardless() -> None:
+def test_a_table_with_a_cell_wrong_in_any_frames_does_not_match() -> None:
     match = match_as_written(written(wrong=False), TARGETS, 1.0)
     assert match is not None
     assert match.cost == 0

@@ -1,4 +1,4 @@
-"""The nearest valid table is the one that a slip was made in."""
+"""The nearest valid table to a table with a slip is the table without it."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ ANGLES = np.array([0.0, np.pi / 2, -np.pi / 2, 0.0])
 
 
 def arm() -> Numbers:
-    """Four rows from base to tool, of general lengths, with right angles between their axes."""
+    """Return four rows from base to tool with general lengths and right angles between axes."""
     rows = LENGTHS.copy()
     rows[:, 1], rows[:, 3] = ANGLES[:, None], 0.3
     rows[0] = 0.0
@@ -47,7 +47,7 @@ def constants(rows: Numbers) -> list[RowConstants]:
 
 
 @pytest.mark.parametrize("cell", [(1, 0), (1, 2), (2, 0), (2, 1), (2, 2), (3, 0), (3, 3)])
-def test_one_wrong_cell_costs_one_and_is_put_right(cell: tuple[int, int]) -> None:
+def test_one_wrong_cell_costs_one_and_is_repaired(cell: tuple[int, int]) -> None:
     rows = arm()
     rows[cell] += 0.37
     match = nearest_table(constants(rows), TARGETS, 1.0)
@@ -69,7 +69,7 @@ def test_other_frames_cost_little() -> None:
     assert match.joint_signs == [1, -1, 1, 1]
 
 
-def test_a_departure_is_counted_for_each_way_in_which_a_frame_departs() -> None:
+def test_each_difference_of_a_frame_has_a_cost() -> None:
     poses = np.stack([identity((SAMPLES,)), rot_x(np.full(SAMPLES, np.pi))])
     moved = np.broadcast_to(trans(0, 0, 0.2), (1, SAMPLES, 4, 4))
     costs = departure(np.concatenate([poses, moved]), 1.0)

@@ -1,4 +1,4 @@
-"""A chain with one wrong cell: what was there before is among the values that the axes ask for."""
+"""The right value of a wrong cell is among the values that follow from the axes."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ SLIDING = np.array([False, True, False, False, False])
 
 
 def arm(rng: np.random.Generator) -> Table:
-    """Five rows in general position: each cell moves some axis behind it, and some before it."""
+    """Return five rows in general position: each cell moves axes on both of its sides."""
     return rng.uniform(0.3, 1.2, (5, 4, SAMPLES))
 
 
@@ -45,7 +45,7 @@ def is_among(value: Numbers, values: list[Numbers], angle: bool) -> bool:
 
 @CONVENTIONS
 @SEEDS
-def test_from_a_given_base(convention: Convention, seed: int) -> None:
+def test_the_right_value_is_found_from_a_given_base(convention: Convention, seed: int) -> None:
     rng = np.random.default_rng(seed)
     table = arm(rng)
     right = factors_of(table, convention)
@@ -59,13 +59,13 @@ def test_from_a_given_base(convention: Convention, seed: int) -> None:
         k, kind = factors.position(cell)
         if k < joints[-1]:
             assert is_among(table[cell], values[k, kind], angle=kind == 1), cell
-        else:  # behind the last axis
+        else:  # after the last axis
             assert (k, kind) not in values
 
 
 @CONVENTIONS
 @SEEDS
-def test_from_a_given_tool(convention: Convention, seed: int) -> None:
+def test_the_right_value_is_found_from_a_given_tool(convention: Convention, seed: int) -> None:
     rng = np.random.default_rng(seed)
     table = arm(rng)
     right = factors_of(table, convention)
@@ -83,7 +83,7 @@ def test_from_a_given_tool(convention: Convention, seed: int) -> None:
             assert is_among(-table[cell], values[last - k, kind], angle=kind == 1), cell
 
 
-def test_the_factors_of_the_inverse_product() -> None:
+def test_reversed_factors_give_the_inverse_product() -> None:
     factors = factors_of(arm(np.random.default_rng(1)), Convention.STANDARD)
     np.testing.assert_allclose(
         reversed_factors(factors).before[-1], inverse(factors.before[-1]), atol=1e-12

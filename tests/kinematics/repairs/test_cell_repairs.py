@@ -1,4 +1,4 @@
-"""Tables with one or two wrong cells: what was there before is what is found."""
+"""The right values of one or two wrong cells are among the repairs."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ SEEDS = together("seed", range(40))
 
 
 def arm(rng: np.random.Generator) -> Table:
-    """Five rows in general position, but with the right angles and zeros that real arms have."""
+    """Return five rows in general position, except right angles and zeros as in real arms."""
     table = rng.uniform(0.3, 1.2, (5, 4, SAMPLES))
     table[:, 1] = rng.choice([0.0, np.pi / 2, -np.pi / 2, np.pi], 5)[:, None]
     table[:, 0][rng.random(5) < 0.4] = 0.0
@@ -51,7 +51,7 @@ def test_one_wrong_cell_is_among_the_repairs(convention: Convention, seed: int) 
     repairs = one_factor_repairs(factors_of(wrong, convention), pose(table, convention))
     [repair] = [repair for repair in repairs if repair.cells == (cell,)]
     np.testing.assert_allclose(turned(repair.values[0] - table[cell]), 0, atol=1e-9)
-    for other in repairs:  # whatever else it offers makes the pose right, too
+    for other in repairs:  # every other repair makes the pose right, too
         assert_repairs(wrong, other.cells, other.values, table, convention)
 
 
@@ -84,7 +84,7 @@ def assert_repairs(
 
 
 @CONVENTIONS
-def test_the_cells_of_a_repair_are_solved_for_at_other_samples(convention: Convention) -> None:
+def test_a_repair_can_be_computed_at_other_samples(convention: Convention) -> None:
     rng = np.random.default_rng(7)
     table = arm(rng)
     for cells in ([(1, 2)], [(3, 0), (3, 1)], [(4, 1), (1, 2)], [(0, 3), (3, 3)]):

@@ -1,23 +1,23 @@
-"""Tables in frames of the student's own choice: the valid table nearest to the one handed in.
+"""Tables in frames of the student's own choice: find the valid table nearest to a submitted one.
 
 In the order in which they are used:
 
-- ``row_roles``: which row is for which joint, and what the exercise leaves free
-- ``rounded_angles``: 1.57 read as the π/2 that it stands for
-- ``rounded_cells``: the numbers that all rounded decimals of a table stand for
-- ``nearest_table``: the valid table nearest to such rows, found in one of these ways:
+- ``row_roles``: which row belongs to which joint, and what the exercise leaves free
+- ``rounded_angles``: read 1.57 as π/2
+- ``rounded_cells``: find the exact numbers of all rounded decimals of a table
+- ``nearest_table``: find the valid table nearest to such rows, in one of these ways:
 
-  - ``few_cells``: the table as written, or with one or two cells repaired, where base, tool and
-    directions are given; of several repairs ``slip_likelihood`` finds the likeliest
-  - ``written_table``: the intended table, if the convention or the unit was mistaken
-  - ``base_frame``: the table as written, from a base of the student's
-  - ``one_cell``: the table with one cell repaired, where base, tool or directions are free
-  - ``kinematics.frame_choice``: a search row by row; ``constants`` takes the table apart for it,
-    ``validity`` names the targets of its rows
+  - ``few_cells``: the table as written, or with one or two repaired cells, if base, tool and
+    directions are given; ``slip_likelihood`` chooses the likeliest of several repairs
+  - ``written_table``: the intended table, if the convention or the unit is mistaken
+  - ``base_frame``: the table as written, from the student's base
+  - ``one_cell``: the table with one repaired cell, if base, tool or directions are free
+  - ``kinematics.frame_choice``: a search row by row; ``constants`` separates constants and joint
+    variables for it, ``validity`` lists the targets of its rows
 
-- ``best_roles``: of several ways to pair rows and joints, the one with the nearest valid table
-- ``remarks``: where the student's frames are valid but not the reference's
+- ``best_roles``: choose the pairing of rows and joints with the nearest valid table
+- ``remarks``: messages on valid frames that are not the reference's
 
-``reference`` holds the reference in the forms that the others need; ``validity`` also tests many
+``reference`` has the reference in the forms that the others need. ``validity`` also tests many
 tables at once.
 """

@@ -1,8 +1,8 @@
-"""Where a free frame 0 may lie, and whether a table is valid from there.
+"""Find the poses that a free frame 0 may have, and test tables from there.
 
-Everything is compared where all joint variables are 0: there it does not matter which way a joint
-counts. That is enough, for the joint screws in the home configuration and the pose there say all of
-a chain (Lynch and Park, *Modern Robotics*, section 4.1).
+All comparisons are in the home configuration (all joint variables 0), where the positive direction
+of a joint does not matter. The joint screws and the pose there determine a chain (Lynch and Park,
+*Modern Robotics*, section 4.1).
 """
 
 from collections.abc import Iterator
@@ -26,12 +26,12 @@ def possible_bases(
     mechanism: Mechanism,
     freedom: FrameFreedom,
 ) -> Iterator[Matrices | None]:
-    """Where frame 0 may lie in the reference's frame 0, ``(L, 4, 4)`` each; None for the same.
+    """Yield possible poses ``(L, 4, 4)`` of frame 0 in the reference's frame 0; None for identity.
 
-    ``links`` ``(rows + 1, 4, L)`` are the constants of a table, regrouped; ``joint_signs`` ``(rows
-    + 1,)`` those of the variable of the joint that each of them starts from. A given tool leaves
-    one possibility. Otherwise the joint axes must lie on the reference's, each in the direction
-    that the sign of its variable says, or in either direction where the directions are free.
+    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of a table; ``joint_signs`` ``(rows +
+    1,)`` the signs of the joint variables that they start from. A given tool allows one pose.
+    Otherwise the joint axes must lie on the reference's, in the directions that the signs give, or
+    in either direction if the directions are free.
     """
     if not freedom.base:
         yield None
@@ -47,7 +47,7 @@ def possible_bases(
     sliding = np.array([role.joint.prismatic for role in roles if role.joint])
     either = [joint_signs[starts]]
     if freedom.directions:
-        # The first axis and the next that is not parallel to it decide how the base is turned.
+        # The first axis and the next one that is not parallel to it fix the base's orientation.
         others = len(starts) - 1
         either = [np.array([z, *[x] * others]) for z, x in product((1, -1), repeat=2)]
     for signs in either:
@@ -55,7 +55,7 @@ def possible_bases(
 
 
 def directed(frames: Matrices, signs: Integers) -> Matrices:
-    """The frames with z reversed where the sign is −1."""
+    """Return the frames, with z reversed if the sign is −1."""
     directed = frames.copy()
     directed[signs < 0, :, :3, :3] *= np.array([1.0, -1.0, -1.0])
     return directed

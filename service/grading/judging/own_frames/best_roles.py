@@ -1,4 +1,4 @@
-"""The roles of the handed-in rows, of several possible ones those with the nearest valid table."""
+"""Choose the roles of the submitted rows that give the nearest valid table."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ from service.kinematics.frames.frame_choice import WRONG_CELL
 def best_roles(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """The roles of the rows, and the valid table nearest to them."""
+    """Return the roles of the rows, and the valid table nearest to them."""
     freedom = freedom_of(part)
     roles, nearest = _best_as_written(rows, convention, freedom, grading)
     return roles, with_rounded_cells(nearest, convention, freedom, grading)
@@ -30,7 +30,7 @@ def best_roles(
 def _best_as_written(
     rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """The same, the right cells taken for what is written in them."""
+    """Return the best roles and nearest table without adjusting the right cells for rounding."""
     joints = grading.exercise.robot.joints
     roles = roles_in(rows, convention, grading)
     roles = with_true_numbers(roles, convention, freedom, grading)
@@ -39,13 +39,13 @@ def _best_as_written(
         return roles, nearest
     other, price = None, 0.0
     if len(nearest.roles) < len(rows):
-        # A row of zeros that was left out may be one in which something is missing.
+        # The row of zeros that was left out may belong to a joint.
         other = roles_in(rows, convention, grading, expected_rows=len(rows))
     elif len(rows) == len(joints) and len(rows) < usual_rows(convention, grading):
-        # The row that is missing need not be the last.
+        # The missing row need not be the last.
         other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
     elif len(rows) > len(joints):
-        # A wrong variable may have made a joint's row look like a fixed one.
+        # A joint's row may look like a fixed row because its variable is wrong.
         other = roles_in(rows, convention, grading, in_order=True)
     if other is None or _pairing(other) == _pairing(roles):
         return roles, nearest
@@ -61,10 +61,10 @@ def roles_in(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Which handed-in row is for which joint, with rounded angles made exact.
+    """Return the roles of the submitted rows, with rounded angles made exact.
 
-    Without ``expected_rows`` as many are expected as the reference has. ``in_order`` says whether
-    the rows are in the order of the joints, where that is known.
+    ``expected_rows`` is by default the number of rows of the reference. ``in_order`` is true if the
+    rows are in the order of the joints, None if unknown.
     """
     expected_rows = expected_rows or usual_rows(convention, grading)
     rows = without_idle_rows(rows, expected_rows)
@@ -76,7 +76,7 @@ def roles_in(
 def nearest_with_tool_row(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """The nearest valid table: with the rows as they are, or with the tool row that they lack."""
+    """Return the nearest valid table, with the given rows or with a missing tool row added."""
     nearest = nearest_for_roles(roles, convention, freedom, grading)
     if nearest.cost < WRONG_CELL or len(roles) >= usual_rows(convention, grading):
         return nearest
@@ -85,7 +85,7 @@ def nearest_with_tool_row(
 
 
 def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple[StudentRow, ...]:
-    """The rows without those at the end that are too many and move nothing."""
+    """Return the rows without extra rows at the end that move nothing."""
     while len(rows) > expected_rows and rows[-1].is_zero:
         rows = rows[:-1]
     return rows
@@ -94,10 +94,10 @@ def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple
 def rows_of_mechanism(
     rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> list[int]:
-    """Which rows stand for the mechanism: those of the joints and the first of the tool.
+    """Return the indices of the joints' rows and of the first tool rows, up to the usual number.
 
-    Chosen by the joint variables alone, so that of several guesses at a row it is not the right one
-    that is taken.
+    Only the joint variables decide: if a student writes several guesses at a row, the right one is
+    not preferred.
     """
     usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
     if len(rows) <= usual:
@@ -109,12 +109,12 @@ def rows_of_mechanism(
 
 
 def usual_rows(convention: Convention, grading: Grading) -> int:
-    """How many rows the reference's table has, or would have without fixed ones."""
+    """Return the number of rows of the reference's table, or of joints if it has no table."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)
     return len(robot.joints if reference is None else reference.rows)
 
 
 def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
-    """Which joint each row is for, and which rows are missing."""
+    """Return the joint of each row, and whether the row is missing."""
     return [(role.joint, role.row is None) for role in roles]

@@ -1,9 +1,9 @@
-"""Values for the cells that were not read, with which a table is valid.
+"""Search values for the unread cells of a table that make it valid.
 
-Where such values exist, no cell that was read is wrong: what is missing may have been right. They
-are looked for at one set of link lengths, where each unread cell is a constant, plus or minus its
-joint's variable: the tool must be where the reference's is at all joint values. That is Newton's
-method with damping (Levenberg and Marquardt), from many starts at once.
+If such values exist, no readable cell is wrong. The search uses one set of link lengths, so that
+each unread cell is a constant, plus or minus its joint's variable. The tool must agree with the
+reference's at all joint values. The method is Newton's with damping (Levenberg and Marquardt), from
+many starts at once.
 
 Shapes: S starts, L joint values, U unread cells and twists of a free base or tool.
 """
@@ -33,14 +33,14 @@ from service.kinematics.screws import exponential
 from service.kinematics.transforms import Matrices, Numbers, identity
 
 STARTS, POSTURES, STEPS = 32, 6, 25
-# After so many steps only the starts that came nearest go on.
+# The number of steps after which only the best starts continue.
 SIFTED_AT, KEPT = 8, 12
-# From this step on the search ends where no start can lessen its error by such a share in one step:
-# all are in valleys that lead nowhere. Of 185 searches that found values none came below a half.
+# From this step on, the search ends if no start can reduce its error by this share in one step: all
+# are near local minima. None of 185 successful searches came below a half.
 PATIENCE, LEAST_PROMISE = 5, 0.3
-# The work of the beginning, of a step, and of each unknown of each start in it.
+# The work of the start, of a step, and of each unknown of each start in a step.
 START_WORK, STEP_WORK, CELL_WORK = 10.0, 2.1, 0.014
-# Poses are equal where they differ by less, in the exercise's typical length.
+# The largest difference of equal poses, in the exercise's typical length.
 SAME = 1e-9
 NO_SINE = 1e-12
 _DAMPING = 1e-3
@@ -49,11 +49,11 @@ _LEAST_DAMPING = 1e-12
 
 @dataclass(frozen=True)
 class _Case:
-    """A table with unread cells at one set of lengths, which are in the typical length.
+    """A table with unread cells at one set of link lengths; the unit is the typical length.
 
-    ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells ``(U, 2)``, ``variables`` the joint
-    variable that belongs in each of them ``(U, L)``, ``target`` the reference's tool frames
-    ``(L, 4, 4)``.
+    ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells ``(U, 2)``. ``variables`` ``(U,
+    L)`` is the joint variable that belongs in each of them, ``target`` ``(L, 4, 4)`` the
+    reference's tool frames.
     """
 
     table: Table
@@ -65,7 +65,7 @@ class _Case:
 
     @cached_property
     def axes(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
-        """The frame and the axis, z or x, about or along which each unread cell moves: ``(U,)``."""
+        """The frame and the axis (z or x) along which each unread cell acts: ``(U,)`` each."""
         rows, columns = self.unread.T
         about_z = columns >= D
         first = about_z == (self.convention is Convention.STANDARD)
@@ -73,7 +73,7 @@ class _Case:
 
     @cached_property
     def slides(self) -> NDArray[np.bool_]:
-        """Which unread cells and which parts of the twists of a free base and tool are lengths."""
+        """A mask of the unknowns that are lengths: unread cells, then twists of base and tool."""
         twists = self.freedom.base + self.freedom.tool
         return np.concatenate([~IS_ANGLE[self.unread[:, 1]], *[np.arange(6) >= 3] * twists])
 
@@ -81,10 +81,10 @@ class _Case:
 def completed(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """The handed-in table, if values in its unread cells make it valid; None where none are found.
+    """Return the submitted table if some values in its unread cells make it valid, else None.
 
-    Nobody knows those values, so that 0 stands in the place of each, and the reference's frames in
-    the place of the student's. Directions are taken as given.
+    These values are not unique, so the result has 0 in the unread cells, and the reference's
+    frames. Directions count as given.
     """
     if any(role.row is None for role in roles):
         return None
@@ -119,7 +119,7 @@ def _case(
 
 
 def _of_one_robot(samples: Samples, joints: Sequence[str]) -> Samples:
-    """All joint values with the first link lengths."""
+    """Return the samples with all joint values, but always the first link lengths."""
     return Samples(
         {
             name: values if name in joints else np.full_like(values, values[0])
@@ -129,20 +129,20 @@ def _of_one_robot(samples: Samples, joints: Sequence[str]) -> Samples:
 
 
 def _values_at(role: Role, samples: Samples) -> Table:
-    """A row's values at other samples, with what its rounded angles stand for."""
+    """Return a row's values at other samples, with rounded angles made exact."""
     assert role.row is not None
     made_exact = np.nan_to_num(role.row.values - role.row.handed_in)[:, :1]
     return np.asarray(role.row.values_at(samples) + made_exact)
 
 
 def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
-    """Whether one of the starts leads to a valid table before the budget is used up."""
+    """True if one of the starts leads to a valid table before the budget is used up."""
     if not budget.affords_search(START_WORK):
         return False
     rng = np.random.default_rng(HALF)
     count = len(case.unread)
     angle = IS_ANGLE[case.unread[:, 1]]
-    # Most angles are near a multiple of a quarter turn.
+    # Start with multiples of a quarter turn, which most angles are near.
     constants = np.where(
         angle,
         rng.integers(-1, 3, (STARTS, count)) * np.pi / 2 + rng.normal(0, 0.2, (STARTS, count)),
@@ -184,7 +184,7 @@ def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
 
 
 def _signs(holds_variable: Sequence[bool]) -> Numbers:
-    """The sign of the joint variable in each unread cell, ``(S, U)``: all combinations in turn."""
+    """Return all combinations of signs of the joint variables in the unread cells, ``(S, U)``."""
     signs = np.ones((STARTS, len(holds_variable)))
     places = [k for k, holds in enumerate(holds_variable) if holds]
     for bit, k in enumerate(places):
@@ -195,10 +195,10 @@ def _signs(holds_variable: Sequence[bool]) -> Numbers:
 def _linearised(
     case: _Case, constants: Numbers, signs: Numbers, base: Matrices, tool: Matrices
 ) -> tuple[Numbers, Numbers]:
-    """How far the tool is from the reference's, ``(S, 6 L)``, and how that changes ``(S, U, …)``.
+    """Return the error of the tool, ``(S, 6 L)``, and its derivative ``(S, U, …)``.
 
-    The error is the rotation vector to the reference's tool and the way there. A cell turns all
-    that follows about its axis, ω and ω × (p - point), or moves it along.
+    The error is the rotation vector and the displacement to the reference's tool. A cell turns all
+    later frames about its axis, ω and ω × (p - point), or moves them along the axis.
     """
     starts, postures = len(constants), len(case.target)
     table = np.repeat(case.table[:, :, None], starts, axis=2)
@@ -226,9 +226,9 @@ def _linearised(
 
 
 def _rotation_vector(rotation: Matrices) -> Numbers:
-    """The axis times the angle of rotations ``(..., 3, 3)``: ``(..., 3)``.
+    """Return the axis times the angle of rotations ``(..., 3, 3)``: ``(..., 3)``.
 
-    Half a turn, of which this finds no axis, is far from any solution.
+    The result is wrong for half a turn, which is far from any solution.
     """
     upper, lower = (2, 0, 1), (1, 2, 0)
     twice_sine = rotation[..., upper, lower] - rotation[..., lower, upper]
@@ -238,20 +238,20 @@ def _rotation_vector(rotation: Matrices) -> Numbers:
 
 
 def _cross(one: Numbers, other: Numbers) -> Numbers:
-    """The vector products ``(..., 3)``, for a fraction of what numpy's own take."""
+    """Return the vector products ``(..., 3)``, several times faster than numpy.cross."""
     (a, b, c), (x, y, z) = np.moveaxis(one, -1, 0), np.moveaxis(other, -1, 0)
     return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
 
 
 def _step(error: Numbers, columns: Numbers, damping: Numbers) -> Numbers:
-    """The step ``(S, U)`` that lessens the error ``(S, E)``; ``columns`` is ``(S, U, E)``."""
+    """Return the step ``(S, U)`` that reduces the error ``(S, E)``; columns are ``(S, U, E)``."""
     square = columns @ columns.swapaxes(-1, -2)
     square += damping[:, None, None] * np.eye(columns.shape[1])
     return np.asarray(np.linalg.solve(square, columns @ error[..., None])[..., 0])
 
 
 def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
-    """The share of the error ``(S,)``, squared, that the step would undo if all were linear."""
+    """Return the share of the squared error ``(S,)`` that the step removes in a linear model."""
     undone = (change * (columns @ error[..., None])[..., 0]).sum(axis=-1)
     return np.asarray(undone / (error**2).sum(axis=-1))
 
@@ -259,7 +259,7 @@ def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
 def _moved(
     freedom: FrameFreedom, base: Matrices, tool: Matrices, twists: Numbers
 ) -> tuple[Matrices, Matrices]:
-    """A free base and a free tool after their twists, ``(S, 1, 4, 4)`` each."""
+    """Return a free base and a free tool after their twists, ``(S, 1, 4, 4)`` each."""
     if freedom.base:
         base = exponential(twists[:, None, :6], 1.0) @ base
     if freedom.tool:

@@ -1,4 +1,4 @@
-"""A handed-in table taken apart into constants and joint variables."""
+"""Separate a submitted table into constants and joint variables."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +26,9 @@ from service.kinematics.transforms import Numbers
 def row_constants(
     roles: tuple[Role, ...], joints: tuple[Joint, ...], convention: Convention, samples: Samples
 ) -> list[RowConstants]:
-    """The constants of a table, regrouped as the rows that lead from target to target.
+    """Return the constants of a table, regrouped as the rows that lead from target to target.
 
-    A cell that does not move as its joint does is wrong regardless.
+    A cell that does not change as its joint variable does is wrong in any frames.
     """
     cells = handed_in_values(roles)
     is_gradable = np.array(
@@ -64,10 +64,10 @@ def row_constants(
 def without_variables(
     tables: Numbers, roles: tuple[Role, ...], samples: Samples
 ) -> tuple[Numbers, NDArray[np.int_]]:
-    """The constants of many tables ``(T, rows, 4, samples)``, and the signs of the joint variables.
+    """Return the constants of tables ``(T, rows, 4, samples)`` and the signs of their variables.
 
-    The constants are ``(T, rows, 4, samples / 2)``, NaN where a cell moves otherwise than it
-    should; the signs ``(T, rows)``.
+    The constants are ``(T, rows, 4, samples / 2)``, NaN for a cell that does not change as its
+    joint variable does. The signs are ``(T, rows)``.
     """
     tables = tables.copy()
     signs = np.zeros(tables.shape[:2], dtype=np.int_)

@@ -1,4 +1,4 @@
-"""The reference as the grading of student's frames needs it, and the regrouping of rows."""
+"""The reference in the forms that tables in a student's own frames need; regrouping of rows."""
 
 from dataclasses import dataclass
 from itertools import accumulate
@@ -22,10 +22,10 @@ _Cell = TypeVar("_Cell", bound=np.generic)
 class Mechanism:
     """The reference's constants, at the first half of the samples (L of them).
 
-    ``joints`` ``(n, L, 4, 4)`` is the transform to each joint's frame from that of the joint
-    before. ``fixed`` are the frames of the fixed rows and ``tool`` is the end effector's, ``(L, 4,
-    4)`` each, seen from the last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is the Z of the
-    constants in each joint's d and θ.
+    ``joints`` ``(n, L, 4, 4)`` is the transform from the previous joint's frame to each joint's.
+    ``fixed`` are the frames of the fixed rows and ``tool`` is the end effector's, ``(L, 4, 4)``
+    each, in the last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is the screw Z of the constants in
+    each joint's d and θ.
     """
 
     joints: Matrices
@@ -35,7 +35,7 @@ class Mechanism:
 
 
 def mechanism_at(exercise: Exercise, samples: Samples) -> Mechanism:
-    """The mechanism that the exercise's reference describes."""
+    """Return the mechanism that the exercise's reference describes."""
     return samples.cached("mechanism", lambda: _mechanism(exercise, samples))
 
 
@@ -53,16 +53,17 @@ def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
 
 
 def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
-    """The reference's table in numbers, ``(rows, 4, samples)``; it must not be written to."""
+    """Return the reference's table in numbers, ``(rows, 4, samples)``. Do not modify it."""
     return samples.cached(
         reference.convention, lambda: reference.values(samples.values, samples.count)
     )
 
 
 def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
-    """The reference's frames on the joint axes and its tool's: ``(joints + 1, samples, 4, 4)``.
+    """Return the reference's frames on the joint axes and its tool frame.
 
-    They are the frames of a table of this convention, whether the robot has such a table or not.
+    The shape is ``(joints + 1, samples, 4, 4)``. They are the frames of a table in this convention,
+    even if the robot has no such table.
     """
 
     def compute() -> Matrices:
@@ -82,11 +83,11 @@ def frames_on_axes(
     convention: Convention,
     mechanism: Mechanism,
 ) -> Matrices:
-    """The student's frames on the joint axes, seen from the reference's: ``(joints, ..., 4, 4)``.
+    """Return the student's frames on the joint axes in the reference's: ``(joints, ..., 4, 4)``.
 
-    ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are those of the frames that each joint's Z starts
-    from, ``links`` ``(rows + 1, 4, ...)`` the constants, regrouped. That is the frame on the axis
-    in the standard convention; in the modified one, that is the frame which Z leads to.
+    ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are those of the frames before each joint's Z.
+    ``links`` ``(rows + 1, 4, ...)`` are the regrouped constants. The frame on the axis is the one
+    before Z in the standard convention, and the one after Z in the modified convention.
     """
     places = [i for i, _ in joint_cells(roles)]
     on_axes = relative_poses[places]
@@ -99,15 +100,15 @@ def frames_on_axes(
 
 
 def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
-    """The reference's end-effector frame in the base frame, ``(samples, 4, 4)``."""
+    """Return the reference's end-effector frame in the base frame, ``(samples, 4, 4)``."""
     pose: Matrices = reference_frames(exercise, exercise.robot.convention, samples)[-1]
     return pose
 
 
 def regrouped(cells: NDArray[_Cell], convention: Convention) -> NDArray[_Cell]:
-    """Rows of a table as the products Z X that lead from each target to the next.
+    """Regroup the rows of a table as the products Z X that lead from each target to the next.
 
-    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros where the table has no cell.
+    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros for cells that the table lacks.
     """
     none = np.zeros_like(cells[:1])
     z = np.concatenate([none, cells])
@@ -116,6 +117,6 @@ def regrouped(cells: NDArray[_Cell], convention: Convention) -> NDArray[_Cell]:
 
 
 def as_table(links: Table, convention: Convention) -> Table:
-    """The inverse of ``regrouped``."""
+    """Convert regrouped rows ``(rows + 1, 4, ...)`` to a table: the inverse of ``regrouped``."""
     x = links[1:] if convention is Convention.STANDARD else links[:-1]
     return np.concatenate([x[:, :2], links[1:, 2:]], axis=1)

@@ -1,4 +1,4 @@
-"""Remarks on frames that are valid but not the reference's, so that nobody wonders."""
+"""Remarks on frames that are valid but differ from the reference's."""
 
 from itertools import compress
 from typing import Final
@@ -18,9 +18,9 @@ OWN_FRAME_CHOICE: Final = "own_frame_choice"
 def remarks_on(
     relative_poses: Matrices, convention: Convention, exercise: Exercise
 ) -> tuple[Finding, ...]:
-    """One message for each frame that departs from the reference's.
+    """Return one finding for each frame that differs from the reference's.
 
-    ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the axes in the
+    ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes in the
     reference's.
     """
     error = np.abs(relative_poses - np.eye(4)).max(axis=1)

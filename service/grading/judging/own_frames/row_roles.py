@@ -1,4 +1,4 @@
-"""Which row of a handed-in table is for which joint, and what the exercise leaves free."""
+"""Pair the rows of a submitted table with joints; what an exercise leaves free."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ _NOTHING = np.full((len(COLUMNS), SAMPLES), np.nan)
 
 @dataclass(frozen=True, slots=True)
 class FrameFreedom:
-    """What an exercise leaves to the student, beyond the frames on the joints."""
+    """The choices that an exercise leaves to the student besides the frames on the joints."""
 
     base: bool = False
     tool: bool = False
@@ -28,42 +28,42 @@ class FrameFreedom:
 
 
 def freedom_of(part: DhTableSpec) -> FrameFreedom:
-    """What the part leaves to the student beyond the frames on the joints."""
+    """Return the choices that the part leaves to the student besides the frames on the joints."""
     return FrameFreedom(part.base == "free", part.tool == "free", part.directions == "free")
 
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """A row and the joint it is for; a row without joint is fixed, a joint without row missing."""
+    """A row and its joint. A row without joint is fixed; a joint without row has a missing row."""
 
     row: StudentRow | None
     joint: Joint | None
 
 
 def variable_column(joint: Joint) -> int:
-    """The column of the joint's variable."""
+    """Return the column of the joint's variable."""
     return D if joint.prismatic else THETA
 
 
 def joint_cells(roles: Sequence[Role]) -> dict[CellIndex, Joint]:
-    """The cells of the joints' variables, in the order of the rows."""
+    """Return the cells of the joint variables with their joints, in the order of the rows."""
     return {
         (i, variable_column(role.joint)): role.joint for i, role in enumerate(roles) if role.joint
     }
 
 
 def handed_in_values(roles: Sequence[Role]) -> Table:
-    """The values of the rows, ``(rows, 4, SAMPLES)``, NaN where a row is missing."""
+    """Return the values of the rows, ``(rows, 4, SAMPLES)``, NaN for a missing row."""
     return np.array([role.row.values if role.row else _NOTHING for role in roles])
 
 
 def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
-    """The joint variable that belongs in each cell, ``(rows, 4, samples)``; 0 in the others."""
+    """Return the joint variable that belongs in each cell, or 0: ``(rows, 4, samples)``."""
     return joint_variables([role.joint for role in roles], samples)
 
 
 def joint_variables(joints: Sequence[Joint | None], samples: Samples) -> Table:
-    """The same for rows of these joints; None is a fixed row."""
+    """Return the joint variable, or 0, in each cell of the joints' rows; None is a fixed row."""
     variables = np.zeros((len(joints), len(COLUMNS), samples.count))
     for row, joint in zip(variables, joints, strict=True):
         if joint is not None:
@@ -79,12 +79,12 @@ def roles_of(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Which row is for which joint; the reference's table has ``expected_rows``.
+    """Return the roles of the rows; the reference's table has ``expected_rows``.
 
-    As many rows as joints are taken in order, unless ``in_order`` says otherwise. Otherwise the
-    joint variables decide: of the pairings in order, the one that meets most of them; the rows left
-    over are fixed ones. Where a joint's variable is in no cell of its column and the number of rows
-    is as expected, these are the joints' rows and then the fixed ones.
+    If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
+    Otherwise the joint variables decide: the pairing in order with the most matching variables is
+    taken, and the remaining rows are fixed. But if some joint's variable is in no cell of its
+    column, and the number of rows is the expected one, the joints' rows come first.
     """
     one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
     if len(rows) == len(joints) if in_order is None else in_order:
@@ -107,10 +107,10 @@ def roles_of(
 def pair_in_order(scores: Numbers) -> list[tuple[int | None, int | None]]:
     """Pair handed-in rows with expected rows, in order, so that the sum of scores is the largest.
 
-    ``scores`` is ``(handed in, expected)``. A row without partner is paired with None: on the left
-    it is missing, on the right it is extra. Of equal sums the last rows stay without partner.
+    ``scores`` is ``(submitted, expected)``. A row without partner is paired with None: (None, j) is
+    a missing row, (i, None) an extra one. For equal sums, the last rows have no partner.
 
-    The longest-common-subsequence recurrence with weights.
+    The method is the weighted recurrence of the longest common subsequence.
     """
     m, n = scores.shape
     best = np.zeros((m + 1, n + 1))

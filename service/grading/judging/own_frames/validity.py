@@ -1,4 +1,4 @@
-"""Which of many tables describe the robot, in whatever frames."""
+"""Test which of many tables describe the robot in any valid frames."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +31,10 @@ def valid_tables(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """Which of many tables describe the mechanism, in whatever frames: ``(T,)``.
+    """Return a mask ``(T,)`` of the tables that describe the mechanism in any valid frames.
 
-    ``tables`` is ``(T, rows, 4, samples)`` at the samples, all with the same rows for the same
-    joints. A free base counts as given here.
+    ``tables`` is ``(T, rows, 4, samples)``; all have the same ``roles``. A free base counts as
+    given here.
     """
     if not (freedom.tool or freedom.directions):
         return _valid_by_pose(tables, roles, convention, exercise, samples, tolerance)
@@ -55,7 +55,7 @@ def _valid_by_pose(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """``valid_tables`` where base, tool and directions are given: the pose decides (``few_cells``).
+    """Return ``valid_tables`` for given base, tool and directions, by the pose (``few_cells``).
 
     The tolerance is relative to the reach of the arm.
     """
@@ -63,7 +63,7 @@ def _valid_by_pose(
     valid = np.asarray(moves.all(axis=(1, 2)))
     expected = reference_frames(exercise, convention, samples)[-1]
     reach = max(exercise.length_scale, float(np.abs(expected[:, :3, 3]).max()))
-    # Most tables fail at the first sample already.
+    # Most tables fail at the first sample.
     for chosen in (slice(0, 1), slice(None)):
         left = np.flatnonzero(valid)
         if left.size:
@@ -77,7 +77,7 @@ def _valid_by_pose(
 def targets_of(
     roles: tuple[Role, ...], convention: Convention, mechanism: Mechanism, freedom: FrameFreedom
 ) -> list[Target]:
-    """What each row leads to: joint axes, frames of fixed rows, and in the end the tool."""
+    """Return the target of each row: a joint axis, the frame of a fixed row, or the tool."""
     targets: list[Target] = []
     links, fixed = iter(mechanism.joints), iter(mechanism.fixed)
     last_joint = max((i for i, role in enumerate(roles) if role.joint), default=-1)
@@ -87,7 +87,8 @@ def targets_of(
             kind = TargetKind.PRISMATIC if role.joint.prismatic else TargetKind.REVOLUTE
             frame = next(links)
         elif i == len(roles) - 1 and convention is Convention.MODIFIED:
-            # Z of the last row alone leads from there to the tool, so that z lies on the tool's z.
+            # Only the Z of the last row leads from there to the tool, so z must lie on the tool's
+            # z.
             frame = mechanism.tool
         elif i > last_joint:
             frame = next(fixed, None)

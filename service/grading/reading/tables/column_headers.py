@@ -164,7 +164,7 @@ def is_wordy(text: str) -> bool:
 
 
 def _plain(text: str) -> tuple[str, str]:
-    """Return the header in small plain letters without its unit, ``~`` for -1; and the unit."""
+    """Return a header in small plain letters, and its unit; ``~`` replaces -1."""
     plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS).lower()
     plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
     plain = plain.replace("α", " alpha ").replace("θ", " theta ")

@@ -1,4 +1,4 @@
-"""Which row is for which joint, where there are several ways to take them."""
+"""The roles of rows that could be paired with the joints in several ways."""
 
 from collections.abc import Mapping
 
@@ -6,7 +6,7 @@ from service.catalogue import Exercise
 from tests.grading.support.submitting import graded_table, not_correct
 
 
-def test_a_row_of_zeros_may_be_one_in_which_something_is_missing(
+def test_a_row_of_zeros_may_have_a_missing_value(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     """z3 and z4 point up, so that a fixed row must turn the last frame over; its α is left at 0."""

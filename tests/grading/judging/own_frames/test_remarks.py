@@ -1,4 +1,4 @@
-"""The remarks on frames that are valid but not the reference's."""
+"""Remarks on frames that are valid but differ from the reference's."""
 
 from collections.abc import Mapping
 
@@ -9,9 +9,9 @@ from service.grading import Severity
 from tests.grading.support.robots import Row
 from tests.grading.support.submitting import full_marks, graded_table
 
-# Each table departs in one frame by one of the identities in docs/frame-choice.md; the frame that
-# it departs in is seen from the convention: row i holds d and θ of z_{i-1} in a standard table and
-# of z_i in a modified one.
+# Each table differs in one frame, by one of the identities in docs/frame-choice.md. Which frame
+# that is depends on the convention: row i has d and θ of z_{i-1} in a standard table, of z_i in a
+# modified one.
 DEPARTURES: list[tuple[str, str, tuple[Row, ...]]] = [
     (
         "planar-rrr",
@@ -61,7 +61,7 @@ DEPARTURES: list[tuple[str, str, tuple[Row, ...]]] = [
 @pytest.mark.parametrize(
     ("exercise", "remark", "rows"), DEPARTURES, ids=[message for _, message, _ in DEPARTURES]
 )
-def test_the_frame_that_departs_is_named_and_no_other(
+def test_only_the_frame_that_differs_is_named(
     exercise: str, remark: str, rows: tuple[Row, ...], catalogue: Mapping[str, Exercise]
 ) -> None:
     report = graded_table(catalogue[exercise], rows)
@@ -70,7 +70,7 @@ def test_the_frame_that_departs_is_named_and_no_other(
     assert report.feedback[0].severity is Severity.INFO
 
 
-def test_who_typed_zeros_has_chosen_no_frames(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_table_of_zeros_gets_no_remarks_on_frames(catalogue: Mapping[str, Exercise]) -> None:
     report = graded_table(catalogue["scara"], [("0", "0", "0", "0")] * 4)
     codes = {message.code for message in report.feedback}
     assert "no_joint_variable" in codes

@@ -1,4 +1,4 @@
-"""Rows are paired in order, so that the sum of their scores is the largest."""
+"""The pairing of rows in order has the largest sum of scores."""
 
 import numpy as np
 import pytest
@@ -16,6 +16,6 @@ PAIRS: dict[str, tuple[list[list[float]], list[tuple[int | None, int | None]]]] 
 
 
 @pytest.mark.parametrize("name", PAIRS)
-def test_the_pairing_of_rows(name: str) -> None:
+def test_the_pairing_has_the_largest_sum_of_scores(name: str) -> None:
     scores, pairs = PAIRS[name]
     assert pair_in_order(np.array(scores, dtype=np.float64)) == pairs

@@ -133,7 +133,7 @@ def test_lists_of_other_shapes_are_not_tables(
     assert report.points == 0
 
 
-def test_a_long_table_is_not_read_twice(
+def test_only_the_first_row_of_a_long_table_is_read_twice(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     """The first row is read twice, because it might be a row of headers."""

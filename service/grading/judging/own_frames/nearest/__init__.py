@@ -1,1 +1,1 @@
-"""The valid table nearest to a wrong one."""
+"""Find the valid table nearest to a wrong one."""

@@ -1,8 +1,8 @@
-"""The valid table that a handed-in one is, or that it differs from in one cell, two, or one row.
+"""Find the valid table that equals a submitted one, or differs in one or two cells or one row.
 
-Where base, tool and directions are given, a table is valid if and only if its pose is the
-reference's at all joint values, and every cell moves as its own joint does and not otherwise. So no
-search is needed: the right value of a cell, or of a whole row, follows from all the others.
+If base, tool and directions are given, a table is valid if and only if its pose is the reference's
+at all joint values, and every cell changes only as its own joint variable does. So no search is
+needed: the right value of a cell, or of a whole row, follows from all other cells.
 """
 
 from collections.abc import Container, Iterable, Sequence
@@ -35,15 +35,15 @@ from service.kinematics.repairs.row_repairs import one_row_repairs, repaired_row
 from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
-# A subset of the samples, enough to find the cells that repair a table; their values are then
-# computed at all samples.
+# The number of samples at which repairs are searched; their values are then computed at all
+# samples.
 SUBSET = 3
 SUBSET_SAMPLES = np.r_[:SUBSET, HALF : HALF + SUBSET]
 MAX_CELLS = 2
-# How much less two wrong cells of one row cost than two of several rows, if the frames are the
-# reference's own.
+# The discount of two wrong cells in one row against two in several rows, if the frames are the
+# reference's.
 IN_ONE_ROW = 0.3
-# The cost of a repair in unread cells alone: the table may be right.
+# The cost of a repair that changes unread cells only: the table may be right.
 UNREAD = WRONG_CELL / 10
 
 
@@ -53,8 +53,8 @@ class NearestTable:
 
     ``frames`` ``(joints, samples, 4, 4)`` are its frames on the joint axes as seen from the
     reference's. ``cost`` is that of ``frame_choice``: below 1 the handed-in table is valid.
-    ``lost`` are the units of the marks that the wrong cells lose, compared with the valid table for
-    which these are the fewest, which need not be this one; infinite if unknown.
+    ``lost`` are the units of marks that the wrong cells lose, compared with the valid table for
+    which these are the fewest (not always this table); infinite if unknown.
     """
 
     roles: tuple[Role, ...]
@@ -68,8 +68,8 @@ class NearestTable:
 class _Case:
     """A table to be repaired.
 
-    ``table`` is ``(rows, 4, samples)``. Each cell must change with the joints as its joint variable
-    in ``variables`` does (0 for none); ``wrong`` are the cells that do not.
+    ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable in each cell, or 0. A
+    cell must change with the joints as this does; ``wrong`` are the cells that do not.
     """
 
     roles: tuple[Role, ...]
@@ -81,26 +81,26 @@ class _Case:
 
     @property
     def unit(self) -> float:
-        """The unit that poses are compared in."""
+        """The unit of length for comparing poses."""
         return self.grading.exercise.length_scale
 
     @property
     def reference(self) -> Matrices:
-        """The reference's frames on the axes and its tool's, ``(joints + 1, SAMPLES, 4, 4)``."""
+        """The reference's frames on the joint axes and its tool frame, ``(joints + 1, …)``."""
         return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
 
     def from_reference(self, reached: Matrices) -> Matrices:
-        """The frames on the joint axes as seen from the reference's; see ``_from_reference``."""
+        """Return the frames on the joint axes in the reference's; see ``_from_reference``."""
         return _from_reference(reached, self.roles, self.convention, self.grading)
 
 
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NearestTable | None:
-    """The table as written, or the valid one that differs from it in one cell, or in two or a row.
+    """Return the valid table that equals the written one, or differs in 1 or 2 cells or 1 row.
 
-    Of several the one that takes the likeliest slip; None if there is none. Every role must have a
-    row.
+    If there are several, return the one with the likeliest slip; None if there is none. Every role
+    must have a row.
     """
     case = _case(roles, convention, grading)
     if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:
@@ -120,9 +120,9 @@ def nearest_by_few_cells(
 def frames_from_reference(
     table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """A table's frames on the joint axes as seen from the reference's.
+    """Return a table's frames on the joint axes in the reference's, at a subset of the samples.
 
-    ``(joints, samples, 4, 4)``, at a subset of the samples.
+    The shape is ``(joints, samples, 4, 4)``.
     """
     reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
     return _from_reference(reached, roles, convention, grading)[:, 0]
@@ -131,9 +131,9 @@ def frames_from_reference(
 def _from_reference(
     reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """The frames on the joint axes as seen from the reference's, ``(joints, T, subset, 4, 4)``.
+    """Return the frames on the joint axes in the reference's, ``(joints, T, subset, 4, 4)``.
 
-    ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
+    ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables.
     """
     of_joints = [role.joint is not None for role in roles]
     on_axes = joint_frames(reached, convention)[of_joints]
@@ -152,9 +152,9 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
 
 
 def _repairs(case: _Case) -> tuple[list[CellRepair], list[CellRepair]]:
-    """The repairs of the table by one cell; if there are none, those by two or by one row.
+    """Return the repairs by one cell, or else by two cells or one row; and others.
 
-    And others, which change more cells but may lose fewer marks.
+    The others change more cells, but may lose fewer marks.
     """
     factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
     pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
@@ -170,7 +170,7 @@ def _repairs(case: _Case) -> tuple[list[CellRepair], list[CellRepair]]:
 def _admissible(
     repairs: Iterable[CellRepair], counts: Container[int], case: _Case
 ) -> list[CellRepair]:
-    """Return the repairs of ``counts`` cells that leave every cell depending rightly on the joints.
+    """Return repairs of ``counts`` cells that leave every cell depending correctly on the joints.
 
     Their lengths are in the table's unit.
     """
@@ -187,11 +187,11 @@ def _in_one_row(repair: CellRepair) -> bool:
 
 
 def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
-    """The table repaired, by the repair that takes the likeliest slip.
+    """Return the table after the repair of the likeliest slip.
 
-    It takes few cells: errors in one row cost less than as many in several. Then frames near the
-    reference's come first, and the search ends where the frames alone cost more than the best
-    repair so far.
+    Repairs of few cells are cheap, and cells in one row are cheaper than in several. Then repairs
+    with frames near the reference's come first; the search ends if the frames alone cost more than
+    the best repair so far.
     """
     tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
     for k, repair in enumerate(repairs):
@@ -239,21 +239,21 @@ def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
 
 
 def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
-    """How unlikely the slip is that made this cell wrong."""
+    """Return how unlikely the slip in this cell is, at least 0."""
     right = _constant(repaired[cell], cell, case)
     written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
     return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)
 
 
 def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
-    """A cell that moves as it should, less its joint's variable, whose sign may be either."""
+    """Return a cell that changes as it should, minus its joint variable with either sign."""
     variable: Numbers = case.variables[cell]
     error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
     return values - variable if error.max() < SAME_MOTION else values + variable
 
 
 def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Table | None:
-    """The table with these cells repaired, ``(rows, 4, SAMPLES)``; None where that fails."""
+    """Return the table with these cells repaired, ``(rows, 4, SAMPLES)``; None if that fails."""
     pose = _in_unit(case.reference[-1], case.unit)
     if len(cells) <= MAX_CELLS:
         values = repaired_values(factors, pose, cells)
@@ -271,7 +271,7 @@ def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Tabl
 
 
 def _moves_rightly(repair: CellRepair, case: _Case, samples: slice) -> bool:
-    """Whether each value changes with the joints as its cell should."""
+    """True if each repaired value changes with the joints as its cell should."""
     return all(
         moves_with(value, changes(case.variables[cell])[samples], IS_ANGLE[cell[1]])
         for cell, value in zip(repair.cells, repair.values, strict=True)
@@ -285,7 +285,7 @@ def _fill(table: Table, repair: CellRepair) -> None:
 
 
 def _in_table_unit(repair: CellRepair, case: _Case) -> CellRepair:
-    """A repair in the unit that poses are compared in, in the unit of the table."""
+    """Convert a repair from the unit for comparing poses to the unit of the table."""
     units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in repair.cells]
     return CellRepair(repair.cells, repair.values * np.array(units))
 

@@ -1,4 +1,4 @@
-"""The valid table nearest to a handed-in one, where it is known which row is for which joint."""
+"""Find the valid table nearest to a submitted one whose rows have known roles."""
 
 from dataclasses import replace
 from functools import partial
@@ -55,14 +55,14 @@ from service.kinematics.frames.reversed_chain import (
 )
 from service.kinematics.tolerances import PARALLEL
 
-# If a table loses more in all frames, the intended frames are unknown.
+# If a table loses more than this in all frames, the intended frames are unknown.
 MOST_LOST = 2 * WRONG_CELL
 
 
 def nearest_for_roles(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """The valid table nearest to the one handed in, its rows taken for ``roles``."""
+    """Return the valid table nearest to the submitted one, whose rows have these ``roles``."""
     if freedom == FrameFreedom() and all(role.row is not None for role in roles):
         nearest = nearest_by_few_cells(roles, convention, grading)
         nearest = nearest or _as_intended(roles, convention, freedom, grading)
@@ -74,11 +74,10 @@ def nearest_for_roles(
 def _as_intended(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """The table without a mistake of convention or of the unit of all angles, if that is valid.
+    """Return the table without a mistake in convention or angle unit, if that table is valid.
 
-    Such a slip makes most cells wrong at once. The intended table is known all the same, and so is
-    the right value of each cell: nothing has to be guessed from the cells that agree with some
-    valid table.
+    Such a slip makes most cells wrong at once. But the intended table is known, and with it the
+    right value of each cell.
     """
     values = handed_in_values(roles)
     if not np.isfinite(values).all():
@@ -100,7 +99,7 @@ def _as_intended(
 
 
 def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
-    """The same chain in a convention, ``(rows, 4, samples)``; None where that takes other rows."""
+    """Convert a table to a convention, ``(rows, 4, samples)``; None if that needs other rows."""
     links = regrouped(table.values, table.convention)
     left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
     return None if left_out.any() else as_table(links, convention)
@@ -109,9 +108,9 @@ def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
 def _link_by_link(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """The nearest valid table with any freedom, found by comparing the links between the axes.
+    """Return the nearest valid table for any freedom, by comparing the links between the axes.
 
-    It is the table as written; or else it differs in one cell; or else a search finds it.
+    Try the table as written, then tables that differ in one cell, then a search.
     """
     exercise, samples = grading.exercise, grading.samples
     mechanism = mechanism_at(exercise, samples)
@@ -120,7 +119,7 @@ def _link_by_link(
     match = _as_written(rows, targets, roles, mechanism, freedom, exercise.length_scale)
     if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
         match = one_cell_match(rows, targets, roles, convention, freedom, grading)
-    # A wrong cell may imply frames in which it is alone; in others its whole row may lose less.
+    # The cell may be the only wrong one in these frames, and its row may lose less in other frames.
     if match is None or match.cost > WRONG_CELL:
         z_ends_rows = convention is Convention.MODIFIED
         searched = _searched(
@@ -128,7 +127,7 @@ def _link_by_link(
         )
         lost = searched.lost if match is None else min(match.lost, searched.lost)
         match = replace(match or searched, lost=lost)
-    # What each cell should be: the constants and the joint variables.
+    # Each cell should be its constant plus its joint variable.
     expected = np.tile(as_table(match.rows, convention), 2)
     for (i, column), joint in joint_cells(roles).items():
         sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
@@ -146,7 +145,7 @@ def _as_written(
     freedom: FrameFreedom,
     scale: float,
 ) -> ChainMatch | None:
-    """The table as written, if it is valid from any base that is possible."""
+    """Return the table as written if it is valid from any possible base, else None."""
     written = np.array([row.written for row in rows])
     signs = np.array([row.joint_sign for row in rows])
     for base in possible_bases(written, signs, roles, mechanism, freedom):
@@ -167,15 +166,15 @@ def _searched(
     scale: float,
     z_ends_rows: bool,
 ) -> ChainMatch:
-    """The nearest valid table by a search: from the base, or from the tool if that alone is given.
+    """Search the nearest valid table, from the base, or from the tool if only that is given.
 
-    Where both are free, the search takes the base to be wherever each row needs it. So a table in
-    which it finds nothing wrong, but for rounding, is searched again from each possible base.
+    If both are free, the search moves the base for each row. So if it finds nothing wrong except
+    rounding, the table is searched again from each possible base.
     """
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions
     )
-    # From the tool, the two halves of a row come in the opposite order.
+    # Seen from the tool, the two halves of a row are in the opposite order.
     search = partial(search, z_ends_rows=z_ends_rows != (freedom.base and not freedom.tool))
     if not freedom.base:
         return search(rows, targets)
@@ -199,14 +198,14 @@ def _searched(
 def parallel_neighbours(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NDArray[np.bool_]:
-    """Which rows' axes are parallel to the axis before or after, so that offsets along them add up.
+    """Return a mask ``(rows,)`` of the rows whose axis is parallel to a neighbouring axis.
 
-    ``(rows,)``.
+    Offsets along parallel axes add up.
     """
     reference = reference_frames(grading.exercise, convention, grading.samples)
     axes = reference[:, :2, :3, 2]
     parallel = np.abs(np.cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL
-    # The tool's axis counts only if there is a row whose d lies along it.
+    # The tool's axis counts only if the d of some row lies along it.
     parallel[-1] &= roles[-1].joint is None
     of_joints = iter((parallel | np.append(False, parallel[:-1])).tolist())
     return np.array([role.joint is not None and next(of_joints) for role in roles])

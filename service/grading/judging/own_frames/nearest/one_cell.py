@@ -1,10 +1,9 @@
-"""The valid table that differs from a handed-in one in one cell, where something is left free.
+"""Find the valid table that differs from a submitted one in one cell, if something is free.
 
-``few_cells`` compares poses at all joint values. That cannot be done where the base or the tool is
-the student's, or the direction of a joint. So here the constants are compared, as ``validity``
-does: the joint axes must lie on the reference's where all joints are at 0. The axes give the value
-that each cell would need if it alone were wrong (``kinematics.axis_repairs``). All the tables so
-repaired are then tested at once.
+``few_cells`` compares poses at all joint values. That is impossible if the student chooses base,
+tool or directions. So this module compares constants, as ``validity`` does: with all joints at 0,
+the joint axes must lie on the reference's. The axes give the value that each cell would need if it
+alone were wrong (``kinematics.axis_repairs``). All repaired tables are then tested at once.
 """
 
 from collections.abc import Iterator, Sequence, Set
@@ -41,17 +40,17 @@ from service.kinematics.repairs.axis_repairs import repairs_by_axes, reversed_fa
 from service.kinematics.repairs.cell_repairs import one_factor_repairs
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 
-# So many samples are enough to find the cells that repair a table; their values are then computed
-# at all samples.
+# The number of samples at which repairs are searched; their values are then computed at all
+# samples.
 SUBSET = 2
 
 
 @dataclass(frozen=True, slots=True)
 class _Repair:
-    """Another constant ``(L,)`` of a cell, and where one end of the chain would then lie.
+    """Another constant ``(L,)`` of a cell, and the pose of one end of the chain that it implies.
 
-    The end is frame 0 or the last frame, ``(L, 4, 4)``, seen from the reference's frame 0;
-    ``attempt`` is the number of the assumption that led there.
+    The end is frame 0 or the last frame, ``(L, 4, 4)``, in the reference's frame 0. ``attempt`` is
+    the number of the underlying assumption.
     """
 
     cell: CellIndex
@@ -63,11 +62,11 @@ class _Repair:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """A table taken apart into factors from one end, and the reference's axes in the same order.
+    """The factors of a table, from one end, and the reference's axes in the same order.
 
-    ``joints`` ``(n,)`` are the factors along whose z the joints act; ``axes`` ``(n, L, 4, 4)``,
-    seen from the reference's frame 0, is where they should lie. ``is_reversed`` says that the end
-    is the last frame.
+    ``joints`` ``(n,)`` are the factors along whose z the joints act. ``axes`` ``(n, L, 4, 4)`` are
+    the right poses of these axes in the reference's frame 0. ``is_reversed`` is true if the factors
+    start from the last frame.
     """
 
     factors: Factors
@@ -78,7 +77,7 @@ class _Body:
 
     @property
     def reversed(self) -> "_Body":
-        """The same, seen from the last frame."""
+        """Return the table with its factors from the last frame."""
         return _Body(
             reversed_factors(self.factors),
             len(self.factors.axes) - 1 - self.joints[::-1],
@@ -88,12 +87,12 @@ class _Body:
         )
 
     def cell(self, k: int, kind: int) -> CellIndex:
-        """The cell of the table that holds the SHIFT or TURN of the k-th factor."""
+        """Return the cell of the table with the SHIFT or TURN of the k-th factor."""
         in_table = len(self.factors.axes) - 1 - k if self.is_reversed else k
         return in_table // 2, (A if self.factors.axes[k] == X else D) + kind
 
     def factor(self, cell: CellIndex) -> int:
-        """The factor of a cell of the table."""
+        """Return the index of the factor that a cell of the table belongs to."""
         in_table = self.factors.position(cell)[0]
         return len(self.factors.axes) - 1 - in_table if self.is_reversed else in_table
 
@@ -102,8 +101,8 @@ class _Body:
 class _Case:
     """A table to be repaired: its constants ``(rows, 4, L)`` and those of the mechanism.
 
-    ``wrong`` are the cells that are wrong whatever the frames, ``joint_signs`` ``(rows + 1,)`` the
-    signs that matter of the variables, as in RowConstants.
+    ``wrong`` are the cells that are wrong in any frames. ``joint_signs`` ``(rows + 1,)`` are the
+    signs of the variables, 0 if irrelevant, as in RowConstants.
     """
 
     table: Table
@@ -117,7 +116,7 @@ class _Case:
     length_scale: float
 
     def body(self, samples: int) -> tuple[_Body, Matrices]:
-        """The table at the first samples, and the reference's last frame there."""
+        """Return the table at the first samples, and the reference's last frame there."""
         factors = factors_of(self.table[..., :samples], self.convention)
         joints = joint_cells(self.roles)
         axes = np.array(list(accumulate(self.mechanism.joints[:, :samples], np.matmul)))
@@ -132,9 +131,9 @@ class _Case:
 
 @dataclass(frozen=True, slots=True)
 class _Repaired:
-    """Repairs that make the table valid, with the links ``(T, rows + 1, 4, L)`` of the tables.
+    """T repairs that make the table valid, with the ``links`` ``(T, rows + 1, 4, L)`` they give.
 
-    ``poses`` ``(rows + 1, T, L, 4, 4)`` are their relative poses.
+    ``poses`` ``(rows + 1, T, L, 4, 4)`` are the relative poses of the repaired tables.
     """
 
     repairs: Sequence[_Repair]
@@ -150,9 +149,9 @@ def one_cell_match(
     freedom: FrameFreedom,
     grading: Grading,
 ) -> ChainMatch | None:
-    """The valid table that differs from the written one in one cell; None if there is none.
+    """Return the valid table that differs from the written one in one cell; None if there is none.
 
-    Of several it is the one that takes the likeliest slip. Every role must have a row.
+    If there are several, return the one with the likeliest slip. Every role must have a row.
     """
     wrong = np.array([row.wrong_regardless | ~(row.is_gradable | row.absent) for row in rows])
     wrong_cells = np.argwhere(as_table(wrong, convention)).tolist()
@@ -174,14 +173,14 @@ def one_cell_match(
         attempts = {(repair.attempt, repair.cell) for repair in found.repairs}
         found = _repaired(case, list(_repairs(case, case.table.shape[-1], attempts)))
     if case.wrong:
-        # A constant beside a wrong joint variable is no choice of frames: 0 comes first.
+        # Prefer 0 as the constant beside a wrong joint variable: it does not imply other frames.
         without = _repaired(case, [replace(r, value=0 * r.value) for r in found.repairs])
         found = without if without.repairs else found
     return _likeliest(found, case, grading) if found.repairs else None
 
 
 def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
-    """The repair whose frames are near to the reference's and that takes the likeliest slip."""
+    """Return the repair with frames near the reference's and the likeliest slip."""
     links = np.moveaxis(found.links, 0, 2)
     frames = frames_on_axes(found.poses, links, case.roles, case.convention, case.mechanism)
     departures = departure(frames.reshape(-1, *frames.shape[2:]), case.length_scale)
@@ -191,7 +190,7 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
             written = None if repair.cell in case.wrong else case.table[repair.cell]
             angle = bool(IS_ANGLE[repair.cell[1]])
             costs[k] += slip_penalty(written, repair.value, angle, grading)
-    # Where the constant may stay as it is, only the variable is wrong.
+    # If the constant needs no change, only the variable is wrong.
     unchanged = [np.array_equal(r.value, case.table[r.cell]) for r in found.repairs]
     of_variables = {r.cell for r in compress(found.repairs, unchanged)}
     for k, repair in enumerate(found.repairs):
@@ -202,7 +201,7 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
 
 
 def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:
-    """Those of the repairs, each at L samples, that make the table valid."""
+    """Return the repairs, each at L samples, that make the table valid."""
     if not repairs:
         return _Repaired((), np.empty(0), np.empty(0))
     samples = len(repairs[0].value)
@@ -221,7 +220,7 @@ def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:
 
 
 def _starts(repairs: Sequence[_Repair], tables: Numbers, convention: Convention) -> Matrices:
-    """Where frame 0 of each table ``(T, rows, 4, L)`` lies in the reference's: ``(T, L, 4, 4)``."""
+    """Return the pose ``(T, L, 4, 4)`` of frame 0 of each table in the reference's frame 0."""
     starts = np.array([repair.end for repair in repairs])
     from_last = np.array([repair.is_last for repair in repairs])
     if from_last.any():
@@ -232,9 +231,9 @@ def _starts(repairs: Sequence[_Repair], tables: Numbers, convention: Convention)
 def _repairs(
     case: _Case, samples: int, attempts: Set[tuple[int, CellIndex]] | None = None
 ) -> Iterator[_Repair]:
-    """The values that single cells would need, each under the assumption that it alone is wrong.
+    """Yield the values that single cells would need if they alone were wrong.
 
-    At the first ``samples``; only those of the ``attempts``, where these are given.
+    The values are at the first ``samples``. If ``attempts`` are given, yield only these.
     """
     body, tool = case.body(samples)
     for attempt, (seen, ends) in enumerate(_ends(body, tool, case.freedom)):
@@ -249,7 +248,7 @@ def _repairs(
 def _values(
     body: _Body, ends: Matrices, tool: Matrices, case: _Case
 ) -> Iterator[tuple[CellIndex, Numbers]]:
-    """Single cells, each with the constant that it would need."""
+    """Yield single cells, each with the constant that it would need."""
     if case.freedom.base or case.freedom.tool:
         starts = ends @ body.factors.before[:-1]
         sign = -1.0 if body.is_reversed else 1.0
@@ -261,15 +260,15 @@ def _values(
         for repair in one_factor_repairs(body.factors, tool):
             if len(repair.cells) == 1:
                 yield repair.cells[0], repair.values[0]
-    # The constant may be right, and the variable wrong.
+    # The constant may be right and the variable wrong.
     for cell in joint_cells(case.roles):
         yield cell, case.table[cell][: len(tool)]
 
 
 def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[_Body, Matrices]]:
-    """The ends that the table may be seen from, and where each lies if the k-th factor is wrong.
+    """Yield the table from each usable end, and the poses of that end if a factor is wrong.
 
-    That is ``(K, L, 4, 4)``, seen from the reference's frame 0.
+    The poses ``(K, L, 4, 4)``, one for each wrong factor, are in the reference's frame 0.
     """
     count = len(body.factors.axes)
     if not freedom.base:
@@ -283,11 +282,11 @@ def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[
 
 
 def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
-    """Where a free end lies if the axes before the wrong factor lie as the reference's do."""
+    """Yield poses of a free end that put the axes before the wrong factor on the reference's."""
     n, samples = body.axes.shape[:2]
     on_axes = body.factors.before[body.joints]
-    # A variable may be the wrong cell, or have either sign. The first axis and the next that is not
-    # parallel to it decide how the end is turned.
+    # A variable may be the wrong cell, or have either sign. The first axis and the next one that is
+    # not parallel to it determine the orientation of the end.
     directions = [np.array([z, *[x] * (n - 1)]) for z, x in product((1, -1), repeat=2)]
     source = np.concatenate([directed(on_axes, signs) for signs in directions], axis=1)
     target = np.concatenate([body.axes] * len(directions), axis=1)

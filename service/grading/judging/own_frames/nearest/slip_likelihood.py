@@ -1,9 +1,8 @@
-"""Which of several slips is the likeliest, where each of them alone explains a wrong table.
+"""Find the likeliest of several slips that each explain a wrong table.
 
-On parallel axes, and around sliding joints, one slip can often be repaired in another cell than the
-one that it was made in. A repair is likely if the right value is a simple one, and if the slip is
-of a kind that students make: a sign, a value forgotten, a quarter turn, something added that does
-not belong there, a joint variable missing or misplaced.
+On parallel axes, and around prismatic joints, a slip can often be repaired in several cells. A
+repair is likely if the right value is simple, and if students often make the slip: a wrong sign, a
+forgotten value, a quarter turn, an extra term, a missing or misplaced joint variable.
 """
 
 import numpy as np
@@ -15,19 +14,19 @@ from service.grading.numerics.tolerances import SAME_TERM
 from service.grading.part import Grading
 from service.kinematics.transforms import Numbers
 
-# Costs that are far below that of a wrong cell; an unknown slip costs less than a moved frame.
+# All these costs are far below that of a wrong cell; an unknown slip costs less than a moved frame.
 TERM = 0.002
 UNKNOWN_SLIP = 0.010
 
-# How many terms a constant counts for that is no sum of letters and a number.
+# The number of terms of a constant that is not a sum of letters and a number.
 UNRELATED = 4
 
 
 def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
-    """How unlikely the slip is that wrote one constant ``(SAMPLES,)`` for another; at least 0.
+    """Return how unlikely it is to write one constant ``(SAMPLES,)`` for another; at least 0.
 
-    ``written`` is None where the cell moves otherwise than it should, or could not be read: then
-    the slip is in the joint variable.
+    ``written`` is None if the cell does not change as it should, or could not be read. The slip is
+    then in the joint variable.
     """
     right_terms = _terms(right, angle, grading)
     penalty = TERM * _count(right_terms)
@@ -42,7 +41,7 @@ def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: 
 
 
 def _is_turn(written: Numbers, right: Numbers, angle: bool) -> bool:
-    """Whether an angle is wrong by a quarter turn, by half a turn, or by its sign."""
+    """True if an angle is wrong by a quarter turn, by half a turn, or by its sign."""
     if not angle:
         return False
     turns = [written - right + turn for turn in (np.pi / 2, np.pi, -np.pi / 2)]
@@ -50,12 +49,12 @@ def _is_turn(written: Numbers, right: Numbers, angle: bool) -> bool:
     return bool(error.max(axis=-1).min() < SAME_TERM)
 
 
-# Letters with their multiples, a number under "".
+# The multiple of each letter; the number has the key "".
 _Terms = dict[str, float]
 
 
 def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
-    """The constant as a sum of letters and a number, without quarter turns; None if it is none."""
+    """Return a constant as a sum of letters and a number, without quarter turns, or None."""
     found = multiples(constant[:HALF], angle, grading.exercise, grading.samples)
     if found is None:
         return None
@@ -67,7 +66,7 @@ def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
 
 
 def _count(terms: _Terms | None) -> float:
-    """How many terms a sum has; 2*l1 counts as two."""
+    """Return the number of terms of a sum; 2*l1 counts as two."""
     if terms is None:
         return UNRELATED
     return sum(abs(share) if letter else 1.0 for letter, share in terms.items())

@@ -1,4 +1,4 @@
-"""The units of the marks that wrong cells lose, as a first estimate (``judging.marks``)."""
+"""Estimate the units of marks that wrong cells lose (``judging.marks`` computes the marks)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,14 @@ from service.kinematics.chain import Table
 def units_lost(
     expected: Table, variables: Table, wrong: NDArray[np.bool_], length_scale: float
 ) -> float:
-    """Return what the ``wrong`` cells ``(rows, 4)`` lose.
+    """Return the units that the ``wrong`` cells ``(rows, 4)`` lose.
 
-    Each loses a unit, but several in a row no more than the row is worth. A single one in a row of
-    zeros loses a unit, too: it may be the sign of a joint variable, and a student who knows no axis
-    must not lose little.
+    Each cell loses a unit, but several in a row lose no more than the row is worth. A single one in
+    a row of zeros also loses a unit: it may be the sign of a joint variable, and a table of zeros
+    with wrong axes must lose enough.
 
-    ``expected`` and ``variables`` are ``(rows, 4, samples)``, the right table and the joint
-    variable alone in each cell.
+    ``expected`` ``(rows, 4, samples)`` is the right table; ``variables`` has the joint variable
+    alone in each cell.
     """
     either = np.array([expected - variables, expected + variables])
     error = np.abs(difference(either, np.zeros(1), IS_ANGLE[:, None])).max(axis=-1).min(axis=0)

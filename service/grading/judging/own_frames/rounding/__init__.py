@@ -1,1 +1,1 @@
-"""Tables with rounded decimals."""
+"""Find the exact numbers of tables with rounded decimals."""

@@ -1,9 +1,9 @@
-"""Angles that were written as rounded decimals, 1.57 for π/2, replaced by the exact angle.
+"""Replace angles that are rounded decimals, such as 1.57 for π/2, by the exact angles.
 
-A pose that is computed from rounded angles is no valid one, and nothing could be said of the
-student's frames or of what is missing. If the constant angles of a robot are all multiples of 15°,
-so are the angles in all the frames that one would draw. Then a decimal that is such a multiple to
-its last digit stands for it: 2.094 for 2π/3, but not 2.0951.
+A pose computed from rounded angles is not exactly valid, so the student's frames or missing cells
+could not be found. If the constant angles of a robot are all multiples of 15°, so are the angles in
+all plausible frames. Then a decimal that agrees with such a multiple to its last digit means it:
+2.094 means 2π/3, but 2.0951 does not.
 """
 
 from dataclasses import replace
@@ -29,9 +29,9 @@ EVERY_COLUMN = np.ones(len(COLUMNS), dtype=np.bool_)
 def with_exact_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> tuple[Role, ...]:
-    """The same roles with rounded angles made exact; ``as_written`` of their rows has the others.
+    """Return the roles with rounded angles made exact; ``as_written`` of a row keeps its numbers.
 
-    Where no angle was rounded, the result is ``roles`` itself.
+    If no angle was rounded, return ``roles`` itself.
     """
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
@@ -51,10 +51,10 @@ def with_exact_angles(
 def known_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> NDArray[np.bool_]:
-    """Which cells ``(rows, 4)`` are rounded angles of which the exact values are known.
+    """Return a mask ``(rows, 4)`` of the rounded angles whose exact values are known.
 
-    These are all rounded angles, if each of them stands for a multiple of the step, and else none:
-    of frames in which one angle is no such multiple, another may only look like one.
+    These are all rounded angles if each one agrees with a multiple of the step, otherwise none: if
+    one angle of a table is not a multiple, another may look like one by chance.
     """
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
@@ -67,7 +67,7 @@ def known_angles(
 def _slack_of_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> Numbers | None:
-    """The slack of the rounded angles; None if there are none, or they may be any angles."""
+    """Return the slack of the rounded angles; None if there are none or angles are arbitrary."""
     if not any(role.row.has_decimal for role in roles if role.row):
         return None
     slack = slack_of_cells(roles, samples, IS_ANGLE)
@@ -77,7 +77,7 @@ def _slack_of_angles(
 def slack_of_cells(
     roles: tuple[Role, ...], samples: Samples, columns: NDArray[np.bool_] = EVERY_COLUMN
 ) -> Numbers:
-    """By how much rounding may have moved each cell of these columns, ``(rows, 4)``; else 0."""
+    """Return how far rounding may have moved each cell, ``(rows, 4)``; 0 in other columns."""
     slack = np.zeros((len(roles), len(COLUMNS)))
     for i, role in enumerate(roles):
         for column in np.flatnonzero(columns).tolist() if role.row else ():
@@ -88,9 +88,9 @@ def slack_of_cells(
 
 
 def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:
-    """By how much rounding took each cell ``(rows, 4, SAMPLES)`` off a multiple of the step.
+    """Return how far rounding moved each cell ``(rows, 4, SAMPLES)`` off a multiple of the step.
 
-    NaN where it is off by more, or the cell is not its joint's variable and a constant.
+    NaN for a cell that is further off, or that is not a constant plus its joint variable.
     """
     signs = np.sign((changes(values) * changes(variables)).sum(axis=-1))
     constants = values - signs[..., None] * variables
@@ -101,7 +101,7 @@ def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Num
 
 
 def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:
-    """Whether the reference's constant angles are multiples of the step."""
+    """True if the reference's constant angles are multiples of the step."""
 
     def compute() -> bool:
         robot = exercise.robot

@@ -1,14 +1,14 @@
-"""Rounded decimals of a whole table, moved until the table is valid.
+"""Shift the rounded decimals of a whole table so that the table becomes valid.
 
-A table in frames of one's own has no expected cells, and one that is computed from rounded numbers
-is not valid. But each decimal stands for one number that is at most a unit of its last place away
-(``comparison``). So this looks for shifts of all of them at once, after which the table is valid:
-the errors of the chain at its targets (``kinematics.chain_match``) depend on the shifts all but
-linearly. Each decimal keeps to its own unit. Hence no wrong number hides behind a longer one, and
-in a row of parallel axes it does not matter which offset was rounded.
+A table in the student's own frames has no expected cells, and with rounded numbers it is not
+exactly valid. But the true number of each decimal is at most a unit of its last place away
+(``comparison``). So all decimals are shifted at once until the table is valid: the errors of the
+chain at its targets (``kinematics.chain_match``) depend almost linearly on the shifts. Each shift
+is limited by the unit of its own decimal. Hence a less precise decimal cannot hide a wrong number,
+and in a row of parallel axes it does not matter which offset was rounded.
 
-A free base may then lie a little otherwise, and the right value of a wrong cell is not known: both
-are unknowns as well, and may have another value for each set of links.
+The pose of a free base may change slightly, and the right value of a wrong cell is unknown. Both
+are unknowns, too, and may differ between sets of links.
 """
 
 from collections.abc import Sequence
@@ -44,14 +44,14 @@ from service.kinematics.frames.frame_choice import WRONG_CELL
 from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
 
-# Sets of links that tell the letters of a formula apart, if nothing but decimals is unknown.
+# The number of sets of links needed to distinguish letters if only decimals are unknown.
 LINKS = 6
-# The unit of the unknowns that are no shifts: an angle, and the same part of the typical length.
+# The unit of unknowns that are not shifts: an angle, or the same fraction of the typical length.
 SMALL = 1e-2
 TWIST = 6
-# So many wrong cells may have any value; where there are more, all cells can be made to fit.
+# The most wrong cells that may have any value; with more, almost any table could be made to fit.
 MOST_UNKNOWN = 6
-# A decimal without effect has some size.
+# The size of a decimal without any effect, so that it is not 0.
 LEAST_SIZE = 1e-16
 
 
@@ -59,9 +59,9 @@ LEAST_SIZE = 1e-16
 class _Chain:
     """A table to be made valid, at L sets of links.
 
-    ``links`` ``(rows + 1, 4, L)`` are its constants, regrouped; ``values`` ``(rows, 4, SAMPLES)``
-    its cells. ``base`` ``(L, 4, 4)`` is near to where its frame 0 lies, None where that is given.
-    The cells ``unknown`` may have any value.
+    ``links`` ``(rows + 1, 4, L)`` are its regrouped constants; ``values`` ``(rows, 4, SAMPLES)``
+    its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, None if that is given. The
+    ``unknown`` cells may have any value.
     """
 
     links: Table
@@ -75,13 +75,14 @@ class _Chain:
 
     @property
     def free(self) -> int:
-        """How many unknowns there are for each set of links."""
+        """The number of unknowns for each set of links."""
         return len(self.unknown) + (TWIST if self.base is not None else 0)
 
     def misfits(self, shifts: Numbers, free: Numbers) -> Numbers:
-        """The errors at the targets ``(K, n, L)``.
+        """Return the errors at the targets ``(K, n, L)``.
 
-        For shifts ``(K, count)`` of the decimals and the other unknowns ``(K, free, L)``.
+        ``shifts`` ``(K, count)`` are those of the decimals, ``free`` ``(K, free, L)`` the other
+        unknowns.
         """
         count = self.links.shape[-1]
         cells = self.values.reshape(-1, SAMPLES)
@@ -97,7 +98,7 @@ class _Chain:
         return misfits(poses, self.targets, self.length_scale)
 
     def _twisted(self, twist: Numbers) -> Matrices:
-        """The base ``(K, L, 4, 4)``, turned and moved a little: ``twist`` is ``(K, 6, L)``."""
+        """Return the base ``(K, L, 4, 4)`` after a small ``twist`` ``(K, 6, L)``."""
         assert self.base is not None
         about_x, about_y, about_z = np.moveaxis(SMALL * twist[:, :3], 1, 0)
         turn = rot_x(about_x) @ rot_y(about_y) @ rot_z(about_z)
@@ -105,7 +106,7 @@ class _Chain:
         return np.asarray(turn @ self.base)
 
     def _sizes(self) -> Numbers:
-        """By how much a unit of each decimal changes its own cell, at most: ``(count,)``."""
+        """Return the largest change of its cell per unit of each decimal: ``(count,)``."""
         cells = self.values.reshape(-1, SAMPLES)
         moved = self.decimals.shifted(np.eye(self.decimals.count), cells) - cells
         lengths = np.tile(np.where(IS_ANGLE, 1.0, self.length_scale), len(self.values))
@@ -113,7 +114,7 @@ class _Chain:
         return np.maximum(largest, LEAST_SIZE)
 
     def fit(self) -> tuple[Numbers, Numbers] | None:
-        """The shifts ``(count,)`` and other unknowns ``(free, L)`` that leave no error."""
+        """Return shifts ``(count,)`` and other unknowns ``(free, L)`` without error, or None."""
         count, sets = self.decimals.count, self.links.shape[-1]
         sizes = np.concatenate([self._sizes(), np.full(self.free, SMALL)])
         steps = difference_steps(sizes)
@@ -127,7 +128,7 @@ class _Chain:
             found = self.misfits(ways[:, :count] + shifts, ways[:, count:, None] + free)
             rates = found[: len(steps)] - found[len(steps) : -1]
             rates /= 2 * steps[:, None, None]
-            # Each of the other unknowns acts at its own set of links alone.
+            # Each of the other unknowns affects only its own set of links.
             own = np.einsum("fnl,lk->flnk", rates[count:], np.eye(sets))
             size = found[-1].size
             columns = [rates[:count].reshape(count, size), own.reshape(self.free * sets, size)]
@@ -139,17 +140,17 @@ class _Chain:
 
 
 def _regrouped(tables: Numbers, convention: Convention) -> Numbers:
-    """``regrouped`` for many tables, ``(K, rows, 4, L)``."""
+    """Apply ``regrouped`` to many tables ``(K, rows, 4, L)``."""
     return np.moveaxis(regrouped(np.moveaxis(tables, 0, -1), convention), -1, 0)
 
 
 def with_true_numbers(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[Role, ...]:
-    """The same roles with their decimals moved so that the table is valid, if that can be.
+    """Return the roles with decimals shifted so that the table is valid, if that is possible.
 
-    ``as_written`` of the rows has the others. ``roles`` themselves where the table is valid already
-    (or its angles were made exact, ``rounded_angles``), or no shifts make it valid.
+    ``as_written`` of a row keeps its numbers. Return ``roles`` itself if the table is already valid
+    (perhaps because its angles were made exact, ``rounded_angles``), or no shifts make it valid.
     """
     written, known = _with_known_angles(roles, grading)
     decimals = _decimals(written, grading, known)
@@ -165,9 +166,9 @@ def with_true_numbers(
 def with_rounded_cells(
     nearest: NearestTable, convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """The nearest table of one that has wrong cells, computed from what its decimals stand for.
+    """Compute the nearest table of a table with wrong cells from the exact numbers of its decimals.
 
-    It was computed from the numbers as written, so that the right cells, too, seem a little off.
+    ``nearest`` was computed from the rounded numbers, so that even right cells differ slightly.
     """
     roles = nearest.roles
     if nearest.cost < WRONG_CELL:
@@ -210,7 +211,7 @@ def with_rounded_cells(
 def _decimals(
     roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex]
 ) -> SharedDecimals | None:
-    """The rounded decimals of a whole table; None where it has none, or is not whole."""
+    """Return the rounded decimals of a table; None if it has none, or a cell has no value."""
     rows = [role.row for role in roles if role.row is not None]
     if len(rows) < len(roles) or not any(row.has_decimal for row in rows):
         return None
@@ -220,12 +221,12 @@ def _decimals(
     for i, column in left_out:
         expressions[len(COLUMNS) * i + column] = None
     decimals = SharedDecimals(expressions, grading.samples)
-    # A number with so many figures that rounding does not show is exact.
+    # A number whose rounding is below the tolerance counts as exact.
     return decimals if decimals.units.max(initial=0.0) > EXACT_VALUE else None
 
 
 def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> bool:
-    """Whether the table leads to the tool, at one sample: then most likely it is valid."""
+    """True if the table leads to the tool at one sample, so that it is most likely valid."""
     reached = pose(handed_in_values(roles)[..., 0], convention)
     error = np.abs(reached - tool_pose(grading.exercise, grading.samples)[0])
     return bool(error.max() < SAME_POSE * max(1.0, grading.exercise.length_scale))
@@ -234,7 +235,7 @@ def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading)
 def _with_known_angles(
     roles: tuple[Role, ...], grading: Grading
 ) -> tuple[tuple[Role, ...], list[CellIndex]]:
-    """The roles as they were written, but for the rounded angles that must be exact, and these."""
+    """Return the roles as written, except known rounded angles made exact, and their cells."""
     exercise, samples = grading.exercise, grading.samples
     written = _as_written(roles)
     known = [(i, column) for i, column in np.argwhere(known_angles(written, exercise, samples))]
@@ -259,7 +260,7 @@ def _chains(
     grading: Grading,
     unknown: Sequence[CellIndex] = (),
 ) -> list[_Chain]:
-    """The table from each possible base; these are found from the roles ``based_on``."""
+    """Return the table from each possible base; the bases follow from the roles ``based_on``."""
     exercise, samples = grading.exercise, grading.samples
     mechanism = mechanism_at(exercise, samples)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
@@ -290,13 +291,13 @@ def _chains(
 
 
 def _shifted(decimals: SharedDecimals, shifts: Numbers, values: Table) -> Table:
-    """The cells ``(rows, 4, SAMPLES)`` with their decimals shifted."""
+    """Return the cells ``(rows, 4, SAMPLES)`` with their decimals shifted."""
     moved: Table = decimals.shifted(shifts[None], values.reshape(-1, SAMPLES))[0]
     return moved.reshape(values.shape)
 
 
 def _moved(roles: tuple[Role, ...], decimals: SharedDecimals, shifts: Numbers) -> tuple[Role, ...]:
-    """The roles with their decimals shifted; ``as_written`` of their rows has the others."""
+    """Return the roles with their decimals shifted; ``as_written`` of a row keeps its numbers."""
     values = _shifted(decimals, shifts, handed_in_values(roles))
     return tuple(
         replace(role, row=replace(role.row, values=moved, as_written=role.row.handed_in))

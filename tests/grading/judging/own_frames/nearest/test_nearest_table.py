@@ -9,7 +9,7 @@ from tests.grading.support.submitting import graded_table, not_correct
 def test_a_table_in_the_other_convention_is_judged_by_the_intended_one(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The Stanford arm in modified rows, with z2 turned over, where the standard ones are asked."""
+    """The Stanford arm in modified rows, with z2 reversed; the exercise expects standard rows."""
     report = graded_table(
         catalogue["stanford-arm"],
         [
@@ -23,5 +23,5 @@ def test_a_table_in_the_other_convention_is_judged_by_the_intended_one(
     )
     assert [m.code for m in report.feedback] == ["other_convention", "own_frame_choice"]
     assert "let z2 point the opposite way" in report.feedback[1].message
-    # Row i should have the α that was written in row i + 1.
+    # Row i should have the α that the student wrote in row i + 1.
     assert set(not_correct(report)) == {(row, "alpha") for row in ("1", "3", "4", "5", "6")}

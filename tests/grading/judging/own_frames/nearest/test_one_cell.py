@@ -1,6 +1,6 @@
-"""One slip, whatever is free: the cell that it was made in is blamed, and no other.
+"""One slip under each policy: only the cell with the slip is wrong.
 
-The robot's axes are skew, so that nothing can be repaired elsewhere.
+The robot's axes are skew, so that a repair is possible only in the right cell.
 """
 
 from itertools import product
@@ -34,7 +34,7 @@ table = [
 ]
 """
 COLUMNS = ("a", "alpha", "d", "theta")
-# z1 and z3 are turned over, x2 points the other way; row by row.
+# A valid table with z1, z3 and x2 reversed, row by row.
 TURNED_OVER = [
     ["l1", "-110deg", "l2", "theta1"],
     ["-l2", "130deg", "-l1", "-theta2 + 180deg"],
@@ -54,7 +54,7 @@ def policy(
 @pytest.mark.parametrize("directions", ["given", "free"])
 @pytest.mark.parametrize("tool", ["given", "free"])
 @pytest.mark.parametrize("base", ["given", "free"])
-def test_a_slip_is_blamed_on_its_cell(
+def test_only_the_cell_with_the_slip_is_wrong(
     make_exercise: Make, base: str, tool: str, directions: str
 ) -> None:
     exercise = make_exercise(policy(base, tool, directions))
@@ -73,7 +73,7 @@ def test_a_slip_is_blamed_on_its_cell(
 
 
 @pytest.mark.parametrize("base", ["given", "free"])
-def test_a_variable_is_blamed_where_its_constant_is_right(make_exercise: Make, base: str) -> None:
+def test_a_wrong_variable_is_found_if_its_constant_is_right(make_exercise: Make, base: str) -> None:
     exercise = make_exercise(policy(base, "free", "given"))
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
     rows[1]["theta"] = "theta2 + 180deg"
@@ -82,8 +82,8 @@ def test_a_variable_is_blamed_where_its_constant_is_right(make_exercise: Make, b
     assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
 
 
-def test_only_the_variable_is_wrong_where_its_constant_may_be_any(make_exercise: Make) -> None:
-    """From a free base any constant will do in row 1: the student's own stays."""
+def test_only_the_variable_is_wrong_if_any_constant_is_valid(make_exercise: Make) -> None:
+    """With a free base any constant is right in row 1, so the student's constant is kept."""
     exercise = make_exercise(policy("free", "free", "given"))
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
     rows[0]["theta"] = "-theta1 + 23deg"
@@ -96,7 +96,7 @@ def test_only_the_variable_is_wrong_where_its_constant_may_be_any(make_exercise:
 
 @pytest.mark.parametrize("tool", ["given", "free"])
 @pytest.mark.parametrize("base", ["given", "free"])
-def test_nothing_is_repaired_where_a_number_is_beyond_all_bounds(
+def test_a_table_with_a_number_out_of_bounds_is_not_repaired(
     make_exercise: Make, base: str, tool: str
 ) -> None:
     exercise = make_exercise(policy(base, tool, "free"))
@@ -106,8 +106,8 @@ def test_nothing_is_repaired_where_a_number_is_beyond_all_bounds(
         assert (str(i + 1), "a") in not_correct(graded(exercise, {"rows": rows}))
 
 
-def test_one_cell_is_blamed_between_sliding_axes_of_the_student_s_own(make_exercise: Make) -> None:
-    """The two sliding axes were moved, so that a search cannot tell where they were meant to be."""
+def test_one_cell_is_wrong_between_moved_prismatic_axes(make_exercise: Make) -> None:
+    """The two prismatic axes were moved, so that a search cannot find their intended places."""
     exercise = make_exercise(policy("free", "given", "given", PARALLEL, "modified"))
     table = [
         ("-0.44", "0", "1.06", "q1 + 1.29984947646"),

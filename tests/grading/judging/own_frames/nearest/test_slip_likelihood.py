@@ -1,4 +1,4 @@
-"""One slip that could be mended in several cells: the likeliest is blamed.
+"""One slip that could be repaired in several cells: the likeliest cell is wrong.
 
 The RRRP arm's first three axes are parallel, z3 and z4 point down: the pose holds only the sum
 d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics, Example 2).
@@ -13,7 +13,7 @@ from service.grading import PartReport
 from tests.grading.support.submitting import cell, graded_table, not_correct
 
 BLAMED: dict[str, tuple[tuple[str, str, str], str, str]] = {
-    # d of rows 1 to 3; the row that is blamed; what is right there
+    # d of rows 1 to 3; the row that is wrong; its right value
     "an offset forgotten, the reference's frames": (("l1", "0", "0"), "3", "l4"),
     "an offset added, the reference's frames": (("l1", "l3", "l4"), "2", "0"),
     "origin 1 elsewhere, the sign turned behind it": (("l1 + 0.2", "0.2", "l4"), "2", "-0.2"),
@@ -23,7 +23,7 @@ BLAMED: dict[str, tuple[tuple[str, str, str], str, str]] = {
 
 
 @pytest.mark.parametrize(("offsets", "row", "right"), BLAMED.values(), ids=list(BLAMED))
-def test_the_likeliest_cell_is_blamed(
+def test_the_likeliest_cell_is_wrong(
     offsets: tuple[str, str, str], row: str, right: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     d1, d2, d3 = offsets

@@ -7,7 +7,7 @@ import pytest
 from service.catalogue import Exercise
 from tests.grading.support.submitting import codes_at, graded_table, not_correct
 
-# The Stanford arm with z2 turned over, so that no cell can be told from the reference's.
+# The Stanford arm with z2 reversed, so that the cells do not follow from the reference's.
 TURNED_OVER = [
     ["0", "-{quarter}", "0", "theta1"],
     ["0", "-{quarter}", "d2", "theta2"],
@@ -19,7 +19,7 @@ TURNED_OVER = [
 
 
 @pytest.mark.parametrize(("quarter", "half"), [("1.57", "3.14"), ("1.5708", "3.1416")])
-def test_rounded_angles_are_right_in_frames_of_ones_own(
+def test_rounded_angles_are_right_in_frames_of_the_student(
     quarter: str, half: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     rows = [[text.format(quarter=quarter, half=half) for text in row] for row in TURNED_OVER]
@@ -33,7 +33,7 @@ def test_rounded_angles_are_right_in_frames_of_ones_own(
 
 
 def test_a_decimal_beside_a_round_angle_may_be_intended(catalogue: Mapping[str, Exercise]) -> None:
-    """x3 is turned about z3 by an angle within a thousandth of 120°: drawn so, and taken back."""
+    """x3 is turned about z3 by almost 120°, within a thousandth; a later row turns it back."""
     rows = [[text.format(quarter="pi/2", half="pi") for text in row] for row in TURNED_OVER]
     rows[2][3] = "-2.09559209845"
     rows[3][3] = "theta4 - 2.09559209845"
