@@ -23,7 +23,7 @@ from service.grading.diagnosis.matrices.matrix_case import (
     as_explanations,
 )
 from service.grading.diagnosis.motions.link_products import named
-from service.grading.diagnosis.upstream.slip_search import BEHIND_SIGNS
+from service.grading.diagnosis.upstream.slip_search import AFTER_SIGNS
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
@@ -266,7 +266,7 @@ def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
     if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
         return None
     found = case.slips.explanation(entries)
-    if found is not None and found.findings[0].code in BEHIND_SIGNS:
+    if found is not None and found.findings[0].code in AFTER_SIGNS:
         signs = explanation(case, of=Lines)
         left = case.wrong & entries
         if signs is not None and not (left & ~case.mask(signs.entries)).any():

@@ -1,4 +1,4 @@
-"""The kinds of slips that are made before an answer is written down, likeliest first."""
+"""The kinds of slips in the robot's table, joints or lengths, likeliest first."""
 
 from service.grading.diagnosis.upstream.slip import Slip
 from service.grading.misconception import register
@@ -142,5 +142,5 @@ ROW_ORDER = register(
     example=("turret", "position", "[a3 c1 c3, a3 s1 c3, a3 s3]"),
     unlike="[a3 c1 c2, a3 s1 c2, a3 s2]",
 )
-# It is told beside rows in another order only; by itself as such a product (``link_products``).
+# Mentioned only beside rows in another order; ``link_products`` has the code for it alone.
 MISSING_LINK = register(of=Slip, rank=170, name="missing_link")
