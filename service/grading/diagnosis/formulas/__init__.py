@@ -1,1 +1,1 @@
-"""The formulas that the writer of a wrong one may have intended."""
+"""The formulas that a student may have intended instead of a wrong one."""

@@ -273,7 +273,7 @@ def diagnose_entries(
     for place, entry in wrong.items():
         if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
             continue
-        explained = diagnosed(entry if work_budget > 0 else replace(entry, stays_whole=True))
+        explained = diagnosed(entry if work_budget > 0 else replace(entry, only_compared=True))
         work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
         required = requirements.of(*place) if requirements and not explained else None
         findings[place] = explained or _unexplained(entry, required)
