@@ -1,4 +1,4 @@
-"""Slips that run through the screw axes of all joints."""
+"""Slips in the screw axes of all joints."""
 
 from dataclasses import dataclass
 
@@ -21,8 +21,8 @@ from service.kinematics.transforms import Numbers
 class WrongScrews(WrongNumbers):
     """Screw axes that are not the expected ones, ``(joints, 6, SAMPLES)`` each.
 
-    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``elsewhere`` and ``frame`` are as in
-    ``WrongScrew``, ``elsewhere`` of all axes.
+    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``elsewhere`` holds all axes in the other
+    frame, and ``frame`` is "space" or "body", as in ``WrongScrew``.
     """
 
     wrong: Mask
@@ -31,16 +31,16 @@ class WrongScrews(WrongNumbers):
 
     @property
     def several(self) -> bool:
-        """Whether more than one axis is wrong."""
+        """True if more than one axis is wrong."""
         return int(self.wrong.any(axis=1).sum()) > 1
 
     @property
     def axes(self) -> list[WrongScrew]:
-        """The axes one by one."""
+        """All axes, each as a case of its own."""
         return [self.axis(i) for i in range(len(self.expected))]
 
     def axis(self, i: int) -> WrongScrew:
-        """Axis ``i`` by itself."""
+        """Return axis ``i`` as a case of its own."""
         elsewhere = None if self.elsewhere is None else self.elsewhere[i]
         return WrongScrew(self.actual[i], self.expected[i], self.scale, elsewhere, self.frame)
 
@@ -72,7 +72,7 @@ def exchanged_halves(case: WrongScrews) -> Hypotheses:
     unlike={"1/3": "2"},
 )
 def axes_reversed(case: WrongScrews) -> Hypotheses:
-    """Every axis was taken to point the opposite way."""
+    """Every axis points the opposite way."""
     yield Written(-case.expected, AXIS_REVERSED)
 
 
@@ -86,7 +86,7 @@ def axes_reversed(case: WrongScrews) -> Hypotheses:
     unlike={"2/4": "0", "2/6": "1"},
 )
 def moment_signs(case: WrongScrews) -> Hypotheses:
-    """V was taken to be ω × q for every turning joint."""
+    """Every turning joint has v = ω × q."""
     axes = [
         axis.with_velocity(axis.pitch * axis.direction - axis.moment) if axis.turns else right
         for axis, right in zip(case.axes, case.expected, strict=True)
@@ -107,15 +107,16 @@ def moment_signs(case: WrongScrews) -> Hypotheses:
     unlike={"1/3": "0", "3/5": "0"},
 )
 def other_frame(case: WrongScrews) -> Hypotheses:
-    """Every axis was seen from the tool where the base is asked for, or the other way."""
+    """Every axis is described in the other frame: body for space, or space for body."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
 
 def explain_screws(case: WrongScrews) -> Finding | None:
-    """The finding that explains all wrong axes; None where they are not all read.
+    """Return the finding that explains all wrong axes, or None.
 
-    One wrong axis does not show what runs through all, but for the order of its halves.
+    None also if an axis could not be read. If only one axis is wrong, only exchanged halves can
+    explain all.
     """
     if not np.isfinite(case.actual).all():
         return None
