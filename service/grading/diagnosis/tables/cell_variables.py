@@ -1,4 +1,4 @@
-"""Slips in the joint variables of a single table cell, and in its quantity."""
+"""Slips in the joint variables of a single table cell, or in its quantity."""
 
 import re
 from collections.abc import Callable
@@ -60,7 +60,7 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """A name in the cell that the robot does not have, and the joint that it counts; else ""."""
+    """Return a name in the cell that is unknown to the robot, or "", and its joint, or None."""
     absent = sorted(absent_names([case.expression], case.samples))
     if not absent:
         return "", None
@@ -77,7 +77,7 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
     unlike={"1/theta": "-theta1"},
 )
 def joint_variable_missing(case: WrongCell) -> Finding | None:
-    """The table was taken to describe the drawn pose, so the joint variable was left out."""
+    """The joint variable is missing, as if the table described the drawn pose."""
     if case.joint is None or not case.required or case.contained != {}:
         return None
     return finding_on(
@@ -99,7 +99,7 @@ def _motion(joint: Joint) -> str:
     unlike={"6/d": "0"},
 )
 def joint_variable_sign(case: WrongCell) -> Finding | None:
-    """The joint was taken to move in the negative sense of its axis."""
+    """The joint moves in the negative sense of its axis."""
     opposite = {joint: -count for joint, count in case.required.items()}
     if case.joint is None or not opposite or case.contained != opposite:
         return None
@@ -119,7 +119,7 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     unlike={"2/theta": "2*theta2"},
 )
 def joint_variable_index(case: WrongCell) -> Finding | None:
-    """The variable of a neighbouring joint was taken."""
+    """The cell contains the variable of a neighbouring joint."""
     other, count = case.contained_alone
     if not (case.joint and other and case.required) or other == case.joint or abs(count) != 1:
         return None
@@ -139,7 +139,7 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     unlike={"1/d": "2*d1"},
 )
 def joint_variable_doubled(case: WrongCell) -> Finding | None:
-    """The joint variable was counted more than once."""
+    """The joint variable is counted more than once."""
     joint, count = case.contained_alone
     if joint is None or joint != case.joint or joint not in case.required or abs(count) < 2:
         return None
@@ -193,7 +193,7 @@ def _is_converted(case: WrongCell, convert: Callable[[Numbers], Numbers]) -> boo
     unlike={"6/d": "0"},
 )
 def joint_variable_column(case: WrongCell) -> Finding | None:
-    """The joint variable was put in the column that stays constant for this kind of joint."""
+    """The joint variable is in the column that is constant for this kind of joint."""
     joint, _ = case.contained_alone
     if joint is None or joint != case.joint or case.required:
         return None
@@ -214,7 +214,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     unlike={"2/d": "d6"},
 )
 def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """A joint variable was added that has nothing to do with this cell."""
+    """The cell contains a joint variable that has no effect on it."""
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None
@@ -234,7 +234,7 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     unlike={"2/d": "d6"},
 )
 def wrong_quantity(case: WrongCell) -> Finding | None:
-    """An angle where a length is asked for, or a length where an angle is."""
+    """The cell is an angle instead of a length, or a length instead of an angle."""
     found = quantity_of(case.expression.tree)
     if found not in ("angle", "length") or (found == "angle") == case.angle:
         return None

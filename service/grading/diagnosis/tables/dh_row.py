@@ -1,4 +1,4 @@
-"""Slips in the DH row of a transform: a condition overlooked, or the row of something else."""
+"""Slips in the DH row of a transform: a missed condition, or another transform's row."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -26,7 +26,7 @@ class WrongRow(WrongNumbers):
     angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
 
     def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
-        """The row of another transform or convention, ``(4, SAMPLES)``; None where it has none."""
+        """Return the row ``(4, SAMPLES)`` of a transform in a convention, or None."""
         length_scale = float(np.asarray(self.scale)[A])
         if violated(transform, convention, length_scale):
             return None
@@ -42,7 +42,7 @@ class WrongRow(WrongNumbers):
     unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
 )
 def exchanged_parameters(case: WrongRow) -> Hypotheses:
-    """A and d, or α and θ, stand in each other's places."""
+    """The student's row has a and d, or α and θ, in each other's places."""
     for names, order in (
         ("a and d", [2, 1, 0, 3]),
         ("α and θ", [0, 3, 2, 1]),
@@ -93,7 +93,7 @@ def inverse_row(case: WrongRow) -> Hypotheses:
         yield Written(found, finding)
 
 
-# --- the conditions that a transform with a row meets
+# --- the conditions for a transform to have a row
 _NOT_PERPENDICULAR = register(
     of=WrongRow,
     code="dh_not_perpendicular",
@@ -118,12 +118,12 @@ _ROW_EXISTS = register(
 
 
 def axes_named(convention: Convention) -> tuple[str, str]:
-    """The two axes that the conditions are about: x and z."""
+    """Return the names of the two axes in the conditions: an x axis and a z axis."""
     return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
 
 
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """The findings on the conditions that a transform does not meet; none where it has a row."""
+    """Return the findings on the conditions that a transform violates; none if it has a row."""
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = _NOT_PERPENDICULAR.finding(
@@ -147,7 +147,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
 
 
 def has_a_row(convention: Convention) -> Finding:
-    """The finding on the answer "none" where the transform has a row."""
+    """Return the finding on the answer "none" if the transform has a row."""
     x, z = axes_named(convention)
     return _ROW_EXISTS.finding(
         f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "
