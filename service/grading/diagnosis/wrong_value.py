@@ -191,8 +191,8 @@ UNEXPLAINED = "value"
     of=WrongValue,
     rank=10,
     code="undefined",
-    means="a formula without a value: it divides by zero, takes the root of a negative number, or "
-    "grows beyond bounds",
+    means="the formula has no value: it divides by zero, takes the root of a negative number, "
+    "or is too large",
     example=("stanford-arm", "table", {"2/d": "d2/0"}),
     unlike={"6/d": "0"},
 )

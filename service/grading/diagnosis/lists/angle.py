@@ -67,7 +67,7 @@ def sign(case: WrongValue) -> Hypotheses:
     of=WrongAngle,
     rank=110,
     code="degrees_as_radians",
-    means="a number of degrees where radians are read, or a variable times 180/π",
+    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
     example=("spherical-wrist", "zyz", "[180*theta4/pi, theta5]"),
     unlike={"2/1": "0"},
 )
@@ -81,7 +81,7 @@ def degrees_as_radians(case: WrongValue) -> Hypotheses:
     of=WrongAngle,
     rank=120,
     code="radians_as_degrees",
-    means="a number of radians where degrees are read, or a variable times π/180",
+    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
     example=("spherical-wrist", "zyz", "[pi*theta4/180, theta5]"),
     unlike={"2/1": "0"},
 )
@@ -100,7 +100,7 @@ def is_constant(angle: Numbers) -> bool:
     of=WrongAngle,
     rank=130,
     code="lost_quadrant",
-    means="atan, acos or asin for atan2: right for some joint values, not for others",
+    means="atan, acos or asin is used for atan2, so the angle is right only for some joint values",
     example=("spherical-wrist", "zyz", "[atan(s4/c4), theta5, theta6]"),
     unlike={"3/1": "theta6/2"},
 )
@@ -120,7 +120,7 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
     of=WrongAngle,
     rank=140,
     code="lost_quadrant",
-    means="atan, acos or asin for atan2: right for some joint values, not for others",
+    means="atan, acos or asin is used for atan2, so the angle is right only for some joint values",
     example=("several-kinds", "angle", "[asin(l*sin(phi)/sqrt(a^2 + l^2 + 2*a*l*cos(phi))), e1]"),
     unlike="[asind(e1), a]",
 )
@@ -214,7 +214,7 @@ def of_sum(case: WrongValue) -> Explained | None:
     of=WrongAngle,
     rank=300,
     code=UNEXPLAINED,
-    means="wrong, and none of the above",
+    means="the value is wrong, and no other code explains it",
     example=("spherical-wrist", "zyz", "[theta4, theta5, theta6 + 1]"),
     unlike="[theta4, theta5, theta6 + pi]",
 )

@@ -86,7 +86,7 @@ class WrongSum:
     of=WrongSum,
     rank=10,
     code="joint_variable_missing",
-    means="an angle that belongs in a sum of angles is left out, or all of them are",
+    means="one or more angles are missing in a sum of angles",
     example=("planar-rrr-standard", "task-space", {"3/1": "q1"}),
     unlike={"3/1": "2*q1 + q2 + q3"},
 )
@@ -102,7 +102,7 @@ def left_out(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=60,
     code="joint_variable_missing",
-    means="an angle that belongs in a sum of angles is left out, or all of them are",
+    means="one or more angles are missing in a sum of angles",
     example=("baxter-left-arm", "wrist", {"3/1": "0"}),
     unlike={"3/1": "theta7/2"},
 )
@@ -117,7 +117,7 @@ def constant(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=20,
     code="joint_variable_sign",
-    means="an angle of such a sum has the wrong sign",
+    means="an angle in a sum of angles has the wrong sign",
     example=("planar-rr", "task-space", {"3/1": "q1 - q2"}),
     unlike={"3/1": "0"},
 )
@@ -136,7 +136,7 @@ def reversed_addends(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=30,
     code="joint_variable_doubled",
-    means="an angle of such a sum counts twice",
+    means="an angle in a sum of angles counts twice",
     example=("spherical-wrist", "zyz", {"1/1": "2*theta4"}),
     unlike={"1/1": "π/2"},
 )
@@ -152,7 +152,7 @@ def counted_twice(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=40,
     code="joint_variable_extra",
-    means="an angle that does not belong in the sum",
+    means="a sum of angles contains one too many",
     example=("spherical-wrist", "zyz", "[theta4 + theta6, theta5, theta6]"),
     unlike={"1/1": "theta5"},
 )
@@ -169,7 +169,7 @@ def added(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=50,
     code="joint_variable_index",
-    means="the angle of another joint",
+    means="a sum of angles contains the angle of another joint in place of the right one",
     example=("baxter-left-arm", "wrist", {"1/1": "theta4"}),
     unlike={"3/1": "0"},
 )

@@ -55,10 +55,10 @@ RepairedTriple = Repaired[WrongTriple]
     rank=10,
     code=("sign", "degrees_as_radians", "radians_as_degrees", "swapped_atan2"),
     means=(
-        "the sign of one angle, or of several, is wrong",
-        "one angle, or several, in degrees where radians are read",
-        "one angle, or several, in radians where degrees are read",
-        "the arguments of atan2 are exchanged in one angle, or in several",
+        "one or more angles have the wrong sign",
+        "one or more angles are in degrees, but are read in radians",
+        "one or more angles are in radians, but are read in degrees",
+        "the arguments of atan2 are exchanged in one or more angles",
     ),
     example=("spherical-wrist", "zyz", "[atan2(c4, s4), theta5, theta6]"),
     unlike="[theta4, theta5, theta6 + 1]",
@@ -96,7 +96,7 @@ def _on_angles(finding: Finding, angles: Numbers) -> Finding:
     of=WrongTriple,
     rank=20,
     code="angle_order",
-    means="the right angles in another order",
+    means="the angles are right, but in the wrong order",
     example=("spherical-wrist", "zyz", "[theta6, theta5, theta4]"),
     unlike={"1/1": "theta5"},
 )
@@ -115,7 +115,7 @@ def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
     of=WrongTriple,
     rank=30,
     code="inverse_rotation",
-    means="the angles of the inverse rotation",
+    means="the angles describe the inverse rotation",
     example=("spherical-wrist", "zyz", "[-theta6, -theta5, -theta4]"),
     unlike={"1/1": "theta5"},
 )
@@ -132,7 +132,7 @@ def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
     of=WrongTriple,
     rank=40,
     code="other_euler_sequence",
-    means="the angles of another sequence, or of fixed axes for moving ones",
+    means="the angles belong to another sequence of axes, or to fixed instead of moving axes",
     example=("spherical-wrist", "zyz", "[theta4 + pi/2, theta5, theta6 - pi/2]"),
     unlike={"3/1": "theta6/2"},
 )

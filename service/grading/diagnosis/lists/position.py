@@ -47,7 +47,7 @@ class WrongPosition(WrongNumbers):
     of=WrongPosition,
     rank=10,
     code="exchanged_coordinates",
-    means="the right coordinates in each other's places",
+    means="the coordinates are right, but in the wrong order",
     example=("planar-rr", "position", "[a1 s1 + a2 s12, a1 c1 + a2 c12]"),
     unlike="[a1 s1 - a2 s12, a1 c1 + a2 c12]",
 )

@@ -46,8 +46,8 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
     of=Exponentials,
     rank=10,
     code="home_on_wrong_side",
-    means="a product of exponentials with M on the wrong side: space axes go in front of it, body "
-    "axes behind",
+    means="M is on the wrong side of the exponentials: it comes after those of space axes and "
+    "before those of body axes",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -73,7 +73,7 @@ def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=20,
     code="missing_home",
-    means="a product of exponentials without M",
+    means="M is missing in the product of exponentials",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -98,8 +98,7 @@ def missing_home(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=30,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -126,7 +125,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=40,
     code="moment_sign",
-    means="a product of exponentials with v = ω × q in place of −ω × q",
+    means="v is ω × q instead of −ω × q in the exponentials",
     example=(
         "planar-rpr-poe",
         "pose",

@@ -14,7 +14,8 @@ from service.grading.reading.entry import Entry
 NOT_AT_HOME = register(
     of=WrongScrews,
     code="not_at_home",
-    means="a joint variable in what is taken in the home position; a home pose M likewise",
+    means="an answer for the home position, such as a screw axis or the home pose M, contains "
+    "a joint variable",
     example=("planar-rpr-poe", "space-screws", {"3/4": "q1 q2"}),
     unlike={"3/4": "1"},
 ).finding(

@@ -39,7 +39,7 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
     rank=20,
     code="transposed_for_inverse",
     when=lambda case: case.motion is not None,
-    means="the transpose of a transform in place of its inverse",
+    means="the answer is the transpose of the transform instead of its inverse",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -66,7 +66,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     rank=80,
     code="negated_for_inverse",
     when=lambda case: case.motion is not None,
-    means="signs changed in place of inverting: −R for Rᵀ, or R with −p",
+    means="signs are changed instead of inverting: −R for Rᵀ, or R with −p",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -88,7 +88,7 @@ def negated_for_inverse(case: MatrixCase) -> Hypotheses:
     rank=80,
     code="negated_for_inverse",
     when=lambda case: case.motion is not None,
-    means="signs changed in place of inverting: −R for Rᵀ, or R with −p",
+    means="signs are changed instead of inverting: −R for Rᵀ, or R with −p",
     example=("rigid-motion-chain", "parallel-axes", {"1/1": "-1"}),
     unlike={"1/1": "0", "1/3": "1"},
 )
@@ -107,7 +107,7 @@ NEGATED = says(f"The signs were changed, but that does not invert a rotation. {R
     rank=80,
     code="position_not_turned",
     when=lambda case: case.motion is not None,
-    means="the right vector in the axes of the other frame: −p in an inverse, for −Rᵀp",
+    means="the position is described in the other frame: in an inverse, −p for −Rᵀp",
     example=("homogeneous-inverse", "about-z", {"1/4": "-px", "2/4": "-py"}),
     unlike={"1/1": "0", "1/4": "0", "3/4": "0", "4/4": "0"},
 )
@@ -127,7 +127,7 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
     rank=82,
     code="position_not_inverted",
     when=lambda case: case.motion is not None,
-    means="the position of the transform the other way round: p in an inverse",
+    means="the position is not inverted: in an inverse, p for −Rᵀp",
     example=("simple-twist", "exponential", {"2/4": "2*sin(theta)"}),
     unlike={"3/3": "0", "3/4": "1"},
 )
@@ -144,7 +144,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     rank=84,
     code="reversed_position",
     when=lambda case: case.motion is not None,
-    means="the position has the wrong sign throughout: Rᵀp in an inverse",
+    means="the whole position has the wrong sign: in an inverse, Rᵀp for −Rᵀp",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -164,7 +164,7 @@ def position_reversed(case: MatrixCase) -> Hypotheses:
     rank=86,
     code="position_turned_back",
     when=lambda case: case.motion is not None,
-    means="turned by R in place of its transpose: −R p in an inverse",
+    means="the position is turned by R instead of Rᵀ: in an inverse, −R p for −Rᵀp",
     example=("homogeneous-inverse", "numbers", {"1/4": "1"}),
     unlike={"2/4": "3"},
 )

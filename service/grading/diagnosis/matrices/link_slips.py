@@ -56,7 +56,7 @@ class LinkAmongOthers:
     of=LinkAmongOthers,
     rank=10,
     code="absolute_angle",
-    means="a link transform holds the angles of the joints before it, too: θ1 + θ2 in A2",
+    means="a link transform also contains the angles of the joints before it: θ1 + θ2 in A2",
     example=(
         "planar-rr",
         "links",
@@ -87,7 +87,7 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     of=LinkAmongOthers,
     rank=20,
     code="pose_for_link",
-    means="the product of all link transforms up to one in place of that one",
+    means="a link transform is replaced by the product of all up to it",
     example=(
         "planar-rr",
         "links",
@@ -112,8 +112,7 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     of=LinkAmongOthers,
     rank=30,
     code="translation_not_turned",
-    means="the rotation of a link transform with a and d written beside it, as if nothing turned "
-    "them",
+    means="the position of a link transform holds a and d as they are, not turned",
     example=("spatial-rrr", "links", {"A1.1/4": "R", "A1.2/4": "0"}),
     unlike={"A1.2/4": "R*s2"},
 )

@@ -37,7 +37,7 @@ Formulas = Iterator[Rewritten]
     of=WrongEntry,
     rank=100,
     code="sign",
-    means="the sign of the whole entry is wrong",
+    means="the whole entry has the wrong sign",
     example=("planar-rr", "pose", {"1/2": "s12"}),
     unlike={"1/2": "c12"},
 )
@@ -51,7 +51,7 @@ def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     rank=110,
     code="degrees_as_radians",
     when=lambda case: case.can_be_repaired,
-    means="a number of degrees in a sine or cosine where radians are read",
+    means="a number of degrees in a sine or cosine is read in radians",
     example=("planar-rr", "pose", {"1/2": "cos(q1 + q2 + 90)"}),
     unlike={"1/2": "s12"},
 )
@@ -77,7 +77,7 @@ def _has_bare_number(node: Node) -> bool:
     rank=120,
     code="radians_as_degrees",
     when=lambda case: case.can_be_repaired,
-    means="a number of radians in a sine or cosine where the form is set to degrees",
+    means="a number of radians in a sine or cosine is read in degrees",
     example=(
         "planar-rr",
         "pose",
@@ -124,7 +124,7 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     rank=140,
     code="sum_of_cosines",
     when=lambda case: case.can_be_repaired,
-    means="cos(a + b) written as cos a + cos b; the sine likewise",
+    means="cos(a + b) is written as cos a + cos b, or the same with the sine",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 (c1 + c2)"}),
     unlike={"1/2": "s12"},
 )
@@ -143,7 +143,7 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
     rank=150,
     code="product_for_sum_angle",
     when=lambda case: case.can_be_repaired,
-    means="c12 taken for c1 c2; s12 likewise",
+    means="c12 is written as c1 c2, or s12 as s1 s2",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 c1 c2"}),
     unlike={"1/2": "s12"},
 )
@@ -164,7 +164,7 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     rank=160,
     code="relative_angle",
     when=lambda case: case.can_be_repaired,
-    means="a joint's own angle where the sum of the angles up to it belongs: c2 for c12",
+    means="a joint's own angle is used for the sum of the angles up to it: c2 for c12",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 c2"}),
     unlike={"1/2": "s12"},
 )
@@ -187,7 +187,7 @@ def relative_angle(case: WrongEntry) -> Formulas:
     rank=180,
     code="joint_variable_missing",
     when=lambda case: case.can_be_repaired,
-    means="a joint angle is missing in the sum that a sine or cosine takes",
+    means="a joint angle is missing in the sum in a sine or cosine",
     example=("planar-rr", "pose", {"1/2": "-s1"}),
     unlike={"1/2": "s12"},
 )
@@ -206,8 +206,7 @@ def angle_left_out(case: WrongEntry) -> Formulas:
     rank=190,
     code="joint_variable_extra",
     when=lambda case: case.can_be_repaired,
-    means="a joint angle too many in such a sum, or a joint variable where nothing may change "
-    "with it",
+    means="the entry contains a joint variable too many, alone or in a sum of joint angles",
     example=("planar-rr", "pose", {"1/4": "a1 c12 + a2 c12"}),
     unlike={"1/2": "s12"},
 )
@@ -241,7 +240,7 @@ def _with_angles_changed(
     rank=170,
     code="term_sign",
     when=lambda case: case.can_be_repaired,
-    means="the sign of one term is wrong",
+    means="one term has the wrong sign",
     example=("planar-rr", "pose", {"1/4": "a1 c1 - a2 c12"}),
     unlike={"1/4": "a1 c1 + 2 a2 c12"},
 )

@@ -43,7 +43,8 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     of=Step,
     rank=10,
     code="fixed_for_moving_axes",
-    means="a turn about a moving axis was multiplied as if the axis were fixed, or the other way",
+    means="a turn about a moving axis is multiplied as one about a fixed axis, or the other "
+    "way round",
     example=(
         "composite-rotations",
         "fixed",
@@ -69,7 +70,7 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=20,
     code="turn_sign",
-    means="a turn was made the wrong way round",
+    means="a turn has the opposite sense",
     example=("fundamental-rotations", "about-y", {"1/3": "-sin(phi)", "3/1": "sin(phi)"}),
     unlike={"1/1": "1"},
 )
@@ -89,7 +90,7 @@ def turned_back(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=30,
     code="turn_axis",
-    means="a turn was made about another axis",
+    means="a turn is about the wrong axis",
     example=(
         "composite-rotations",
         "fixed",
@@ -116,7 +117,7 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=40,
     code="turn_angle",
-    means="a turn was made by the angle of another",
+    means="a turn has the angle of another turn",
     example=("rigid-motion-chain", "rotation", "[cφ, -sφ cφ, sφ sφ; sφ, cφ cφ, -cφ sφ; 0, sφ, cφ]"),
     unlike={"3/2": "0"},
 )
@@ -145,7 +146,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=50,
     code="missing_turn",
-    means="a turn was left out",
+    means="a turn is missing",
     example=(
         "composite-rotations",
         "fixed",
@@ -166,8 +167,7 @@ def left_out(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=60,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "composite-rotations",
         "mobile",

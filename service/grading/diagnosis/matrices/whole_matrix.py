@@ -57,7 +57,7 @@ class Lines:
     code=("transposed_matrix", "transposed_rotation"),
     means=(
         "the whole matrix is transposed",
-        "the rotation is transposed: it has the axes of the first frame in the last",
+        "the rotation is transposed: its columns are the axes of the first frame in the last",
     ),
     example=("planar-rpr-poe", "home", {"1/4": "0", "4/1": "L1 + L2"}),
     unlike={"3/3": "0", "3/4": "1"},
@@ -74,7 +74,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     of=UpperRows,
     rank=50,
     code="inverse_transform",
-    means="the inverse: the first frame seen from the last",
+    means="the answer is the inverse: the first frame in the last",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -118,7 +118,7 @@ def other_pose(case: MatrixCase) -> Hypotheses:
     of=UpperRows,
     rank=70,
     code=("inverse_transform",),
-    means="the inverse: the first frame seen from the last",
+    means="the answer is the inverse: the first frame in the last",
     example=(
         "scara",
         "pose",
@@ -139,7 +139,7 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     of=RotationBlock,
     rank=10,
     code="transposed_rotation",
-    means="the rotation is transposed: it has the axes of the first frame in the last",
+    means="the rotation is transposed: its columns are the axes of the first frame in the last",
     example=("planar-rrr", "pose", {"1/2": "s123", "2/1": "-s123"}),
     unlike={"1/3": "1", "4/4": "0"},
 )
@@ -157,7 +157,7 @@ def transposed_rotation(case: MatrixCase) -> Hypotheses:
     of=RotationBlock,
     rank=50,
     code="columns_exchanged",
-    means="the axes of the frame stand in another order",
+    means="the columns of the rotation are in the wrong order",
     example=("rigid-motion-chain", "parallel-axes", "[0, 1, 0; 0, 0, -1; 1, 0, 0]"),
     unlike={"1/1": "0", "1/3": "1"},
 )
@@ -198,8 +198,8 @@ def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypothese
     rank=10,
     code=("column_sign", "row_sign"),
     means=(
-        "a column has the wrong sign throughout: an axis of the last frame points the other way",
-        "a row has the wrong sign throughout: an axis of the first frame points the other way",
+        "a whole column has the wrong sign: an axis of the last frame points the opposite way",
+        "a whole row has the wrong sign: an axis of the first frame points the opposite way",
     ),
     example=("homogeneous-inverse", "numbers", {"3/2": "1", "3/4": "-2"}),
     unlike={"1/4": "1"},
@@ -325,7 +325,7 @@ def left_handed_rotation(axes: WrongAxes) -> Finding | None:
     rank=20,
     code="rotation_not_orthonormal",
     when=lambda axes: UNEXPLAINED in axes.codes,
-    means="the columns are no unit vectors at right angles; told where nothing else explains an "
+    means="the columns are not unit vectors at right angles; appears only with an unexplained "
     "entry (a hint)",
     example=("rigid-motion-chain", "parallel-axes", {"2/3": "0"}),
     unlike={"1/1": "l1"},

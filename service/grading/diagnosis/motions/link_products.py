@@ -85,8 +85,7 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     of=Chain,
     rank=10,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=("planar-rr", "position", "[a2 c2 + a1 c12, a2 s2 + a1 s12]"),
     unlike={"1/1": "a0*c1 + a2*c12"},
 )
@@ -105,7 +104,7 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=20,
     code="other_convention",
-    means="the right table, multiplied out with the link transform of the other convention",
+    means="the table is multiplied out with the link transform of the other convention",
     example=("planar-rr", "position", "[a1 + a2 c1, a2 s1]"),
     unlike={"2/1": "0"},
 )
@@ -124,7 +123,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=30,
     code="wrong_frame",
-    means="the pose of a frame before the last",
+    means="the answer is the pose of a frame before the last one",
     example=(
         "spherical-wrist",
         "pose",
@@ -148,7 +147,7 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=40,
     code="wrong_base",
-    means="the pose seen from a frame behind the first",
+    means="the answer is the pose in a frame after the first one",
     example=("planar-rr", "position", "[a2 c2, a2 s2]"),
     unlike={"2/1": "0"},
 )
@@ -167,7 +166,7 @@ def wrong_base(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=50,
     code="missing_link",
-    means="a link transform was left out of the product",
+    means="a link transform is missing in the product",
     example=(
         "scara",
         "pose",
@@ -192,7 +191,7 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=60,
     code="premultiplied",
-    means="a link transform was multiplied from the left, or all turns and shifts were",
+    means="one link transform, or every turn and shift, is multiplied from the left",
     example=(
         "scara",
         "pose",
@@ -227,7 +226,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=70,
     code="row_order",
-    means="a link transform was multiplied at another place in the product",
+    means="a link transform is at the wrong place in the product",
     example=(
         "planar-rrr-standard",
         "pose",

@@ -49,7 +49,7 @@ class WrongScrews(WrongNumbers):
     of=WrongScrews,
     rank=10,
     code="exchanged_halves",
-    means="v in front of ω",
+    means="the axis is written as (v; ω) instead of (ω; v)",
     example=("simple-twist", "infinite-pitch", "1, 0, 0, 0, 0, 0"),
     unlike={"1/2": "90"},
 )
@@ -63,7 +63,7 @@ def exchanged_halves(case: WrongScrews) -> Hypotheses:
     rank=20,
     code="axis_reversed",
     when=lambda case: case.several,
-    means="the axis points the opposite way, where the exercise does not leave that open",
+    means="the axis points the opposite way, but the exercise asks for one direction",
     example=(
         "planar-rpr-poe",
         "space-screws",
@@ -81,7 +81,7 @@ def axes_reversed(case: WrongScrews) -> Hypotheses:
     rank=30,
     code="moment_sign",
     when=lambda case: case.several,
-    means="v = ω × q in place of −ω × q",
+    means="v is ω × q instead of −ω × q",
     example=("planar-rpr-poe", "body-screws", {"1/5": "-L1 - L2", "3/5": "-L2"}),
     unlike={"2/4": "0", "2/6": "1"},
 )
@@ -100,8 +100,8 @@ def moment_signs(case: WrongScrews) -> Hypotheses:
     code=("body_for_space", "space_for_body"),
     when=lambda case: case.several,
     means=(
-        "the body axis where the space axis is asked for",
-        "the space axis where the body axis is asked for",
+        "the body axis is given for the space axis",
+        "the space axis is given for the body axis",
     ),
     example=("planar-rpr-poe", "body-screws", {"1/5": "0", "3/5": "-L1"}),
     unlike={"1/3": "0", "3/5": "0"},

@@ -79,7 +79,7 @@ def seen_from_elsewhere(frame: str) -> Finding:
     of=WrongScrew,
     rank=10,
     code="axis_reversed",
-    means="the axis points the opposite way, where the exercise does not leave that open",
+    means="the axis points the opposite way, but the exercise asks for one direction",
     example=("simple-twist", "infinite-pitch", {"1/4": "-1"}),
     unlike={"1/1": "1"},
 )
@@ -92,7 +92,7 @@ def axis_reversed(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=20,
     code="moment_sign",
-    means="v = ω × q in place of −ω × q",
+    means="v is ω × q instead of −ω × q",
     example=("simple-twist", "zero-pitch", {"1/5": "2"}),
     unlike="[1, -2, 0, 0, 0, 0]",
 )
@@ -108,8 +108,8 @@ def moment_sign(case: WrongScrew) -> Hypotheses:
     rank=30,
     code=("body_for_space", "space_for_body"),
     means=(
-        "the body axis where the space axis is asked for",
-        "the space axis where the body axis is asked for",
+        "the body axis is given for the space axis",
+        "the space axis is given for the body axis",
     ),
     example=("planar-rpr-poe", "space-screws", {"3/5": "L2"}),
     unlike={"1/3": "2"},
@@ -124,7 +124,7 @@ def other_frame(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=40,
     code="infinite_pitch",
-    means="a turning joint written as one that slides, or the other way",
+    means="a turning joint is written as a sliding one, or a sliding joint as a turning one",
     example=("simple-twist", "infinite-pitch", {"1/1": "1"}),
     unlike={"1/5": "1"},
 )
@@ -143,7 +143,7 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=50,
     code="infinite_pitch",
-    means="a turning joint written as one that slides, or the other way",
+    means="a turning joint is written as a sliding one, or a sliding joint as a turning one",
     example=("planar-rpr-poe", "space-screws", {"1/3": "0", "1/6": "1"}),
     unlike={"1/3": "0", "1/5": "1"},
 )
@@ -161,7 +161,7 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=60,
     code="exchanged_halves",
-    means="v in front of ω",
+    means="the axis is written as (v; ω) instead of (ω; v)",
     example=("planar-rpr-poe", "space-screws", {"3/2": "-L1", "3/3": "0", "3/5": "0", "3/6": "1"}),
     unlike={"1/3": "0", "1/5": "1"},
 )
@@ -174,7 +174,7 @@ def exchanged_halves(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=70,
     code="not_normalised",
-    means="ω, or v of a sliding joint, is no unit vector",
+    means="ω, or v of a sliding joint, is not a unit vector",
     example=("simple-twist", "infinite-pitch", {"1/4": "2"}),
     unlike={"1/4": "0"},
 )
@@ -194,7 +194,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=80,
     code="point_for_velocity",
-    means="a point on the axis in place of v",
+    means="v is a point on the axis",
     example=("planar-rpr-poe", "space-screws", {"3/4": "L1", "3/5": "0"}),
     unlike={"1/3": "0", "1/5": "1"},
 )
@@ -212,7 +212,7 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=90,
     code="pitch",
-    means="v has a part along ω that does not belong there, or lacks one",
+    means="the part of v along ω, which gives the pitch, is wrong",
     example=("simple-twist", "zero-pitch", {"1/6": "1"}),
     unlike={"1/4": "1"},
 )
@@ -231,7 +231,7 @@ def pitch(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=100,
     code="point_off_axis",
-    means="ω is right, but v is that of a point beside the axis",
+    means="ω is right, but v is computed from a point that is not on the axis",
     example=("simple-twist", "pitch", {"1/4": "1"}),
     unlike={"1/1": "1"},
 )
@@ -251,7 +251,7 @@ def point_off_axis(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=110,
     code="other_direction",
-    means="a unit vector that does not lie along the axis",
+    means="the unit vector is not parallel to the axis",
     example=("simple-twist", "infinite-pitch", "[0, 0, 0, 0, 0, 1]"),
     unlike={"1/1": "1"},
 )

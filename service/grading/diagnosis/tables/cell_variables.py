@@ -24,8 +24,7 @@ CONVERTED = (
     of=WrongCell,
     rank=2,
     code="unknown_symbol",
-    means="a length that the exercise does not have, though it looks like a joint variable: d1 "
-    "where joint 1 turns",
+    means="the cell contains a length that the exercise does not have: d1 although joint 1 turns",
     example=("stanford-arm", "table", {"1/d": "d1"}),
     unlike={"6/d": "0"},
 )
@@ -43,7 +42,8 @@ def unknown_length(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=4,
     code="joint_variable_absent",
-    means="a joint variable that the robot does not have: θ3 where joint 3 slides, θ0",
+    means="the cell contains a joint variable that the robot does not have: θ0, or θ3 if "
+    "joint 3 slides",
     example=("stanford-arm", "table", {"3/theta": "theta3"}),
     unlike={"3/theta": "d3"},
 )
@@ -72,7 +72,7 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
     of=WrongCell,
     rank=20,
     code="joint_variable_missing",
-    means="the joint's variable is left out: the table describes the drawing, not the robot",
+    means="the joint's variable is missing, so the table describes only the drawn pose",
     example=("stanford-arm", "table", {"1/theta": "0"}),
     unlike={"1/theta": "-theta1"},
 )
@@ -94,7 +94,7 @@ def _motion(joint: Joint) -> str:
     of=WrongCell,
     rank=25,
     code="joint_variable_sign",
-    means="the variable counts the wrong way round or along its axis",
+    means="the joint variable has the wrong sign",
     example=("stanford-arm", "table", {"3/d": "-d3"}),
     unlike={"6/d": "0"},
 )
@@ -114,7 +114,7 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=30,
     code="joint_variable_index",
-    means="the variable of another joint",
+    means="the cell contains the variable of another joint",
     example=("stanford-arm", "table", {"2/theta": "theta1"}),
     unlike={"2/theta": "2*theta2"},
 )
@@ -134,7 +134,7 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=35,
     code="joint_variable_doubled",
-    means="the variable more than once",
+    means="the joint variable counts more than once",
     example=("three-link-cylindrical", "table", {"3/d": "2*d3"}),
     unlike={"1/d": "2*d1"},
 )
@@ -154,7 +154,7 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=40,
     code="degrees_as_radians",
-    means="a number of degrees where radians are read, or a variable times 180/π",
+    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
     example=("planar-rr", "table", {"1/theta": "180*theta1/pi"}),
     unlike={"1/d": "1"},
 )
@@ -167,7 +167,7 @@ def cell_in_degrees(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=45,
     code="radians_as_degrees",
-    means="a number of radians where the form is set to degrees, or a variable times π/180",
+    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
     example=("planar-rr", "table", {"1/theta": "pi*theta1/180"}),
     unlike={"1/d": "1"},
 )
@@ -188,7 +188,7 @@ def _is_converted(case: WrongCell, convert: Callable[[Numbers], Numbers]) -> boo
     of=WrongCell,
     rank=50,
     code="joint_variable_column",
-    means="the variable in a column that is constant for such a joint: θ of one that slides",
+    means="the joint variable is in a column that must be constant: θ if the joint slides",
     example=("stanford-arm", "table", {"3/theta": "d3"}),
     unlike={"6/d": "0"},
 )
@@ -209,7 +209,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=55,
     code="joint_variable_extra",
-    means="the variable of a joint that does not move what this cell describes",
+    means="the cell contains a joint variable that it must not depend on",
     example=("stanford-arm", "table", {"2/d": "d2 + d3"}),
     unlike={"2/d": "d6"},
 )
@@ -229,7 +229,7 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=60,
     code="wrong_quantity",
-    means="an angle where a length is asked for, or a length where an angle is",
+    means="the cell is an angle but must be a length, or a length but must be an angle",
     example=("stanford-arm", "table", {"2/d": "90deg"}),
     unlike={"2/d": "d6"},
 )

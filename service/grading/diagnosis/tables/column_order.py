@@ -37,8 +37,7 @@ _MAX_ORDERS: Final = 2
 _PERMUTED = register(
     of=StudentTable,
     code="columns_permuted",
-    means="the columns stand in another order, such as θ, d, a, α: of a table without headers, or "
-    "of cells typed one by one",
+    means="the columns are in another order, such as θ, d, a, α, without headers that say so",
     example=("planar-rr", "table", "theta1, 0, a1, 0 ↵ theta2, 0, a2, 0"),
     unlike={"1/a": "0"},
 )

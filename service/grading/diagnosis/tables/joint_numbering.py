@@ -18,7 +18,7 @@ Meanings = Mapping[str, str]
 _NUMBERED = register(
     of=StudentTable,
     code="joint_numbering",
-    means="the joints are numbered from another number: θ0, θ1, θ2 for θ1, θ2, θ3",
+    means="the joint numbers start at another number: θ0, θ1, θ2 for θ1, θ2, θ3",
     example=("planar-rr", "table", {"1/theta": "theta0"}),
     unlike={"1/a": "0", "1/d": "a1"},
 )

@@ -41,7 +41,7 @@ ROUNDED_TURN = ROUNDED_VALUE * np.pi
     of=WrongCell,
     rank=100,
     code="sign",
-    means="the wrong sign of a length or an angle",
+    means="a length or an angle has the wrong sign",
     example=("stanford-arm", "table", {"1/alpha": "pi/2"}),
     unlike={"1/alpha": "0"},
 )
@@ -60,7 +60,7 @@ def sign(case: WrongCell) -> Hypotheses:
     rank=110,
     code="distance_left_out",
     when=lambda case: not case.angle,
-    means="a distance between two frames is overlooked",
+    means="a distance between two frames is missing",
     example=("stanford-arm", "table", {"6/d": "0"}),
     unlike={"2/d": "d6"},
 )
@@ -79,7 +79,7 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
     rank=120,
     code="distance_extra",
     when=lambda case: not case.angle,
-    means="a distance where there is none, or one more beside the joint variable",
+    means="the cell contains a distance that does not belong there",
     example=("stanford-arm", "table", {"1/a": "d2"}),
     unlike={"2/d": "d6"},
 )
@@ -102,7 +102,7 @@ def _beside(case: WrongCell) -> str:
     rank=130,
     code="degrees_as_radians",
     when=lambda case: case.angle,
-    means="a number of degrees where radians are read, or a variable times 180/π",
+    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
     example=("stanford-arm", "table", {"1/alpha": "-90"}),
     unlike={"1/alpha": "-91"},
 )
@@ -122,7 +122,7 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
     rank=140,
     code="radians_as_degrees",
     when=lambda case: case.angle,
-    means="a number of radians where the form is set to degrees, or a variable times π/180",
+    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
     example=(
         "stanford-arm",
         "table",
@@ -177,7 +177,7 @@ def _compare_axes(case: WrongCell) -> str:
     rank=160,
     code="half_turn",
     when=lambda case: case.angle,
-    means="an angle is off by 180°: an axis was taken to point the other way",
+    means="an angle is off by 180°, because an axis points the opposite way",
     example=("stanford-arm", "table", {"3/alpha": "180°"}),
     unlike={"6/d": "0"},
 )
@@ -201,7 +201,7 @@ CELL_WORK = 1.2
     of=WrongCell,
     rank=300,
     code=UNEXPLAINED,
-    means="wrong, and none of the above: another length, another angle",
+    means="the value is wrong, and no other code explains it: for example another length or angle",
     example=("stanford-arm", "table", {"2/d": "d6"}),
     unlike={"6/d": "0"},
 )

@@ -30,8 +30,8 @@ TOO_LONG = 300.0
 _LOST = register(
     of=StudentTable,
     code="lost_freedom",
-    means="joints share one axis, or lie so that the arm can move in fewer ways than the robot; "
-    "the cells cost the points, not this",
+    means="some joints share an axis or depend on each other, so the arm has fewer degrees of "
+    "freedom than the robot; the message itself costs no points",
     example=("planar-rrr-drawn", "table", {"2/a": "0"}),
     unlike={"1/theta": "q2"},
 )

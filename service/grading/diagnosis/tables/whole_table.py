@@ -66,7 +66,7 @@ class WrongTable:
     of=WrittenTable,
     rank=50,
     code="link_columns_shifted",
-    means="a and α, or one of them, stand one row too early or too late",
+    means="the columns a and α, or one of them, are one row too early or too late",
     example=("three-link-cylindrical", "table", {"1/alpha": "-90deg", "2/alpha": "0"}),
     unlike={"2/a": "d3", "3/d": "0"},
 )
@@ -177,7 +177,7 @@ def exchanged_columns(one: int, other: int) -> Finding:
     of=WrittenTable,
     rank=80,
     code="row_order",
-    means="two rows stand in each other's places, or all rows in the opposite order",
+    means="two rows are exchanged, or all rows are in reverse order",
     example=(
         "planar-rr",
         "table",
@@ -207,7 +207,7 @@ def _reordered(order: list[int]) -> Finding:
     of=WrittenTable,
     rank=40,
     code="lengths_exchanged",
-    means="two lengths stand in each other's places, as a1 for a2 and a2 for a1",
+    means="two lengths are exchanged: a1 for a2, and a2 for a1",
     example=("spatial-rrr", "table", {"1/a": "L2", "3/a": "R"}),
     unlike={"3/a": "0", "3/d": "L2"},
 )

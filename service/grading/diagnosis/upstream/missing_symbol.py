@@ -116,7 +116,7 @@ def _is_formula(entry: Dependence) -> bool:
     of=Dependence,
     rank=10,
     code="independent_of",
-    means="a joint variable or a length that the entry must change with does not stand in it",
+    means="the entry does not contain a joint variable or a length that it must depend on",
     example=("planar-rpr-poe", "position", "[0, 0]"),
     unlike={"1/1": "theta1"},
 )
@@ -131,7 +131,7 @@ def constant(entry: Dependence) -> Finding | None:
     of=Dependence,
     rank=20,
     code=UNEXPLAINED,
-    means="wrong, and none of the above",
+    means="the value is wrong, and no other code explains it",
     example=("rigid-motion-chain", "point", "[0, 0, 0]"),
     unlike={"3/1": "h"},
 )
@@ -148,7 +148,7 @@ def zero(entry: Dependence) -> Finding | None:
     rank=30,
     code="quantity",
     when=_is_formula,
-    means="no length where a length is asked for, or a length where a plain number is",
+    means="the entry must be a length and is not, or must be a plain number and contains a length",
     example=("planar-rr", "pose", {"1/4": "c1 + c12"}),
     unlike={"1/4": "a1 c1"},
 )
@@ -179,7 +179,7 @@ def quantity(entry: Dependence) -> Finding | None:
     rank=40,
     code="independent_of",
     when=_is_formula,
-    means="a joint variable or a length that the entry must change with does not stand in it",
+    means="the entry does not contain a joint variable or a length that it must depend on",
     example=("planar-rr", "pose", {"1/4": "a1 c1"}),
     unlike={"1/4": "c1 + c12"},
 )
@@ -197,8 +197,7 @@ def missing_joints(entry: Dependence) -> Finding | None:
     rank=50,
     code="joint_variable_extra",
     when=_is_formula,
-    means="a joint angle too many in such a sum, or a joint variable where nothing may change "
-    "with it",
+    means="the entry contains a joint variable too many, alone or in a sum of joint angles",
     example=("planar-rrr-drawn", "links", {"A3.1/3": "c12"}),
     unlike={"A2.3/4": "1"},
 )
@@ -225,7 +224,7 @@ def extra_joints(entry: Dependence) -> Finding | None:
     rank=60,
     code="independent_of",
     when=_is_formula,
-    means="a joint variable or a length that the entry must change with does not stand in it",
+    means="the entry does not contain a joint variable or a length that it must depend on",
     example=("rigid-motion-chain", "point", {"3/1": "h"}),
     unlike={"3/1": "-pi/2"},
 )
@@ -243,7 +242,7 @@ def missing_length(entry: Dependence) -> Finding | None:
     of=Dependence,
     rank=90,
     code=UNEXPLAINED,
-    means="wrong, and none of the above",
+    means="the value is wrong, and no other code explains it",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + 2 a2 c12"}),
     unlike={"1/2": "s12"},
 )

@@ -82,7 +82,8 @@ def written_table(
     of=Rereadable,
     rank=10,
     code="other_convention",
-    means="the table is right in the other convention, standard for modified or the other way",
+    means="the table follows the other convention: standard instead of modified, or modified "
+    "instead of standard",
     example=("three-link-cartesian", "table", {"1/alpha": "0", "3/alpha": "-90deg"}, "degrees"),
     unlike={"3/d": "0", "3/theta": "d3"},
 )
@@ -102,7 +103,7 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     of=Rereadable,
     rank=20,
     code="degrees_as_radians",
-    means="all angles are in degrees, and radians were read",
+    means="all angles are numbers of degrees, but were read in radians",
     example=(
         "stanford-arm",
         "table",
@@ -128,7 +129,7 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     of=Rereadable,
     rank=30,
     code="radians_as_degrees",
-    means="all angles are in radians, and degrees were read",
+    means="all angles are numbers of radians, but were read in degrees",
     example=(
         "stanford-arm",
         "table",
