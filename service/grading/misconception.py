@@ -109,7 +109,7 @@ def register(
 ) -> Record:
     """Add a record; ``code`` may be several codes, and ``known`` are other fields of Record.
 
-    A record without a function documents a code that is given outside the engine.
+    A record without a function documents a code that a finding gets elsewhere.
     """
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)

@@ -86,12 +86,12 @@ def _with_child(node: Node, child: Node, replacement: Node) -> Node:
 
 
 def exchanged(node: Node) -> Node:
-    """Return the cosine for a sine, the sine for a cosine, and any other node itself."""
+    """Return a sine as a cosine or the other way round; other nodes are unchanged."""
     return Call(EXCHANGED[node.function], node.arguments) if is_sine_or_cosine(node) else node
 
 
 def other_operator(node: Node) -> Node:
-    """Return the difference for a sum, the sum for a difference, and any other node itself."""
+    """Return a sum as a difference or the other way round; other nodes are unchanged."""
     if not _is_sum(node):
         return node
     return Binary("-" if node.operator == "+" else "+", node.left, node.right)
@@ -250,7 +250,7 @@ def _merged_factors(
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
-    """Return the runs of ``turning`` joints whose sines, or cosines, are multiplied somewhere."""
+    """Return runs of ``turning`` joints whose sines (or cosines) are factors of one product."""
     found: dict[frozenset[int], None] = {}
     for factors in _products(tree):
         for function in EXCHANGED:

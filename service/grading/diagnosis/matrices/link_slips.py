@@ -1,4 +1,4 @@
-"""Slips in one of several link transforms: it contains angles or factors of earlier links."""
+"""Slips in a link transform: angles or factors of earlier links are in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

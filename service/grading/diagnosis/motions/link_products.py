@@ -204,9 +204,10 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     unlike={"1/4": "-(a1*c1 + a2*c12)", "3/3": "-1/2"},
 )
 def premultiplied(chain: Chain) -> Iterator[LinkPose]:
-    """One link transform was multiplied from the left, as if it turned about the base axes.
+    """One link transform, or every turn and shift, was multiplied from the left.
 
-    If all turns and shifts are multiplied from the left, the whole product is reversed.
+    The student took the turns as if they were about the base axes. With every turn and shift on the
+    left, the whole product is reversed.
     """
     order = list(range(len(chain.links)))
     advice = "Check on which side a motion about a moving axis is multiplied."

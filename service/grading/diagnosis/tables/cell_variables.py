@@ -60,7 +60,10 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """Return a name in the cell that is unknown to the robot, or "", and its joint, or None."""
+    """Return a name in the cell that the robot does not have, and the joint with its number.
+
+    The name is "" if the robot has all names; the joint is None if no joint has the number.
+    """
     absent = sorted(absent_names([case.expression], case.samples))
     if not absent:
         return "", None

@@ -130,7 +130,7 @@ def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) 
 
 
 def _reordered(order: Order, table: StudentTable, other: StudentTable) -> StudentTable:
-    """Return the table whose columns are meant in this order.
+    """Return the table with its columns read in this order.
 
     ``other`` is the table with each column read as the other quantity.
     """

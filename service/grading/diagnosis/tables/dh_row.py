@@ -147,7 +147,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
 
 
 def has_a_row(convention: Convention) -> Finding:
-    """Return the finding on the answer "none" if the transform has a row."""
+    """Return the finding for the answer "none" to a transform that has a row."""
     x, z = axes_named(convention)
     return _ROW_EXISTS.finding(
         f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "

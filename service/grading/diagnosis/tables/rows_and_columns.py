@@ -205,7 +205,7 @@ def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, 
 def missing_links(rows: TableRows) -> Iterator[Slip]:
     """Yield the slips of one inner row that is missing in the product.
 
-    It is only mentioned beside rows in another order, without advice.
+    It is only listed together with exchanged rows, so it has no advice.
     """
     for row in range(1, len(rows.constants) - 1):
         yield Slip(

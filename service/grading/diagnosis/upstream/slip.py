@@ -71,7 +71,7 @@ class Slip(Change):
 
     @property
     def code(self) -> str:
-        """The code of its kind, or the name of a kind that is only mentioned beside others."""
+        """The code of its kind, or the name of a kind that is only listed with others."""
         return self.kind.name
 
 

@@ -142,5 +142,5 @@ ROW_ORDER = register(
     example=("turret", "position", "[a3 c1 c3, a3 s1 c3, a3 s3]"),
     unlike="[a3 c1 c2, a3 s1 c2, a3 s2]",
 )
-# Mentioned only beside rows in another order; ``link_products`` has the code for it alone.
+# Listed only together with exchanged rows. Otherwise ``link_products`` names the missing link.
 MISSING_LINK = register(of=Slip, rank=170, name="missing_link")

@@ -96,7 +96,7 @@ class SlipSearch:
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
-        """Return masks ``(K, ...)`` of the entries that K slips explain, and that they change."""
+        """Return masks ``(K, ...)``: the entries that K slips explain, and those they change."""
         samples = self.samples if count == HALF else self.samples.subset(count)
         half = self.actual.shape[-1] // 2
         some = [*range(count), *range(half, half + count)]
@@ -107,9 +107,10 @@ class SlipSearch:
 
 
 def _certain(slips: list[Slip]) -> list[Slip]:
-    """Return the slips without those that include another one.
+    """Return the slips except those that include another one of them.
 
-    A missing link is mentioned only beside rows in another order; ``link_products`` names it alone.
+    A missing link is listed only together with exchanged rows. Otherwise ``link_products`` names
+    it.
     """
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}
