@@ -1,1 +1,1 @@
-"""The formulas that a student may have intended instead of a wrong one."""
+"""The search for the formula that a student intended."""

@@ -112,7 +112,7 @@ def without_degrees(node: Node) -> Node:
 def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
     """Return a rewriting of the sine or cosine of one joint angle.
 
-    It becomes that of the sum of the angles from joint ``first`` up to the joint: c12 for c2.
+    The angle becomes the sum of the angles from joint ``first`` up to its joint: c12 for c2.
     """
 
     def rewrite(node: Node) -> Node:

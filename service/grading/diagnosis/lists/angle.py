@@ -47,7 +47,7 @@ ARGUMENTS_SWAPPED = (
 
 
 class WrongAngle(WrongValue):
-    """The case of a wrong angle in a list; a plain WrongValue may take its place."""
+    """The class for the records of wrong angles. The cases themselves are plain WrongValues."""
 
 
 @misconception(
@@ -92,7 +92,7 @@ def radians_as_degrees(case: WrongValue) -> Hypotheses:
 
 
 def is_constant(angle: Numbers) -> bool:
-    """True if an angle ``(SAMPLES,)`` is a plain number, without a factor for its unit."""
+    """True if an angle ``(SAMPLES,)`` is a constant."""
     return bool(np.ptp(angle) < CONSTANT)
 
 

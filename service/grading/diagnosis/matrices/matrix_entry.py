@@ -129,7 +129,7 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def sum_of_cosines(case: WrongEntry) -> Formulas:
-    """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
+    """The cosine of a sum was written as a sum of cosines, or the same with the sine."""
     finding = says(
         "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
         "first.",

@@ -122,7 +122,7 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     unlike={"3/2": "0"},
 )
 def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
-    """A turn is by the angle of another one, or two turns have exchanged angles."""
+    """One turn has the angle of another, or two turns have exchanged angles."""
     for i, j in permutations(range(len(steps)), 2):
         finding = says(
             f"Turn {i + 1} was made by the angle of turn {j + 1}: check which angle belongs to "

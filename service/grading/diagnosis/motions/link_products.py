@@ -270,7 +270,10 @@ def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
 
 
 def named(pose: Explained, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
-    """Return ``others``, then the findings on the pose with ``subject`` before their words."""
+    """Return a function that builds the findings on a pose, with ``subject`` before the hint.
+
+    The findings ``others`` come first.
+    """
     return lambda: (
         *others,
         *(replace(each, hint=f"{subject} {each.hint}") for each in pose.findings),

@@ -217,7 +217,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     unlike={"2/d": "d6"},
 )
 def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """The cell contains a joint variable that has no effect on it."""
+    """The cell contains a joint variable that must not change it."""
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None

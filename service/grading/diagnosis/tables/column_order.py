@@ -111,7 +111,7 @@ def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    """Count the cells of each written column that do not suit a column: ``(written, columns)``."""
+    """Return the counts ``(written, columns)`` of cells that do not suit a column."""
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):

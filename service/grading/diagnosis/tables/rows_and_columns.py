@@ -163,8 +163,7 @@ def _other_table(convention: Convention, cells: tuple[CellChange, ...]) -> Slip:
 def other_formula(rows: TableRows) -> Iterator[Slip]:
     """Yield the slip of a table multiplied with the link transform of the other convention.
 
-    Without twists, a modified transform written so is a translation that was not turned
-    (``link_slips``).
+    If a standard table has no twists, this slip is ``translation_not_turned`` (``link_slips``).
     """
     has_twists = (np.cos(rows.constants[:, ALPHA]) < 1 - CONSTANT).any()
     if rows.convention is Convention.STANDARD and not has_twists:
