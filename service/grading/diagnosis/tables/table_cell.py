@@ -313,7 +313,7 @@ def _of_misplaced_variables(
 ) -> dict[CellIndex, Finding]:
     """Return the findings, with the same one for both cells of a misplaced joint variable.
 
-    For example, a sliding joint has its variable, or a name like theta3, in θ, and none in d.
+    For example, the variable of a sliding joint is in θ and missing in d.
     """
     told = dict(slips)
     for (i, column), finding in slips.items():

@@ -1,4 +1,4 @@
-"""Slips in the joint variables and lengths of a robot, by a table or by screws."""
+"""Slips in the joints and lengths of a robot that is given by a table or by screws."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache

@@ -1,4 +1,4 @@
-"""A slip before the answer is written: in the robot's table, joints or lengths.
+"""A slip made before the answer is computed: in the robot's table, joints or lengths.
 
 Other misconceptions are formulas for the wrong answer. A slip changes the input of the right answer
 instead. So many slips can be tried at once: the right answer is computed from the changed numbers
