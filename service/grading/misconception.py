@@ -14,10 +14,11 @@ hypotheses: numbers to compare with the answer, each with the words of its messa
     def reversed_position(case: WrongPosition) -> Hypotheses:
         yield Written(-case.expected, "Every coordinate has the wrong sign.")
 
-A check has a record, too. It returns a finding or None, where there is nothing to compare: a
-formula has no value, a frame is left-handed. Of several that fit, the one of the lowest rank
-explains the answer, however files are imported. The pages of docs that list codes are made from the
-records, and ``tests/grading/diagnosis/test_diagnosis.py`` hands the examples in.
+A check is for a slip without numbers to compare, such as a formula without a value or a left-handed
+frame. It has a record, too, and returns a finding or None. If several records explain an answer,
+that of the lowest rank counts; the order of imports has no effect. The pages of docs that list
+codes are generated from the records. ``tests/grading/diagnosis/test_diagnosis.py`` hands in the
+examples.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -38,7 +39,7 @@ Source = TypeVar("Source")
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 Index: TypeAlias = EllipsisType | tuple[slice, slice] | NDArray[np.bool_]
 
-# Exercise and part, then the answer; "degrees" behind it, if numbers are degrees.
+# Exercise, part and answer; then "degrees" if bare numbers are degrees.
 Example: TypeAlias = tuple[str, str, Any] | tuple[str, str, Any, str]
 
 
@@ -46,12 +47,12 @@ Example: TypeAlias = tuple[str, str, Any] | tuple[str, str, Any, str]
 class Record:
     """A misconception or a check.
 
-    It is asked about each answer that is a case ``of`` that class and meets ``when``, in the order
-    of ``rank``. It gives the first of ``codes``, unless its finding has another of them. ``means``
-    says in docs what the code means, or what each of several codes does. ``example`` is an answer
-    that it explains, ``unlike`` an answer to the same part that it leaves alone. An answer is what
-    a student sends, or a mapping of cells ("2/alpha") to what is written there in the model answer.
-    A record without a code passes on the findings of others.
+    The engine asks it about each answer that is an instance of ``of`` and meets ``when``, in the
+    order of ``rank``. Its findings have the first of ``codes`` unless they name another of them.
+    ``means`` is the text in docs: one for all codes, or one for each code. ``example`` is an answer
+    that the record explains, ``unlike`` an answer to the same part that it does not explain. Such
+    an answer is what a student sends, or the model answer with some cells changed:
+    ``{"2/alpha": "0"}``. A record without a code passes on the findings of other records.
     """
 
     of: type
@@ -67,7 +68,7 @@ class Record:
 
     @property
     def code(self) -> str:
-        """The code of a finding that has no other."""
+        """The code of a finding that names no other."""
         return self.codes[0]
 
     def meaning(self, code: str) -> str:
@@ -81,7 +82,7 @@ class Record:
         return Finding(self.code, hint, correction, severity)
 
     def hypotheses(self, source: object) -> Iterable["Hypothesis[Any]"]:
-        """The hypotheses about a wrong answer; each is built when it is asked for."""
+        """Return the hypotheses about a wrong answer; each is built on demand."""
         if self.function is None or self.is_check or (self.when and not self.when(source)):
             return ()
         found: Iterable[Hypothesis[Any]] = self.function(source)
@@ -106,9 +107,9 @@ def register(
     name: str = "",
     **known: Any,
 ) -> Record:
-    """Add a record; ``code`` may be several, and ``known`` are other fields of Record.
+    """Add a record; ``code`` may be several codes, and ``known`` are other fields of Record.
 
-    A record without a function is for a code that the engine does not give.
+    A record without a function documents a code that a finding gets elsewhere.
     """
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)
@@ -120,7 +121,7 @@ def register(
 def misconception(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Register a function that yields hypotheses, with the fields of its Record."""
+    """Decorate a function that yields hypotheses; the arguments are those of Record."""
     add = partial(register, of=of, rank=rank, code=code, **known)
 
     def registered(function: AnyFunction) -> AnyFunction:
@@ -134,19 +135,19 @@ def misconception(
 def check(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Register a function that returns a finding or None, with the fields of its Record."""
+    """Decorate a function that returns a finding or None; the arguments are those of Record."""
     return misconception(of=of, rank=rank, code=code, is_check=True, **known)
 
 
 @cache
 def records_of(kind: type) -> tuple[Record, ...]:
-    """The records of a kind of case and of its base classes, in the order of their ranks."""
+    """Return the records of a class of cases and of its base classes, in the order of ranks."""
     found = (each for each in _RECORDS if each.function and each.of in kind.__mro__)
     return tuple(sorted(found, key=lambda record: (record.rank, record.name)))
 
 
 def all_records() -> tuple[Record, ...]:
-    """The records of all files that are imported."""
+    """Return the records of all imported files."""
     return tuple(_RECORDS)
 
 
@@ -159,9 +160,9 @@ def says(hint: str, correction: str = "") -> Finding:
 class Hypothesis(Generic[Answer]):
     """An answer that a misconception leads to, with the words of its message.
 
-    ``finding`` may be a function, where it takes long to build or names two misconceptions at once.
-    ``entries`` are the entries of the answer that the hypothesis explains. ``record`` is that of
-    the misconception; the engine fills it in.
+    ``finding`` is a function if it is slow to build or names two misconceptions at once.
+    ``entries`` are the entries of the answer that the hypothesis explains. The engine sets
+    ``record`` to the record of the misconception.
     """
 
     answer: Answer
@@ -184,9 +185,9 @@ class Hypothesis(Generic[Answer]):
 
 @dataclass(slots=True)
 class Written(Hypothesis[Answer]):
-    """What a student with the misconception writes: it explains an answer that is equal to it.
+    """The answer of a student with the misconception: it explains an answer that is equal to it.
 
-    ``tolerance`` is how far numbers may differ, where that is not the usual tolerance.
+    ``tolerance`` replaces the usual tolerance of that comparison.
     """
 
     tolerance: float | None = None
@@ -202,24 +203,24 @@ AnyHypothesis = TypeVar("AnyHypothesis", bound=Hypothesis[Any])
 
 
 class WrongAnswer(Protocol):
-    """An answer that is not right, with all that its diagnosis needs."""
+    """An answer that is not right, with the data for its diagnosis."""
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Those hypotheses that explain the answer, in their order.
+        """Return the hypotheses that explain the answer, in their order.
 
-        A hypothesis that would change nothing explains nothing: a ``Written`` one that is right, a
-        ``Repaired`` one that is what was written.
+        A ``Written`` hypothesis that is equal to the right answer explains nothing. Neither does a
+        ``Repaired`` one that is equal to the student's answer.
         """
         ...
 
 
 def hypotheses_of(source: object, of: type | None = None) -> Iterator[Explained]:
-    """The hypotheses of all misconceptions; each is built when it is asked for."""
+    """Yield the hypotheses of all misconceptions about ``source``; each is built on demand."""
     return each_hypothesis(records_of(of or type(source)), source)
 
 
 def each_hypothesis(records: Iterable[Record], source: object) -> Iterator[Explained]:
-    """The hypotheses of these records; each is built when it is asked for."""
+    """Yield the hypotheses of these records; each is built on demand."""
     for record in records:
         for hypothesis in record.hypotheses(source):
             hypothesis.record = hypothesis.record or record
@@ -229,11 +230,11 @@ def each_hypothesis(records: Iterable[Record], source: object) -> Iterator[Expla
 def explanation(
     case: WrongAnswer, source: object = None, of: type | None = None
 ) -> Explained | None:
-    """The hypothesis of the lowest rank that explains ``case``, or None.
+    """Return the hypothesis of the lowest rank that explains ``case``, or None.
 
-    Misconceptions are functions of ``case``, or of ``source`` where there is one: the links that a
-    matrix is the product of, for example. Their records are those of its class, or of the kind
-    ``of`` case. Each is tried only if those before it explain nothing.
+    A misconception takes ``source``, for example the links whose product a matrix is; without a
+    ``source`` it takes ``case``. The records are those of the class ``of``, by default the class of
+    that argument. Each is tried only if those before it explain nothing.
     """
     start = case if source is None else source
     for record in records_of(of or type(start)):
@@ -244,7 +245,7 @@ def explanation(
 
 
 def explained_by_one(record: Record, case: WrongAnswer, source: object) -> Explained | None:
-    """The hypothesis of this record that explains ``case``, or None."""
+    """Return the hypothesis of this record that explains ``case``, or None."""
     found: Explained | None
     if record.is_check:
         found = record.verdict(source)
@@ -256,6 +257,6 @@ def explained_by_one(record: Record, case: WrongAnswer, source: object) -> Expla
 
 
 def diagnosed(case: WrongAnswer, source: object = None, of: type | None = None) -> Finding | None:
-    """The finding of the record of the lowest rank that explains ``case``, or None."""
+    """Return the finding of the record of the lowest rank that explains ``case``, or None."""
     found = explanation(case, source, of)
     return found.findings[0] if found else None

@@ -1,4 +1,4 @@
-"""What explains a wrong answer. All files are imported, so that every record is known."""
+"""The misconceptions that explain wrong answers. All files are imported to register them."""
 
 from importlib import import_module
 from pkgutil import walk_packages

@@ -9,15 +9,15 @@ POSITIVE = ("in the direction of the axis", "by the right-hand rule") * 2
 
 
 def listed(words: Sequence[str]) -> str:
-    """The words with commas between them and "and" before the last."""
+    """Return the words with commas between them and "and" before the last."""
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def axes_of_row(axis: str, label: str, last: int) -> str:
-    """The two axes ``x`` or ``z`` that a row leads between, from its frame's to the next.
+    """Return the names of the two axes ``x`` or ``z`` that a row leads between.
 
-    ``label`` is that of the row; ``last`` is the number of the last joint. The axes have no names
-    in a row without a label, and in the second row after the last joint.
+    ``label`` is the label of the row; ``last`` is the number of the last joint. A row without a
+    label, and the second row after the last joint, have axes without names.
     """
     if label.isdecimal():
         return f"{axis}{int(label) - 1} and {axis}{label}"

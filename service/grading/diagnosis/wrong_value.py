@@ -1,4 +1,4 @@
-"""A wrong value, a wrong table cell and a wrong array of numbers, with all that explains them."""
+"""A wrong value, a wrong table cell and a wrong array, and how hypotheses explain them."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -34,9 +34,9 @@ Hypotheses = Iterator[Hypothesis[Numbers]]
 class WrongValue:
     """A value that was handed in and is not the expected one.
 
-    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the
-    right answer as the student would write it, None where it is not known as a formula or is not
-    told; ``corrects`` says that it is told. ``spelling`` is the student's.
+    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the right
+    answer in the student's ``spelling``; it is None if no formula is known or if ``corrects`` is
+    False: then the report must not contain it.
     """
 
     expression: Expression
@@ -51,20 +51,20 @@ class WrongValue:
 
     @property
     def constants(self) -> tuple[Numbers, Numbers]:
-        """The actual and the expected value, as hypotheses are compared with them."""
+        """The actual and the expected value that hypotheses are compared with."""
         return self.actual, self.expected
 
     @cached_property
     def slack(self) -> float:
-        """By how much rounding may have moved the value."""
+        """The most that rounding may have moved the value."""
         return rounding_slack(self.expression, self.samples)
 
     def equal(self, one: Numbers, other: Numbers) -> bool:
-        """Whether two values of this quantity are the same but for rounding."""
+        """True if two values of this quantity are equal within rounding."""
         return same(one, other, self.scale, self.angle, self.slack)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Those hypotheses that explain the value, each compared when it is asked for."""
+        """Return the hypotheses that explain the value; each is compared on demand."""
         return filter(self._is_explained_by, hypotheses)
 
     def _is_explained_by(self, hypothesis: Hypothesis[Any]) -> bool:
@@ -75,7 +75,7 @@ class WrongValue:
         if isinstance(hypothesis, Written) and hypothesis.tolerance is not None:
             error = difference(actual, answer, self.angle)
             return bool(np.abs(error).max() <= hypothesis.tolerance)
-        # As plain numbers: of −180° for 180° the sign is said to be wrong.
+        # Compare as plain numbers, so that −180° for 180° has the wrong sign.
         return self.equal(actual, answer) and not same(
             expected, answer, self.scale, slack=self.slack
         )
@@ -88,7 +88,7 @@ def finding_on(
     *,
     otherwise: str = "",
 ) -> Finding:
-    """The words of a finding with the correction of the wrong value; ``otherwise`` without one."""
+    """Return a finding with the correction of the wrong value, or else with ``otherwise``."""
     return Finding("", hint, case.correction or otherwise, values=values)
 
 
@@ -96,10 +96,11 @@ def finding_on(
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
-    ``contained`` says how often the student's cell contains which joint variables, None if not
-    linearly; ``required`` how often the expected one does. ``shared`` says that the joint's axis
-    has a parallel neighbour, so that offsets along it add up. ``joints`` are all of the robot's.
-    ``label`` is that of the row, "" where it is the only one.
+    ``contained`` maps each joint to the count of its variable in the student's cell, or is None if
+    the cell is not linear in the variables; ``required`` maps it to the count in the expected cell.
+    If ``shared``, the joint's axis has a parallel neighbour, so that offsets along it add up.
+    ``joints`` are all joints of the robot. ``label`` is the label of the row, "" if there is only
+    one row.
     """
 
     column: int
@@ -117,21 +118,21 @@ class WrongCell(WrongValue):
 
     @property
     def measured(self) -> str:
-        """How that parameter is measured: along or about x or z."""
+        """The direction in which that parameter is measured: along or about x or z."""
         return MEASURED[self.column]
 
     def name(self, joint: Joint) -> str:
-        """The joint's variable as the student writes it."""
+        """Return the joint's variable as the student writes it."""
         return self.spelling.names.get(joint.variable, joint.variable)
 
     @property
     def same_motion(self) -> bool:
-        """Whether the cell moves with the joints as expected, so that only its constant differs."""
+        """True if the cell moves with the joints as expected, so that only its constant differs."""
         return self.contained == self.required
 
     @property
     def contained_alone(self) -> tuple[Joint, int] | tuple[None, int]:
-        """The only joint variable in the cell with its count, else ``(None, 0)``."""
+        """The only joint variable in the cell and its count, or ``(None, 0)``."""
         contained = self.contained or {}
         return next(iter(contained.items())) if len(contained) == 1 else (None, 0)
 
@@ -143,7 +144,7 @@ class WrongCell(WrongValue):
         return self.actual - motion, self.expected - motion
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Those hypotheses that explain the constant; none if the cell moves otherwise."""
+        """Return the hypotheses that explain the constant; none if the joint variables differ."""
         return super().explained_by(hypotheses if self.same_motion else ())
 
 
@@ -151,7 +152,7 @@ class WrongCell(WrongValue):
 class WrongNumbers:
     """Numbers that were handed in and are not the expected ones, ``(..., SAMPLES)`` each.
 
-    ``scale`` ``(...)`` is the size that each number is measured against.
+    ``scale`` ``(...)`` is the size that the error of each number is compared with.
     """
 
     actual: Numbers
@@ -160,14 +161,14 @@ class WrongNumbers:
     angle: ClassVar[ArrayLike] = False
 
     def agree(self, one: Numbers, other: Numbers, entries: Index = ...) -> Mask:
-        """Where ``one`` is ``other`` in these entries, exactly or rounded: ``(...)``."""
+        """Return a mask ``(...)``: True where ``one`` equals ``other`` within rounding."""
         scale = np.asarray(self.scale)[entries]
         return nearly_equal(one, other, scale, self.angle)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Those hypotheses that explain the numbers, all compared at once.
+        """Return the hypotheses that explain the numbers, all compared at once.
 
-        All of them are about the same entries.
+        All of them must be about the same entries.
         """
         tried = list(hypotheses)
         if not tried:
@@ -190,13 +191,13 @@ UNEXPLAINED = "value"
     of=WrongValue,
     rank=10,
     code="undefined",
-    means="a formula without a value: it divides by zero, takes the root of a negative number, or "
-    "grows beyond bounds",
+    means="the formula has no value: it divides by zero, takes the root of a negative number, "
+    "or is too large",
     example=("stanford-arm", "table", {"2/d": "d2/0"}),
     unlike={"6/d": "0"},
 )
 def undefined(case: WrongValue) -> Finding | None:
-    """The formula has no value where the robot can be: 1/0, √−1, or beyond all bounds."""
+    """The formula has no value at a pose of the robot: 1/0, √−1, or a number too large."""
     bad = np.flatnonzero(~np.isfinite(case.actual))
     if not bad.size:
         return None
@@ -211,10 +212,10 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
-    """``hint`` and one counterexample, for a value that no known misconception explains.
+    """Return a finding with ``hint`` and a counterexample, for an unexplained value.
 
-    The entry is worked out at the numbers as they are printed, so that a pocket calculator agrees.
-    A bare number has no counterexample: that it is what it is tells nothing.
+    The counterexample is computed from the printed numbers, so that a pocket calculator agrees. A
+    bare number has none: its value is known already.
     """
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
@@ -228,7 +229,7 @@ def differs(case: WrongValue, hint: str) -> Finding:
 
 
 def _at_printed(case: WrongValue) -> float:
-    """The entry's value where its symbols have the numbers of sample 0 as they are printed."""
+    """Return the entry's value at the printed numbers of sample 0."""
     samples, names = case.samples, case.expression.symbols
     printed = {
         name: np.array([math.radians(number) if name in samples.in_degrees else number])
@@ -238,6 +239,6 @@ def _at_printed(case: WrongValue) -> float:
 
 
 def _printed(case: WrongValue, value: float) -> float:
-    """The value, short enough to be read, and in degrees where the student is."""
+    """Return the value rounded to four digits, in degrees if the student uses degrees."""
     number = math.degrees(value) if case.angle and case.samples.in_degrees else value
     return 0.0 if abs(number) < PRINTED_NUMBER else float(f"{number:.4g}")

@@ -1,6 +1,6 @@
 """Write the lists of codes that are made from the records of misconceptions into the pages of docs.
 
-``python -m tests.docs.records`` writes them between their marks::
+``python -m tests.docs.misconceptions.records`` writes them between their marks::
 
     <!-- records: WrongPosition -->
     <!-- end -->
@@ -15,8 +15,9 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Final
 
-from service.grading.misconception import Record, all_records
+from service.grading.misconception import Example, Record, all_records
 from tests.docs.sentences import code_span, shown
+from tests.grading.diagnosis.traces import trace_of
 
 DOCS: Final = Path(__file__).parents[3] / "docs"
 PAGES: Final = tuple(DOCS / name for name in ("messages.md", "answer-kinds.md"))
@@ -58,20 +59,25 @@ def _table(names: list[str]) -> str:
     for code in dict.fromkeys(code for record in records for code in record.codes):
         of_code = [record for record in records if code in record.codes]
         means = dict.fromkeys(each.meaning(code) for each in of_code)
-        lines.append(f"| `{code}` | {'; '.join(means)} | {_example(of_code)} |")
+        lines.append(f"| `{code}` | {'; '.join(means)} | {_example(of_code, code)} |")
     return "\n".join(lines) + "\n\n"
 
 
-def _example(records: list[Record]) -> str:
-    """Return the first example that is short enough to be read in a table."""
+def _example(records: list[Record], code: str) -> str:
+    """Return the first example that causes the code and is short enough for a table."""
     for record in records:
-        if record.example is not None:
+        if record.example is not None and _causes(record.example, code, record.codes):
             exercise, part, answer, *unit = record.example
             place, text = shown_example(answer)
             if len(text) <= _LONGEST:
                 said = f"{exercise}, {part}{', in degrees' if unit else ''}{place}"
                 return f"{said}: {code_span(text)}"
     return ""
+
+
+def _causes(example: Example, code: str, codes: tuple[str, ...]) -> bool:
+    """True if the example of a record with these codes causes this one."""
+    return len(codes) == 1 or code in trace_of(*example).codes
 
 
 def shown_example(answer: object) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""A chain of four links in numbers, multiplied out here, and wrong matrices for its pose."""
+"""A chain of four links in numbers, its pose, and wrong matrices for that pose."""
 
 from functools import reduce
 
@@ -10,19 +10,19 @@ from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 from tests.frame_choice.kinematics import screw_x, screw_z
 
-# As many samples as whole matrices are compared at.
+# The number of samples at which whole matrices are compared.
 COUNT = 8
 ROWS, COLUMNS = 4, 4
 TABLE = np.random.default_rng(7).uniform(0.3, 1.2, (ROWS, COLUMNS, COUNT))
 CHAIN = Chain(TABLE, Convention.STANDARD, ("0", "1", "2", "3", "4"))
-# What each row does about and along z, and about and along x: ``(COUNT, 4, 4)`` each.
+# The screw of each row along and about z, and along and about x: ``(COUNT, 4, 4)`` each.
 Z = [screw_z(d, theta) for _, _, d, theta in TABLE]
 X = [screw_x(a, alpha) for a, alpha, _, _ in TABLE]
 A1, A2, A3, A4 = (z @ x for z, x in zip(Z, X, strict=True))
 
 
 def product(*transforms: Numbers) -> Numbers:
-    """The product of transforms ``(COUNT, 4, 4)``."""
+    """Return the product of transforms ``(COUNT, 4, 4)``."""
     return reduce(np.matmul, transforms)
 
 
@@ -30,12 +30,12 @@ POSE = product(A1, A2, A3, A4)
 
 
 def wrong_pose(matrix: Numbers, chain: Chain | None = CHAIN) -> MatrixCase:
-    """``matrix`` ``(COUNT, 4, 4)`` where ``POSE`` would be right."""
+    """Return the wrong pose ``matrix`` ``(COUNT, 4, 4)``; the right one is ``POSE``."""
     return wrong_matrix(matrix, POSE, chain)
 
 
 def wrong_matrix(matrix: Numbers, right: Numbers, chain: Chain | None = None) -> MatrixCase:
-    """``matrix`` ``(COUNT, rows, columns)`` where ``right`` would be."""
+    """Return the wrong ``matrix`` ``(COUNT, rows, columns)``; the right one is ``right``."""
     actual, expected = (np.moveaxis(each, 0, -1) for each in (matrix, right))
     return MatrixCase(
         actual=actual,

@@ -1,4 +1,4 @@
-"""Every record: an engine asks it, its example draws it, and it leaves its counterexample alone."""
+"""Each record is used, explains its example, and does not explain its counterexample."""
 
 import subprocess
 import sys
@@ -17,31 +17,35 @@ from tests.grading.diagnosis.traces import Trace, trace_of
 from tests.together import together
 
 NAMED = [record for record in all_records() if record.codes]
-PASSING_ON = [record for record in all_records() if record.function and not record.codes]
+WITHOUT_CODE = [record for record in all_records() if record.function and not record.codes]
 
 
-def what_is_wrong_with(record: Record) -> str:
-    """Return a complaint that names the record, or an empty string if it keeps its word."""
+def complaint_about(record: Record) -> str:
+    """Return a complaint that names the record, or an empty string if its examples are right."""
     if record.example is None or not record.means:
         return f"{record.name}: give it an example, and say what its code means"
     exercise, part, answer, *unit = record.example
     trace = trace_of(exercise, part, answer, *unit)
     # The engine does not give the code of a record without a function.
-    is_told = record in trace.told or (record.function is None and record.of is not Slip)
-    if not is_told:
+    explains_example = record in trace.explaining or (
+        record.function is None and record.of is not Slip
+    )
+    if not explains_example:
         return f"{record.name}: {_reason(record, trace)}"
     if not trace.codes.intersection(record.codes):
         return f"{record.name}: its example draws {sorted(trace.codes)}"
-    left_alone = trace_of(exercise, part, record.unlike, *unit)
-    is_drawn = record in left_alone.told and left_alone.codes.intersection(record.codes)
-    if is_drawn or left_alone.is_right:
+    counterexample = trace_of(exercise, part, record.unlike, *unit)
+    explains_counterexample = (
+        record in counterexample.explaining and counterexample.codes.intersection(record.codes)
+    )
+    if explains_counterexample or counterexample.is_right:
         return f"{record.name}: its counterexample is right, or drawn by it, too"
     return ""
 
 
 def _reason(record: Record, trace: Trace) -> str:
     if record not in trace.asked and record.function is not None:
-        others = sorted(each.name for each in trace.told)
+        others = sorted(each.name for each in trace.explaining)
         if not any(each.of is record.of for each in trace.asked):
             return "no engine asks it about its example"
         return f"on its example it is hidden by {', '.join(others)}"
@@ -49,18 +53,18 @@ def _reason(record: Record, trace: Trace) -> str:
 
 
 @together("record", NAMED)
-def test_a_record_keeps_its_word(record: Record) -> None:
-    assert what_is_wrong_with(record) == ""
+def test_a_record_explains_only_its_example(record: Record) -> None:
+    assert complaint_about(record) == ""
 
 
 @cache
 def traces() -> list[Trace]:
-    """The traces of all examples."""
+    """Return the traces of all examples."""
     return [trace_of(*record.example) for record in all_records() if record.example]
 
 
-@together("record", PASSING_ON)
-def test_what_passes_a_finding_on_is_asked(record: Record) -> None:
+@together("record", WITHOUT_CODE)
+def test_a_record_without_a_code_is_asked(record: Record) -> None:
     assert any(record in trace.asked for trace in traces()), f"no engine asks {record.name}"
 
 
@@ -75,7 +79,7 @@ def test_no_two_records_of_a_kind_have_one_rank() -> None:
 @pytest.mark.parametrize(
     "first", ["judging.own_frames.written_table", "diagnosis.upstream.slip_kinds", "kinds.position"]
 )
-def test_the_records_are_the_same_whatever_is_imported_first(first: str) -> None:
+def test_the_order_of_imports_changes_no_record(first: str) -> None:
     program = (
         f"import service.grading.{first}\n"
         "from service.grading.misconception import all_records\n"
@@ -88,11 +92,11 @@ def test_the_records_are_the_same_whatever_is_imported_first(first: str) -> None
     assert done.stdout.splitlines() == expected
 
 
-# --- a record that does not keep its word is named
+# --- the complaint about a wrong record names it
 
 
-class Nobody:
-    """A kind of wrong answer that nothing is."""
+class UnusedCase:
+    """A class of wrong answers that no grading uses."""
 
 
 REVERSED = "[-a1 c1 - a2 c12, -a1 s1 - a2 s12]"
@@ -101,14 +105,14 @@ EXCHANGED = "[a1 s1 + a2 s12, a1 c1 + a2 c12]"
 
 @pytest.fixture
 def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The records, to which a test may add some."""
+    """Let a test add records, and remove them afterwards."""
     monkeypatch.setattr(engine, "_RECORDS", list(all_records()))
     yield
     engine.records_of.cache_clear()
 
 
-def said_of(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
-    """Return the complaint about a misconception about signs with this record."""
+def complaint_about_signs(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
+    """Return the complaint about a misconception on signs with this record."""
 
     def signed(case: WrongPosition) -> Iterator[Written[Numbers]]:
         for sign in signs:
@@ -125,33 +129,33 @@ def said_of(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
         unlike=EXCHANGED,
         function=signed,
     )
-    return what_is_wrong_with(record)
+    return complaint_about(record)
 
 
 @pytest.mark.usefixtures("known")
 def test_a_record_that_no_engine_asks_is_named() -> None:
-    assert said_of(Nobody, 1, -1) == "signed: no engine asks it about its example"
+    assert complaint_about_signs(UnusedCase, 1, -1) == "signed: no engine asks it about its example"
 
 
 @pytest.mark.usefixtures("known")
 def test_a_record_that_another_one_hides_is_named() -> None:
-    said = said_of(WrongPosition, 35, -1)
-    assert said.startswith("signed: on its example it is hidden by ")
-    assert "position.reversed_position" in said
+    complaint = complaint_about_signs(WrongPosition, 35, -1)
+    assert complaint.startswith("signed: on its example it is hidden by ")
+    assert "position.reversed_position" in complaint
 
 
 @pytest.mark.usefixtures("known")
 def test_a_record_whose_example_draws_something_else_is_named() -> None:
-    said = said_of(WrongPosition, 5, 2)
-    assert said == "signed: its example draws ['reversed_position'], and not by it"
+    complaint = complaint_about_signs(WrongPosition, 5, 2)
+    assert complaint == "signed: its example draws ['reversed_position'], and not by it"
 
 
 @pytest.mark.usefixtures("known")
 def test_a_record_that_explains_its_counterexample_is_named() -> None:
-    said = said_of(WrongPosition, 5, -1, 1)
-    assert said == "signed: its counterexample is right, or drawn by it, too"
+    complaint = complaint_about_signs(WrongPosition, 5, -1, 1)
+    assert complaint == "signed: its counterexample is right, or drawn by it, too"
 
 
 @pytest.mark.usefixtures("known")
-def test_a_record_that_keeps_its_word_is_not_named() -> None:
-    assert said_of(WrongPosition, 5, -1) == ""
+def test_a_correct_record_is_not_named() -> None:
+    assert complaint_about_signs(WrongPosition, 5, -1) == ""

@@ -9,7 +9,7 @@ from service.grading.diagnosis.wording import axes_of_row, listed
     ("words", "text"),
     [(["1"], "1"), (["1", "2"], "1 and 2"), (["1", "2", "3"], "1, 2 and 3"), ([], "")],
 )
-def test_words_in_a_list(words: list[str], text: str) -> None:
+def test_words_are_listed_with_commas_and_and(words: list[str], text: str) -> None:
     assert listed(words) == text
 
 
@@ -23,5 +23,5 @@ def test_words_in_a_list(words: list[str], text: str) -> None:
         ("", "the two z axes"),
     ],
 )
-def test_the_axes_of_a_row(label: str, axes: str) -> None:
+def test_the_axes_of_a_row_are_named(label: str, axes: str) -> None:
     assert axes_of_row("z", label, last=6) == axes

@@ -1,4 +1,4 @@
-"""Hypotheses that explain numbers, and hypotheses that would change nothing."""
+"""Which hypotheses explain numbers; a hypothesis without a change explains nothing."""
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def explains(
     return list(case.explained_by([hypothesis])) == [hypothesis]
 
 
-def test_what_the_student_would_have_written() -> None:
+def test_written_explains_an_equal_answer() -> None:
     written = Written(2 * ONES, FINDING)
     assert explains(written, actual=2, expected=1)
     assert not explains(written, actual=3, expected=1)
@@ -35,19 +35,19 @@ def test_what_the_student_would_have_written() -> None:
     assert explains(written, actual=2 + 2 * np.pi, expected=1, angle=True)
 
 
-def test_the_repaired_answer() -> None:
+def test_repaired_explains_a_wrong_answer_if_it_is_right() -> None:
     repaired = Repaired(2 * ONES, FINDING)
     assert explains(repaired, actual=1, expected=2)
     assert not explains(repaired, actual=1, expected=3)
     assert not explains(repaired, actual=2, expected=2)
 
 
-def test_a_tolerance_of_its_own() -> None:
+def test_written_may_have_a_tolerance() -> None:
     assert explains(Written(2 * ONES, FINDING, tolerance=0.2), actual=2.1, expected=1)
     assert not explains(Written(2 * ONES, FINDING, tolerance=0.05), actual=2.1, expected=1)
 
 
-def test_many_numbers_at_once() -> None:
+def test_many_numbers_are_explained_together() -> None:
     case = WrongNumbers(
         actual=np.array([ONES, 2 * ONES]), expected=np.array([ONES, 3 * ONES]), scale=1.0
     )
@@ -56,7 +56,7 @@ def test_many_numbers_at_once() -> None:
     assert case.explained_by([]) == []
 
 
-def test_some_entries_alone() -> None:
+def test_a_hypothesis_may_explain_some_entries() -> None:
     case = WrongNumbers(
         actual=np.array([[ONES, 2 * ONES]]),
         expected=np.array([[ONES, 3 * ONES]]),
@@ -68,7 +68,7 @@ def test_some_entries_alone() -> None:
 
 
 def counterexample(text: str, *, degrees: bool = False, corrects: bool = False) -> Finding:
-    """The finding on a wrong length that nothing explains."""
+    """Return the finding on a wrong length that no misconception explains."""
     words = Vocabulary([Symbol("q1", "angle", joint=1), Symbol("l1", "length")])
     rng = np.random.default_rng(3)
     values = {"q1": rng.uniform(-3, 3, SAMPLES), "l1": rng.uniform(0.3, 0.9, SAMPLES)}
@@ -86,7 +86,7 @@ def counterexample(text: str, *, degrees: bool = False, corrects: bool = False) 
 
 
 def test_a_counterexample_can_be_checked_with_a_pocket_calculator() -> None:
-    """Near 180° four figures of the angle leave two of the sine: the printed angle counts."""
+    """Near 180°, an angle of four figures gives a sine of only two."""
     for degrees in (True, False):
         found = counterexample("1000 l1 sin(q1)", degrees=degrees).values
         assert found is not None
@@ -98,7 +98,7 @@ def test_a_counterexample_can_be_checked_with_a_pocket_calculator() -> None:
 
 def test_a_bare_number_has_no_counterexample() -> None:
     assert counterexample("1.6").values is None
-    # With the right number it is one.
+    # If the right number may be shown, it has one.
     assert set(counterexample("1.6", corrects=True).values or ()) == {
         "q1",
         "l1",

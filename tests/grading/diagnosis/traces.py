@@ -1,4 +1,4 @@
-"""Which records are asked about an answer, and which of them explain it."""
+"""Traces of a grading: the records that were asked, and those that explained an answer."""
 
 import json
 import tomllib
@@ -28,21 +28,21 @@ class Trace:
     """The records that were asked, those that explained something, and the codes of the report."""
 
     asked: set[Record] = field(default_factory=set)
-    told: set[Record] = field(default_factory=set)
+    explaining: set[Record] = field(default_factory=set)
     codes: set[str] = field(default_factory=set)
     is_right: bool = False
 
 
 @contextmanager
 def traced() -> Iterator[Trace]:
-    """A trace that is filled in while answers are graded."""
+    """Fill in a trace while answers are graded."""
     trace = Trace()
     findings = Hypothesis.findings.fget  # type: ignore[attr-defined]
     hypotheses, verdict = Record.hypotheses, Record.verdict
 
-    def told(self: Hypothesis[Any]) -> Any:
+    def explaining(self: Hypothesis[Any]) -> Any:
         if self.record is not None:
-            trace.told.add(self.record)
+            trace.explaining.add(self.record)
         return findings(self)
 
     def asked(self: Record, source: object) -> Any:
@@ -54,7 +54,7 @@ def traced() -> Iterator[Trace]:
         return verdict(self, source)
 
     with (
-        patch.object(Hypothesis, "findings", property(told)),
+        patch.object(Hypothesis, "findings", property(explaining)),
         patch.object(Record, "hypotheses", asked),
         patch.object(Record, "verdict", checked),
     ):
@@ -63,13 +63,13 @@ def traced() -> Iterator[Trace]:
 
 @cache
 def model_answers(exercise_id: str) -> Mapping[str, Any]:
-    """The model answer of each part of an exercise."""
+    """Return the model answer to each part of an exercise."""
     return {part.part: part.answer for part in solve(exercises()[exercise_id]).parts}
 
 
 @cache
 def exercises() -> Mapping[str, Exercise]:
-    """The exercises that come with the program, and those that are made for some examples."""
+    """Return the exercises of the program and those that exist only for some examples."""
     made = tomllib.loads(MADE.read_text(encoding="utf-8"))["made"]
     with TemporaryDirectory() as folder:
         for name, text in made.items():
@@ -79,7 +79,7 @@ def exercises() -> Mapping[str, Exercise]:
 
 
 def answered(exercise_id: str, part_id: str, answer: Any) -> Any:
-    """Return an answer of a record as a student would send it."""
+    """Return the example answer of a record as a student would send it."""
     if isinstance(answer, str):
         return answer.replace(END, "\n")
     if not (isinstance(answer, dict) and any("/" in place for place in answer)):
@@ -109,7 +109,7 @@ def _write(rows: Any, row: str, cell: str, written: str) -> None:
 
 
 def trace_of(exercise_id: str, part_id: str, answer: Any, unit: str = "radians") -> Trace:
-    """Grade an answer of a record; return its trace."""
+    """Grade the example answer of a record and return the trace."""
     exercise = exercises()[exercise_id]
     sent = {part_id: answered(exercise_id, part_id, answer)}
     with traced() as trace:

@@ -1,1 +1,1 @@
-"""The formulas that the writer of a wrong one may have intended."""
+"""The search for the formula that a student intended."""

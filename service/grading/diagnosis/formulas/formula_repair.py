@@ -1,4 +1,4 @@
-"""A wrong entry, and the formulas that its writer may have intended."""
+"""A wrong entry, and the search for the formula that the student intended."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -18,9 +18,9 @@ from service.grading.misconception import AnyHypothesis, Repaired
 from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
 
-# A formula of more nodes is compared, but not taken apart.
+# A formula with more nodes is compared, but not rewritten.
 MAX_NODES = 100
-# A longer formula is not worth reading.
+# A longer formula is too long for a correction.
 MAX_TEXT = 200
 
 
@@ -28,8 +28,8 @@ MAX_TEXT = 200
 class Rewritten(Repaired[Node]):
     """The student's formula without the misconception.
 
-    It explains the entry if it is right, or right but for its sign unless ``signed``. The sign and
-    the correction are added to the finding.
+    It explains the entry if it is right. Unless ``signed``, it also explains the entry if only its
+    sign is wrong. The sign and the correction are added to the finding.
     """
 
     signed: bool = False
@@ -37,13 +37,13 @@ class Rewritten(Repaired[Node]):
 
 @dataclass(frozen=True, kw_only=True)
 class WrongEntry(WrongValue):
-    """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number.
+    """A wrong entry of a matrix or a list. ``turning`` maps joint numbers to turning joints.
 
-    The formula of an entry that ``stays_whole`` is not taken apart.
+    If ``only_compared``, the formula of the entry is not rewritten.
     """
 
     turning: Mapping[int, Symbol]
-    stays_whole: bool = False
+    only_compared: bool = False
 
     @cached_property
     def tree(self) -> Node:
@@ -52,13 +52,13 @@ class WrongEntry(WrongValue):
 
     @cached_property
     def size(self) -> int:
-        """How many nodes the formula has."""
+        """The number of nodes of the formula."""
         return sum(1 for _ in nodes(self.tree))
 
     @cached_property
     def can_be_repaired(self) -> bool:
-        """Whether the formula is small enough to be taken apart, and has a value everywhere."""
-        is_small = not self.stays_whole and self.size <= MAX_NODES
+        """True if the formula is small enough to be rewritten, and has a value everywhere."""
+        is_small = not self.only_compared and self.size <= MAX_NODES
         return is_small and bool(np.isfinite(self.actual).all())
 
     @cached_property
@@ -67,7 +67,7 @@ class WrongEntry(WrongValue):
         return list(filter(is_sine_or_cosine, nodes(self.tree)))
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Those hypotheses that explain the entry, each tried when it is asked for."""
+        """Yield the hypotheses that explain the entry; each is tried on demand."""
         for hypothesis in hypotheses:
             if not isinstance(hypothesis, Rewritten):
                 yield from super().explained_by((hypothesis,))
@@ -75,10 +75,10 @@ class WrongEntry(WrongValue):
                 yield self._completed(hypothesis, sign)
 
     def _sign(self, rewritten: Rewritten) -> int | None:
-        """The sign with which the formula is right; None where it is right with neither.
+        """Return the sign that makes the rewritten formula right, or None.
 
-        A formula that is right at one point is evaluated at all samples. One that has the value of
-        the student's formula explains nothing.
+        A formula that is right at one point is evaluated at all samples. A formula with the same
+        value as the student's explains nothing.
         """
         tree = rewritten.answer
         if tree is self.tree:

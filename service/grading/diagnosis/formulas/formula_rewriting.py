@@ -1,7 +1,7 @@
-"""Functions that rewrite a student's formula as it would be without one misconception.
+"""Functions that rewrite a student's formula without one misconception.
 
-A tree is never changed. The new one shares every part that stays as it was; a tree in which there
-is nothing to rewrite is returned itself.
+A tree is never changed. The new tree shares all unchanged parts with it. If there is nothing to
+rewrite, the tree itself is returned.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,14 +15,14 @@ from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Call, Negation, Node, SymbolNode, Unit, children
 
 Rewriting = Callable[[Node], Node]
-# A factor or term with the sign that it counts with.
+# A factor or term with its sign.
 Signed = tuple[int, Node]
 
 EXCHANGED = {"sin": "cos", "cos": "sin"}
 
 
 def nodes(tree: Node) -> Iterator[Node]:
-    """All nodes of the tree, each before what it contains."""
+    """Yield all nodes of the tree, each before its children."""
     pending = [tree]
     while pending:
         node = pending.pop()
@@ -31,12 +31,12 @@ def nodes(tree: Node) -> Iterator[Node]:
 
 
 def is_sine_or_cosine(node: Node) -> TypeGuard[Call]:
-    """Whether the node is a sine or cosine."""
+    """True if the node is a sine or cosine."""
     return isinstance(node, Call) and node.function in EXCHANGED
 
 
 def mapped(node: Node, rewrite: Rewriting) -> Node:
-    """The node with ``rewrite`` applied to each of its operands or arguments."""
+    """Return the node with ``rewrite`` applied to each of its operands or arguments."""
     if isinstance(node, Binary):
         left, right = rewrite(node.left), rewrite(node.right)
         unchanged = left is node.left and right is node.right
@@ -54,7 +54,7 @@ def mapped(node: Node, rewrite: Rewriting) -> Node:
 
 
 def everywhere(tree: Node, rewrite: Rewriting) -> Node:
-    """The tree with ``rewrite`` applied to every node, the innermost first."""
+    """Return the tree with ``rewrite`` applied to every node, the innermost first."""
 
     def visit(node: Node) -> Node:
         return rewrite(mapped(node, visit))
@@ -63,7 +63,7 @@ def everywhere(tree: Node, rewrite: Rewriting) -> Node:
 
 
 def at_sines_and_cosines(tree: Node, rewrite: Rewriting) -> Node:
-    """The tree with ``rewrite`` applied to its sines and cosines, but not to their arguments."""
+    """Return the tree with ``rewrite`` applied to its sines and cosines, but not inside them."""
 
     def visit(node: Node) -> Node:
         return rewrite(node) if is_sine_or_cosine(node) else mapped(node, visit)
@@ -72,7 +72,7 @@ def at_sines_and_cosines(tree: Node, rewrite: Rewriting) -> Node:
 
 
 def one_place(node: Node, rewrite: Rewriting) -> Iterator[tuple[Node, Node]]:
-    """The trees with ``rewrite`` applied in one place, each with the node that stood there."""
+    """Yield trees with ``rewrite`` applied in one place, each with the node that it replaces."""
     changed = rewrite(node)
     if changed is not node:
         yield changed, node
@@ -86,31 +86,34 @@ def _with_child(node: Node, child: Node, replacement: Node) -> Node:
 
 
 def exchanged(node: Node) -> Node:
-    """Sine for cosine, and cosine for sine."""
+    """Return a sine as a cosine or the other way round; other nodes are unchanged."""
     return Call(EXCHANGED[node.function], node.arguments) if is_sine_or_cosine(node) else node
 
 
 def other_operator(node: Node) -> Node:
-    """Plus for minus, and minus for plus."""
+    """Return a sum as a difference or the other way round; other nodes are unchanged."""
     if not _is_sum(node):
         return node
     return Binary("-" if node.operator == "+" else "+", node.left, node.right)
 
 
 def first_term_negated(node: Node) -> Node:
-    """The first term of a sum with the other sign."""
+    """Return the sum with the sign of its first term changed."""
     if not _is_sum(node) or _is_sum(node.left):
         return node
     return Binary(node.operator, negated(node.left), node.right)
 
 
 def without_degrees(node: Node) -> Node:
-    """A number in degrees as the same number in radians."""
+    """Return the number without its unit of degrees, so that it is read in radians."""
     return node.operand if isinstance(node, Unit) and node.unit == "deg" else node
 
 
 def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
-    """The sine or cosine of one joint angle as that of all from joint ``first`` up to it."""
+    """Return a rewriting of the sine or cosine of one joint angle.
+
+    The angle becomes the sum of the angles from joint ``first`` up to its joint: c12 for c2.
+    """
 
     def rewrite(node: Node) -> Node:
         last = _joint_of(node.arguments[0]) if is_sine_or_cosine(node) else None
@@ -124,7 +127,7 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
 
 
 def with_angle(symbol: Symbol) -> Rewriting:
-    """The sine or cosine of joint angles with ``symbol`` added to them, where it is not there."""
+    """Return a rewriting that adds ``symbol`` to the joint angles in a sine or cosine."""
 
     def rewrite(node: Node) -> Node:
         if not (isinstance(node, Call) and is_sine_or_cosine(node)):
@@ -138,7 +141,7 @@ def with_angle(symbol: Symbol) -> Rewriting:
 
 
 def without_angle(symbol: Symbol) -> Rewriting:
-    """The sine or cosine of joint angles without ``symbol``, where it is one of several."""
+    """Return a rewriting that removes ``symbol`` from a sum of joint angles in a sine or cosine."""
 
     def rewrite(node: Node) -> Node:
         if not (isinstance(node, Call) and is_sine_or_cosine(node)):
@@ -154,20 +157,20 @@ def without_angle(symbol: Symbol) -> Rewriting:
 
 
 def _joints_in(call: Call) -> set[int]:
-    """The turning joints whose angles stand in the argument."""
+    """Return the turning joints whose angles are in the argument."""
     joints = map(_joint_of, nodes(call.arguments[0]))
     return {joint for joint in joints if joint is not None}
 
 
 def _joint_of(node: Node) -> int | None:
-    """The turning joint whose angle the node is, nothing added to it."""
+    """Return the turning joint if the node is its angle alone, or None."""
     if isinstance(node, SymbolNode) and node.symbol.kind == "angle":
         return node.symbol.joint
     return None
 
 
 class _Term(NamedTuple):
-    """A term of a sum: its sign, its last sine or cosine if there is one, and its other factors."""
+    """A term of a sum: its sign, its last sine or cosine (or None), and its other factors."""
 
     sign: int
     factors: list[Node]
@@ -175,7 +178,10 @@ class _Term(NamedTuple):
 
 
 def sums_merged(node: Node) -> Node:
-    """f(a) + f(b) as f(a + b), f being sine or cosine, with the same factors before both."""
+    """Return the node with f(a) + f(b) merged to f(a + b); f is the sine or the cosine.
+
+    Only terms with equal other factors are merged.
+    """
     if not _is_sum(node):
         return mapped(node, sums_merged)
     terms = [_split(sign, sums_merged(term)) for sign, term in terms_of(node)]
@@ -203,9 +209,10 @@ def _merged_term(group: list[_Term]) -> Signed:
 
 
 def products_merged(tree: Node, joints: frozenset[int] | None = None) -> Node:
-    """f(a) f(b) as f(a + b), f being sine or cosine.
+    """Return the tree with f(a) f(b) merged to f(a + b); f is the sine or the cosine.
 
-    With ``joints`` only where a product holds f of just these joints' angles, and only those.
+    With ``joints``, only factors of these joints' angles are merged, in products that contain all
+    of them.
     """
 
     def visit(node: Node) -> Node:
@@ -243,7 +250,7 @@ def _merged_factors(
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
-    """Runs of the ``turning`` joints whose sines, or cosines, are multiplied somewhere."""
+    """Return runs of ``turning`` joints whose sines (or cosines) are factors of one product."""
     found: dict[frozenset[int], None] = {}
     for factors in _products(tree):
         for function in EXCHANGED:
@@ -260,7 +267,7 @@ def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]
 
 
 def _products(tree: Node) -> Iterator[list[Node]]:
-    """The factors of each product that is not itself a factor of a product."""
+    """Yield the factors of each product that is not itself a factor of a product."""
     pending = [tree]
     while pending:
         node = pending.pop()
@@ -277,7 +284,7 @@ def _is_sum(node: Node) -> TypeGuard[Binary]:
 
 
 def terms_of(node: Node) -> list[Signed]:
-    """The terms of a sum with their signs; the node itself where it is no sum."""
+    """Return the terms of a sum with their signs; a node that is no sum is the only term."""
     if _is_sum(node):
         sign = 1 if node.operator == "+" else -1
         right = [(sign * inner, term) for inner, term in terms_of(node.right)]
@@ -288,7 +295,7 @@ def terms_of(node: Node) -> list[Signed]:
 
 
 def factors_of(node: Node) -> tuple[int, list[Node]]:
-    """The factors of a product, and the sign that all their minus signs make."""
+    """Return the sign of a product and its factors without their minus signs."""
     if isinstance(node, Binary) and node.operator == "*":
         first, left = factors_of(node.left)
         second, right = factors_of(node.right)
@@ -300,7 +307,7 @@ def factors_of(node: Node) -> tuple[int, list[Node]]:
 
 
 def joined(terms: list[Signed]) -> Node:
-    """The sum of the terms, at least one."""
+    """Return the sum of the terms; there must be at least one."""
     (sign, first), *others = terms
     total = _with_sign(sign, first)
     for sign, term in others:
@@ -317,7 +324,7 @@ def _with_sign(sign: int, node: Node) -> Node:
 
 
 def negated(node: Node) -> Node:
-    """The node with the other sign, which in a product stands before the first factor."""
+    """Return the node with the other sign; in a product the first factor gets the minus."""
     if isinstance(node, Negation):
         return node.operand
     if isinstance(node, Binary) and node.operator in ("*", "/"):

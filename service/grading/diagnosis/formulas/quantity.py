@@ -5,19 +5,20 @@ from typing import Final, TypeAlias
 from service.expressions import Kind
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
-# None where a formula is neither, or nobody can say: l1 + theta1, l1*l2.
+# None if a formula has no single quantity, or an unknown one: l1 + theta1, l1*l2.
 Quantity: TypeAlias = Kind | None
 
 _ANGLE_OF: Final = frozenset({"asin", "acos", "atan", "atan2"})
 _NUMBER_OF: Final = frozenset({"sin", "cos", "tan"})
-# Students write no deeper; a longer run of sums has no quantity.
+# Deeper than any formula of a student; a longer sum has no quantity.
 _DEEPEST: Final = 60
 
 
 def quantity_of(tree: Node, depth: int = 0) -> Quantity:
-    """The quantity of a formula; a number beside an angle or a length is one, too.
+    """Return the quantity of a formula, or None if it is unknown.
 
-    ``90deg`` and ``pi/2`` are angles, ``2 l1`` and ``l1 cos(theta1)`` lengths.
+    A number added to an angle or a length counts as one, too. ``90deg`` and ``pi/2`` are angles,
+    ``2 l1`` and ``l1 cos(theta1)`` are lengths.
     """
     if depth > _DEEPEST:
         return None

@@ -1,1 +1,1 @@
-"""The slips in a list of values: positions, angles and Euler angles."""
+"""Slips in a list of values: positions, angles and Euler angles."""

@@ -47,7 +47,7 @@ ARGUMENTS_SWAPPED = (
 
 
 class WrongAngle(WrongValue):
-    """A wrong angle in a list; it may be a plain WrongValue."""
+    """The class for the records of wrong angles. The cases themselves are plain WrongValues."""
 
 
 @misconception(
@@ -59,7 +59,7 @@ class WrongAngle(WrongValue):
     unlike="[theta4, theta5, theta6 + 1]",
 )
 def sign(case: WrongValue) -> Hypotheses:
-    """The size is right, the direction is not."""
+    """The angle has the right size and the wrong sign."""
     yield Written(-case.expected, finding_on(case, WRONG_SIGN))
 
 
@@ -67,12 +67,12 @@ def sign(case: WrongValue) -> Hypotheses:
     of=WrongAngle,
     rank=110,
     code="degrees_as_radians",
-    means="a number of degrees where radians are read, or a variable times 180/π",
+    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
     example=("spherical-wrist", "zyz", "[180*theta4/pi, theta5]"),
     unlike={"2/1": "0"},
 )
 def degrees_as_radians(case: WrongValue) -> Hypotheses:
-    """An angle in degrees was handed in where radians are read."""
+    """The angle was written in degrees, but is read in radians."""
     hint = FITS_IN_DEGREES if is_constant(case.actual) else CONVERTED
     yield Repaired(np.radians(case.actual), finding_on(case, hint))
 
@@ -81,18 +81,18 @@ def degrees_as_radians(case: WrongValue) -> Hypotheses:
     of=WrongAngle,
     rank=120,
     code="radians_as_degrees",
-    means="a number of radians where degrees are read, or a variable times π/180",
+    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
     example=("spherical-wrist", "zyz", "[pi*theta4/180, theta5]"),
     unlike={"2/1": "0"},
 )
 def radians_as_degrees(case: WrongValue) -> Hypotheses:
-    """An angle in radians was handed in where degrees are read."""
+    """The angle was written in radians, but is read in degrees."""
     hint = FITS_IN_RADIANS if is_constant(case.actual) else CONVERTED
     yield Repaired(np.degrees(case.actual), finding_on(case, hint))
 
 
 def is_constant(angle: Numbers) -> bool:
-    """Whether an angle ``(SAMPLES,)`` is a number; a formula in the wrong unit has a factor."""
+    """True if an angle ``(SAMPLES,)`` is a constant."""
     return bool(np.ptp(angle) < CONSTANT)
 
 
@@ -100,12 +100,12 @@ def is_constant(angle: Numbers) -> bool:
     of=WrongAngle,
     rank=130,
     code="lost_quadrant",
-    means="atan, acos or asin for atan2: right for some joint values, not for others",
+    means="atan, acos or asin is used for atan2, so the angle is right only for some joint values",
     example=("spherical-wrist", "zyz", "[atan(s4/c4), theta5, theta6]"),
     unlike={"3/1": "theta6/2"},
 )
 def lost_quadrant(case: WrongValue) -> Hypotheses:
-    """atan(y/x) was taken for atan2(y, x), which differs by half a turn where x is negative."""
+    """atan(y/x) was used for atan2(y, x); they differ by half a turn if x is negative."""
     opposite = np.abs(difference(case.actual, case.expected, angle=True)) > np.pi / 2
     if opposite.any() and not opposite.all():
         finding = finding_on(
@@ -120,12 +120,12 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
     of=WrongAngle,
     rank=140,
     code="lost_quadrant",
-    means="atan, acos or asin for atan2: right for some joint values, not for others",
+    means="atan, acos or asin is used for atan2, so the angle is right only for some joint values",
     example=("several-kinds", "angle", "[asin(l*sin(phi)/sqrt(a^2 + l^2 + 2*a*l*cos(phi))), e1]"),
     unlike="[asind(e1), a]",
 )
 def lost_sign(case: WrongValue) -> Hypotheses:
-    """Acos or asin gave the angle, which is right for one half of all directions."""
+    """The angle was computed by acos or asin, so it is right for only half of all directions."""
     names = {
         "acos": (-case.expected, "acos gives no negative angle"),
         "asin": (np.pi - case.expected, "asin gives no angle over 90°"),
@@ -150,7 +150,7 @@ def lost_sign(case: WrongValue) -> Hypotheses:
     unlike="[theta6, theta5, theta4]",
 )
 def half_turn(case: WrongValue) -> Hypotheses:
-    """A direction was taken for its opposite."""
+    """The direction is the opposite one."""
     finding = finding_on(
         case,
         "This angle is off by half a turn: check its signs, and in atan2 those of both arguments.",
@@ -168,16 +168,16 @@ def half_turn(case: WrongValue) -> Hypotheses:
     unlike={"3/1": "theta6/2"},
 )
 def swapped_atan2(case: WrongValue) -> Hypotheses:
-    """The arguments of atan2 were exchanged, which takes the angle from a quarter turn.
+    """The arguments of atan2 were exchanged, so the result is 90° minus the angle.
 
-    Without an arctangent, a constant is more likely to lack a quarter turn.
+    A constant without an arctangent is more likely to be off by a quarter turn.
     """
     if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
         yield Written(np.pi / 2 - case.expected, finding_on(case, ARGUMENTS_SWAPPED))
 
 
 def has_arctangent(tree: Node) -> bool:
-    """Whether an arctangent was written."""
+    """True if the formula contains an arctangent."""
     return _calls(tree, "atan2", "atan")
 
 
@@ -206,7 +206,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
 
 @check(of=WrongAngle, rank=200)
 def of_sum(case: WrongValue) -> Explained | None:
-    """A sum of angles has other addends."""
+    """The angle is a sum of the wrong angles."""
     return explanation(case, WrongSum.of(case))
 
 
@@ -214,7 +214,7 @@ def of_sum(case: WrongValue) -> Explained | None:
     of=WrongAngle,
     rank=300,
     code=UNEXPLAINED,
-    means="wrong, and none of the above",
+    means="the value is wrong, and no other code explains it",
     example=("spherical-wrist", "zyz", "[theta4, theta5, theta6 + 1]"),
     unlike="[theta4, theta5, theta6 + pi]",
 )
@@ -224,7 +224,7 @@ def unexplained(case: WrongValue) -> Finding:
 
 
 def diagnose_angle(case: WrongValue) -> Finding:
-    """The finding on a wrong angle."""
+    """Return the finding on a wrong angle."""
     finding = diagnosed(case, of=WrongAngle)
     assert finding is not None
     return finding

@@ -13,7 +13,7 @@ from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import CONSTANT, WHOLE_MULTIPLE
 from service.kinematics.transforms import Numbers
 
-# An angle of more addends is not taken apart: the subsets of ten are a thousand.
+# An angle of more addends is not taken apart: ten addends have a thousand subsets.
 MAX_ADDENDS = 6
 
 SUMMED = "Check which angles add up to it."
@@ -21,7 +21,7 @@ BETWEEN = "check which two directions it is measured between."
 
 
 def addends(case: WrongValue) -> dict[str, int]:
-    """How often the right angle contains each symbol; empty where it is no sum of angles."""
+    """Return the count of each symbol in the right angle; empty if it is no sum of angles."""
     names = list(case.samples.values)
     columns = [case.samples.values[name] for name in names]
     system = np.stack([*columns, np.ones_like(case.expected)], axis=1)
@@ -34,7 +34,10 @@ def addends(case: WrongValue) -> dict[str, int]:
 
 
 def _computed(case: WrongValue, names: Sequence[str]) -> dict[str, int]:
-    """The same for an angle that was computed, and so may be whole turns away from its sum."""
+    """Return the count of each symbol in an angle that atan2 or the like computed.
+
+    Such an angle may differ from its sum by whole turns.
+    """
     sums = [
         dict(zip(some, signs, strict=True))
         for count in (1, 2)
@@ -52,28 +55,28 @@ def _sum_of(case: WrongValue, counts: Mapping[str, int]) -> Numbers:
 
 @dataclass(frozen=True, slots=True)
 class WrongSum:
-    """A wrong angle, and how often the right one contains each symbol."""
+    """A wrong angle, and the count of each symbol in the right angle."""
 
     case: WrongValue
     counts: Mapping[str, int]
 
     @classmethod
     def of(cls, case: WrongValue) -> "WrongSum":
-        """That of a wrong angle."""
+        """Return the case of a wrong angle."""
         return cls(case, addends(case))
 
     def named(self, names: Iterable[str]) -> str:
-        """The symbols as the student writes them."""
+        """Return the symbols in the student's names."""
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:
-        """Some of the angles, but not all, with what they add to the sum; the fewest first."""
+        """Yield each proper subset of the angles with its part of the sum, the smallest first."""
         names = list(self.counts) if len(self.counts) <= MAX_ADDENDS else []
         for some in chain.from_iterable(combinations(names, k) for k in range(1, len(names))):
             yield some, _sum_of(self.case, {name: self.counts[name] for name in some})
 
     def others(self) -> Iterator[tuple[str, Numbers]]:
-        """The symbols that the student wrote and the right angle does not contain."""
+        """Yield the symbols with their values that only the student's angle contains."""
         for name in sorted(self.case.expression.symbols) if self.counts else ():
             if name not in self.counts:
                 yield name, self.case.samples.values[name]
@@ -83,12 +86,12 @@ class WrongSum:
     of=WrongSum,
     rank=10,
     code="joint_variable_missing",
-    means="an angle that belongs in a sum of angles is left out, or all of them are",
+    means="one or more angles are missing in a sum of angles",
     example=("planar-rrr-standard", "task-space", {"3/1": "q1"}),
     unlike={"3/1": "2*q1 + q2 + q3"},
 )
 def left_out(wrong: WrongSum) -> Hypotheses:
-    """Some of the angles are not counted: the last joint's alone for the sum of all."""
+    """Some of the angles are missing in the sum, for example all but the last."""
     for names, part in wrong.subsets():
         verb = "is" if len(names) == 1 else "are"
         hint = f"{wrong.named(names)} {verb} missing from this angle. {SUMMED}"
@@ -99,12 +102,12 @@ def left_out(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=60,
     code="joint_variable_missing",
-    means="an angle that belongs in a sum of angles is left out, or all of them are",
+    means="one or more angles are missing in a sum of angles",
     example=("baxter-left-arm", "wrist", {"3/1": "0"}),
     unlike={"3/1": "theta7/2"},
 )
 def constant(wrong: WrongSum) -> Hypotheses:
-    """No angle is counted."""
+    """The sum contains no angle."""
     if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
         hint = "This angle is constant, but it must not be: check which variables it depends on."
         yield Written(wrong.case.actual, finding_on(wrong.case, hint))
@@ -114,12 +117,12 @@ def constant(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=20,
     code="joint_variable_sign",
-    means="an angle of such a sum has the wrong sign",
+    means="an angle in a sum of angles has the wrong sign",
     example=("planar-rr", "task-space", {"3/1": "q1 - q2"}),
     unlike={"3/1": "0"},
 )
 def reversed_addends(wrong: WrongSum) -> Hypotheses:
-    """Some of the angles are subtracted that are to be added, or the other way."""
+    """Some of the angles have the wrong sign in the sum."""
     for names, part in wrong.subsets():
         verb = "has" if len(names) == 1 else "have"
         hint = (
@@ -133,7 +136,7 @@ def reversed_addends(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=30,
     code="joint_variable_doubled",
-    means="an angle of such a sum counts twice",
+    means="an angle in a sum of angles counts twice",
     example=("spherical-wrist", "zyz", {"1/1": "2*theta4"}),
     unlike={"1/1": "π/2"},
 )
@@ -149,12 +152,12 @@ def counted_twice(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=40,
     code="joint_variable_extra",
-    means="an angle that does not belong in the sum",
+    means="a sum of angles contains one too many",
     example=("spherical-wrist", "zyz", "[theta4 + theta6, theta5, theta6]"),
     unlike={"1/1": "theta5"},
 )
 def added(wrong: WrongSum) -> Hypotheses:
-    """An angle is counted that does not turn the direction."""
+    """The sum contains an angle that does not belong in it."""
     for name, value in wrong.others():
         hint = f"{wrong.named([name])} does not belong in this angle: {BETWEEN}"
         for sign in (1, -1):
@@ -166,12 +169,12 @@ def added(wrong: WrongSum) -> Hypotheses:
     of=WrongSum,
     rank=50,
     code="joint_variable_index",
-    means="the angle of another joint",
+    means="a sum of angles contains the angle of another joint in place of the right one",
     example=("baxter-left-arm", "wrist", {"1/1": "theta4"}),
     unlike={"3/1": "0"},
 )
 def of_another_joint(wrong: WrongSum) -> Hypotheses:
-    """An angle is counted in place of another."""
+    """The sum contains another joint's angle in place of the right one."""
     for other, value in wrong.others():
         for name, count in wrong.counts.items():
             hint = f"{wrong.named([other])} stands in the place of another angle: {BETWEEN}"

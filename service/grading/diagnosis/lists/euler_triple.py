@@ -25,9 +25,9 @@ from service.kinematics.transforms import Matrices, Numbers
 class WrongTriple:
     """Three angles that do not describe the right rotation.
 
-    ``angles`` is ``(3, SAMPLES)``, all of them with a value everywhere; ``rotation`` is the right
-    one, ``(SAMPLES, 3, 3)``; ``sequence`` names the axes, which move or are ``fixed``.
-    ``arctangents`` says which angles were written with an arctangent.
+    ``angles`` is ``(3, SAMPLES)`` and has a value everywhere. ``rotation`` is the right rotation,
+    ``(SAMPLES, 3, 3)``. ``sequence`` names the axes; they move unless ``fixed``. ``arctangents``
+    says which angles were written with an arctangent.
     """
 
     angles: Numbers
@@ -38,12 +38,12 @@ class WrongTriple:
 
     @property
     def is_right(self) -> bool:
-        """Whether the angles do describe the rotation."""
+        """True if the angles describe the rotation."""
         described = from_angles(self.sequence, self.angles.T, fixed=self.fixed)
         return bool(np.abs(described - self.rotation).max() < ROUNDED_VALUE)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Those hypotheses that make the triple right, each tried when it is asked for."""
+        """Yield the hypotheses that make the triple right; each is tried on demand."""
         return (hypothesis for hypothesis in hypotheses if hypothesis.answer.is_right)
 
 
@@ -55,16 +55,16 @@ RepairedTriple = Repaired[WrongTriple]
     rank=10,
     code=("sign", "degrees_as_radians", "radians_as_degrees", "swapped_atan2"),
     means=(
-        "the sign of one angle, or of several, is wrong",
-        "one angle, or several, in degrees where radians are read",
-        "one angle, or several, in radians where degrees are read",
-        "the arguments of atan2 are exchanged in one angle, or in several",
+        "one or more angles have the wrong sign",
+        "one or more angles are in degrees, but are read in radians",
+        "one or more angles are in radians, but are read in degrees",
+        "the arguments of atan2 are exchanged in one or more angles",
     ),
     example=("spherical-wrist", "zyz", "[atan2(c4, s4), theta5, theta6]"),
     unlike="[theta4, theta5, theta6 + 1]",
 )
 def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The same slip was made in one, two or all three of the angles."""
+    """One, two or all three of the angles have the same slip."""
     angles = case.angles
     repairs = (
         (-angles, Finding("sign", angle.WRONG_SIGN, "Change its sign.")),
@@ -80,12 +80,12 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
                 if finding.code == "swapped_atan2" and not may_be_swapped[slipped].all():
                     continue
                 mixed = np.where(slipped[:, None], repaired, angles)
-                told = _told_of(finding, angles[slipped])
-                yield Repaired(replace(case, angles=mixed), told, slipped)
+                worded = _on_angles(finding, angles[slipped])
+                yield Repaired(replace(case, angles=mixed), worded, slipped)
 
 
-def _told_of(finding: Finding, angles: Numbers) -> Finding:
-    """The finding on some angles; a formula in the wrong unit has a factor in it."""
+def _on_angles(finding: Finding, angles: Numbers) -> Finding:
+    """Return the finding, reworded if an angle in the wrong unit is a formula."""
     is_of_unit = finding.hint in (angle.FITS_IN_DEGREES, angle.FITS_IN_RADIANS)
     if is_of_unit and not all(map(angle.is_constant, angles)):
         return replace(finding, hint=angle.CONVERTED)
@@ -96,12 +96,12 @@ def _told_of(finding: Finding, angles: Numbers) -> Finding:
     of=WrongTriple,
     rank=20,
     code="angle_order",
-    means="the right angles in another order",
+    means="the angles are right, but in the wrong order",
     example=("spherical-wrist", "zyz", "[theta6, theta5, theta4]"),
     unlike={"1/1": "theta5"},
 )
 def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The angles were written down in another order, most often from last to first."""
+    """The angles were written in another order, most often from last to first."""
     finding = says(
         "These angles are right, but in another order: the first angle is that of the first axis "
         "of the sequence.",
@@ -115,12 +115,12 @@ def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
     of=WrongTriple,
     rank=30,
     code="inverse_rotation",
-    means="the angles of the inverse rotation",
+    means="the angles describe the inverse rotation",
     example=("spherical-wrist", "zyz", "[-theta6, -theta5, -theta4]"),
     unlike={"1/1": "theta5"},
 )
 def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The angles describe the first frame in the last."""
+    """The angles describe the first frame in the last one."""
     finding = says(
         "These angles describe the inverse rotation: the first frame as seen from the last.",
         "Take them from the matrix whose columns are the axes of the last frame.",
@@ -132,12 +132,12 @@ def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
     of=WrongTriple,
     rank=40,
     code="other_euler_sequence",
-    means="the angles of another sequence, or of fixed axes for moving ones",
+    means="the angles belong to another sequence of axes, or to fixed instead of moving axes",
     example=("spherical-wrist", "zyz", "[theta4 + pi/2, theta5, theta6 - pi/2]"),
     unlike={"3/1": "theta6/2"},
 )
 def other_sequence(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The angles are those of another sequence of axes, or of fixed axes for moving ones."""
+    """The angles belong to another sequence of axes, or to fixed instead of moving axes."""
     others = sorted(
         ((sequence, fixed) for sequence in SEQUENCES for fixed in (False, True)),
         key=lambda other: (other[0] != case.sequence, other[1] != case.fixed),
@@ -155,5 +155,5 @@ def _named(sequence: str, fixed: bool) -> str:
 
 
 def explain_triple(case: WrongTriple) -> Explained | None:
-    """The first hypothesis that explains the angles together; its entries are those with a slip."""
+    """Return the hypothesis that explains the angles, or None; its entries have the slip."""
     return None if case.is_right else explanation(case)

@@ -1,4 +1,4 @@
-"""Slips in the coordinates of a point, taken together."""
+"""Slips in the coordinates of a point as a whole."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +9,7 @@ import numpy as np
 from service.grading.diagnosis.motions.given_motion import GivenMotion
 from service.grading.diagnosis.motions.link_products import Chain, named, other_poses
 from service.grading.diagnosis.motions.motion_slips import Displacements
-from service.grading.diagnosis.upstream.slip_search import BEHIND_SIGNS, SlipSearch
+from service.grading.diagnosis.upstream.slip_search import AFTER_SIGNS, SlipSearch
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.misconception import (
     Explained,
@@ -26,9 +26,9 @@ from service.grading.numerics.tolerances import EXACT_VALUE
 class WrongPosition(WrongNumbers):
     """Wrong coordinates ``(n, SAMPLES)`` of a point, along the ``axes`` 0, 1, 2.
 
-    ``chains`` holds the links that lead to the point, where it is the end of a chain. ``slips``
-    holds it against the answers that slips of the table lead to. ``motion`` is what formulas say
-    that it is made of.
+    ``chains`` holds the links that lead to the point if it is the end of a chain. ``slips``
+    compares it with the answers that slips of the table lead to. ``motion`` holds the displacements
+    in the formulas of the exercise.
     """
 
     axes: tuple[int, ...]
@@ -38,7 +38,7 @@ class WrongPosition(WrongNumbers):
 
     @cached_property
     def slip(self) -> Explained | None:
-        """The slip of the table that explains all coordinates."""
+        """The slip of the table that explains all coordinates, or None."""
         every = np.ones(len(self.axes), dtype=np.bool_)
         return None if self.slips is None else self.slips.explanation(every)
 
@@ -47,12 +47,12 @@ class WrongPosition(WrongNumbers):
     of=WrongPosition,
     rank=10,
     code="exchanged_coordinates",
-    means="the right coordinates in each other's places",
+    means="the coordinates are right, but in the wrong order",
     example=("planar-rr", "position", "[a1 s1 + a2 s12, a1 c1 + a2 c12]"),
     unlike="[a1 s1 - a2 s12, a1 c1 + a2 c12]",
 )
 def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
-    """The coordinates are right, but stand in the wrong places."""
+    """The coordinates are right, but in each other's places."""
     names = ", ".join("xyz"[axis] for axis in case.axes)
     finding = says(f"These coordinates are in the wrong order: it must be {names}.")
     for order in permutations(range(len(case.axes))):
@@ -61,9 +61,9 @@ def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=20)
 def slip(case: WrongPosition) -> Explained | None:
-    """The table has a slip that says more than that the position is reversed."""
+    """The table has a slip that is likelier than a reversed position."""
     found = case.slip
-    return None if found is None or found.findings[0].code in BEHIND_SIGNS else found
+    return None if found is None or found.findings[0].code in AFTER_SIGNS else found
 
 
 @misconception(
@@ -83,16 +83,16 @@ def reversed_position(case: WrongPosition) -> Hypotheses:
 
 
 @check(of=WrongPosition, rank=40)
-def slip_behind_signs(case: WrongPosition) -> Explained | None:
-    """The table has a slip; a position that is reversed is half a turn off, too."""
+def slip_after_signs(case: WrongPosition) -> Explained | None:
+    """The table has a slip that is less likely than a reversed position."""
     return case.slip
 
 
 @misconception(of=WrongPosition, rank=50)
 def other_pose(case: WrongPosition) -> Hypotheses:
-    """The position was taken from another pose of the chain.
+    """The position belongs to another pose of the chain.
 
-    A constant position, such as the origin itself, does not show where it was taken from.
+    A constant position, such as the origin itself, does not show its pose.
     """
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
@@ -103,5 +103,5 @@ def other_pose(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=60)
 def displacement(case: WrongPosition) -> Explained | None:
-    """The displacements that the position is the sum of were not added rightly."""
+    """The displacements whose sum is the position were added wrongly."""
     return None if case.motion is None else explanation(case, case.motion, Displacements)

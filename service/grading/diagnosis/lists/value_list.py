@@ -1,4 +1,4 @@
-"""Slips in a list of single values, each of its own quantity."""
+"""Slips in a list of single values, each with a quantity of its own."""
 
 import numpy as np
 
@@ -14,14 +14,14 @@ from service.grading.feedback import Finding
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
 
-# The work of all that may explain a whole list of values, as the budget counts it.
+# The work of explaining a whole list of values, as the budget counts it.
 SEARCH_WORK = 15.0
 
 
 def search_of(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> SlipSearch | None:
-    """The search for slips of the table behind a list of values; None for None."""
+    """Return the search for slips of the table that explain a list of values, if there is one."""
     if answers is None:
         return None
     student = compared.student
@@ -44,9 +44,10 @@ def slips_of(
     grading: Grading,
     answers: SlippedAnswers | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """The finding on each wrong value that was read, at (its place, 0), as the budget allows.
+    """Return the findings on wrong readable values, as far as the work budget allows.
 
-    ``answers`` are those that changed symbols lead to.
+    The key of a finding is ``(place, 0)``. ``answers`` are the answers that changed symbols lead
+    to.
     """
     student, scales = compared.student, compared.scales(grading)
     requirements = answers and Requirements(

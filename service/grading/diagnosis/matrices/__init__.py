@@ -1,1 +1,1 @@
-"""The slips in a rotation, a transform or a list of transforms."""
+"""Slips in a rotation, a transform or a list of transforms."""

@@ -17,7 +17,11 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 @dataclass(frozen=True, slots=True)
 class Exponentials:
-    """Screw axes ``(n, SAMPLES, 6)`` seen from the base and from the tool, amounts, home pose."""
+    """The factors of a product of exponentials.
+
+    The screw axes ``(n, SAMPLES, 6)`` in the space and in the body frame, the joint values, and the
+    home pose.
+    """
 
     space: Numbers
     body: Numbers
@@ -26,7 +30,7 @@ class Exponentials:
 
     @classmethod
     def of(cls, robot: ScrewRobot, samples: Samples) -> "Exponentials":
-        """Those of the reference robot."""
+        """Return the factors of the reference robot."""
         values, count = samples.values, samples.count
         home = robot.frame("tool", at_home(robot.joints, values, count), count)
         space = robot.screws(values, count)
@@ -42,8 +46,8 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
     of=Exponentials,
     rank=10,
     code="home_on_wrong_side",
-    means="a product of exponentials with M on the wrong side: space axes go in front of it, body "
-    "axes behind",
+    means="M is on the wrong side of the exponentials: it comes after those of space axes and "
+    "before those of body axes",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -55,7 +59,7 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
     unlike={"4/2": "1"},
 )
 def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
-    """Space axes were multiplied behind M, or body axes in front of it."""
+    """Space axes were multiplied on the right of M, or body axes on its left."""
     finding = says(
         "M stands on the wrong side of the exponentials: space axes are multiplied in front of M, "
         "body axes behind it.",
@@ -69,7 +73,7 @@ def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=20,
     code="missing_home",
-    means="a product of exponentials without M",
+    means="M is missing in the product of exponentials",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -94,8 +98,7 @@ def missing_home(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=30,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -122,7 +125,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=40,
     code="moment_sign",
-    means="a product of exponentials with v = ω × q in place of −ω × q",
+    means="v is ω × q instead of −ω × q in the exponentials",
     example=(
         "planar-rpr-poe",
         "pose",
@@ -134,7 +137,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     unlike={"4/2": "1"},
 )
 def moment_sign(product: Exponentials) -> Hypotheses:
-    """V was taken to be ω × q for every turning joint."""
+    """Every turning joint has v = ω × q."""
     finding = says(
         "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
         "cross product.",
@@ -146,7 +149,7 @@ def moment_sign(product: Exponentials) -> Hypotheses:
 
 
 def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
-    """What explains the whole of a wrong pose that is a product of exponentials."""
+    """Return the explanation of a wrong pose that is a product of exponentials, if there is one."""
     if not isinstance(exercise.reference, ScrewRobot):
         return []
     subset = samples.subset(case.actual.shape[-1] // 2)

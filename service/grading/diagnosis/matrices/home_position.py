@@ -1,4 +1,4 @@
-"""Joint variables in what is taken in the home position: the pose M, a screw axis."""
+"""Joint variables in an answer for the home position: the pose M, or a screw axis."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,8 @@ from service.grading.reading.entry import Entry
 NOT_AT_HOME = register(
     of=WrongScrews,
     code="not_at_home",
-    means="a joint variable in what is taken in the home position; a home pose M likewise",
+    means="an answer for the home position, such as a screw axis or the home pose M, contains "
+    "a joint variable",
     example=("planar-rpr-poe", "space-screws", {"3/4": "q1 q2"}),
     unlike={"3/4": "1"},
 ).finding(
@@ -24,7 +25,7 @@ NOT_AT_HOME = register(
 
 
 def with_joint_variable(entries: Sequence[Sequence[Entry]], exercise: Exercise) -> Mask:
-    """Which entries ``(rows, columns)`` contain a joint variable."""
+    """Return a mask ``(rows, columns)`` of the entries that contain a joint variable."""
     variables = {joint.variable for joint in exercise.joints}
     return np.array(
         [
@@ -41,6 +42,6 @@ def with_joint_variable(entries: Sequence[Sequence[Entry]], exercise: Exercise) 
 def explain_moving(
     case: MatrixCase, entries: Sequence[Sequence[Entry]], exercise: Exercise
 ) -> list[Explanation]:
-    """The explanation of the wrong entries of a home pose that contain a joint variable."""
+    """Return the explanation of the wrong entries of a home pose that contain a joint variable."""
     moving = np.asarray(case.wrong & with_joint_variable(entries, exercise))
     return [Explanation(NOT_AT_HOME, moving)] if moving.any() else []

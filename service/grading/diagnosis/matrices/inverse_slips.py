@@ -1,8 +1,8 @@
 """Slips in the inverse of a homogeneous transform.
 
-With R and p for the rotation and the position of the transform that is inverted, the inverse has Rᵀ
-and −Rᵀp. Where no inverse is asked for, the same numbers tell that a vector is described in the
-wrong frame, or points the opposite way.
+If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. In an answer
+that is not an inverse, the same numbers mean a vector in the wrong frame or in the opposite
+direction.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ RULE = "The inverse of (R, p) is (Rᵀ, −Rᵀp)."
 
 
 def _parts(case: MatrixCase) -> tuple[Numbers, Numbers]:
-    """R ``(3, 3, samples)`` and p ``(3, samples)`` of the inverse of the right transform."""
+    """Return R ``(3, 3, samples)`` and p ``(3, samples)`` of the inverse of the right transform."""
     rotation = np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1)
     return rotation, -_turned(rotation, case.expected[:3, 3])
 
@@ -39,7 +39,7 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
     rank=20,
     code="transposed_for_inverse",
     when=lambda case: case.motion is not None,
-    means="the transpose of a transform in place of its inverse",
+    means="the answer is the transpose of the transform instead of its inverse",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -48,7 +48,7 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
-    """The whole transform was transposed, as only a rotation may be."""
+    """The whole transform was transposed, which inverts only a rotation."""
     finding = says(
         "This is the transpose of the transform, not its inverse: only a rotation is inverted so. "
         f"{RULE}",
@@ -66,7 +66,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     rank=80,
     code="negated_for_inverse",
     when=lambda case: case.motion is not None,
-    means="signs changed in place of inverting: −R for Rᵀ, or R with −p",
+    means="signs are changed instead of inverting: −R for Rᵀ, or R with −p",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -75,7 +75,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def negated_for_inverse(case: MatrixCase) -> Hypotheses:
-    """Signs were changed, of all entries or of the position, and nothing was transposed."""
+    """All signs, or those of the position, were changed, and nothing was transposed."""
     if case.is_transform:
         rotation, position = _parts(case)
         for sign in (1, -1):
@@ -88,12 +88,12 @@ def negated_for_inverse(case: MatrixCase) -> Hypotheses:
     rank=80,
     code="negated_for_inverse",
     when=lambda case: case.motion is not None,
-    means="signs changed in place of inverting: −R for Rᵀ, or R with −p",
+    means="signs are changed instead of inverting: −R for Rᵀ, or R with −p",
     example=("rigid-motion-chain", "parallel-axes", {"1/1": "-1"}),
     unlike={"1/1": "0", "1/3": "1"},
 )
 def negated_rotation(case: MatrixCase) -> Hypotheses:
-    """The signs of the rotation were changed, as if that were its inverse."""
+    """The signs of the rotation were changed in order to invert it."""
     rotation = case.expected[ROTATION_BLOCK]
     for written in (-np.swapaxes(rotation, 0, 1), -rotation):
         yield Written(written, NEGATED, ROTATION_BLOCK)
@@ -107,12 +107,12 @@ NEGATED = says(f"The signs were changed, but that does not invert a rotation. {R
     rank=80,
     code="position_not_turned",
     when=lambda case: case.motion is not None,
-    means="the right vector in the axes of the other frame: −p in an inverse, for −Rᵀp",
+    means="the position is described in the other frame: in an inverse, −p for −Rᵀp",
     example=("homogeneous-inverse", "about-z", {"1/4": "-px", "2/4": "-py"}),
     unlike={"1/1": "0", "1/4": "0", "3/4": "0", "4/4": "0"},
 )
 def position_not_turned(case: MatrixCase) -> Hypotheses:
-    """The position of the inverse was taken to be −p."""
+    """The position of the inverse is −p, without the rotation."""
     finding = says(
         "The position is the right vector, but seen in the axes of the other frame: it must be "
         f"turned, too. {RULE}",
@@ -127,12 +127,12 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
     rank=82,
     code="position_not_inverted",
     when=lambda case: case.motion is not None,
-    means="the position of the transform the other way round: p in an inverse",
+    means="the position is not inverted: in an inverse, p for −Rᵀp",
     example=("simple-twist", "exponential", {"2/4": "2*sin(theta)"}),
     unlike={"3/3": "0", "3/4": "1"},
 )
 def position_not_inverted(case: MatrixCase) -> Hypotheses:
-    """The position was left as it was before the transform was inverted."""
+    """The position was not inverted."""
     finding = says(f"The position is still that of the transform that was to be inverted. {RULE}")
     if case.is_transform:
         _, position = _parts(case)
@@ -144,7 +144,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     rank=84,
     code="reversed_position",
     when=lambda case: case.motion is not None,
-    means="the position has the wrong sign throughout: Rᵀp in an inverse",
+    means="the whole position has the wrong sign: in an inverse, Rᵀp for −Rᵀp",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -153,7 +153,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     unlike={"3/4": "2*pz"},
 )
 def position_reversed(case: MatrixCase) -> Hypotheses:
-    """The position was turned into the other frame, but not reversed."""
+    """The position was turned into the other frame, but its sign was not changed."""
     finding = says(f"Every coordinate of the position has the wrong sign. {RULE}")
     if case.is_transform:
         yield _position(-case.expected[:3, 3], finding)
@@ -164,12 +164,12 @@ def position_reversed(case: MatrixCase) -> Hypotheses:
     rank=86,
     code="position_turned_back",
     when=lambda case: case.motion is not None,
-    means="turned by R in place of its transpose: −R p in an inverse",
+    means="the position is turned by R instead of Rᵀ: in an inverse, −R p for −Rᵀp",
     example=("homogeneous-inverse", "numbers", {"1/4": "1"}),
     unlike={"2/4": "3"},
 )
 def position_turned_back(case: MatrixCase) -> Hypotheses:
-    """The position of the inverse was taken to be −R p."""
+    """The position of the inverse is −R p."""
     finding = says(f"The position was turned by R, not by its transpose. {RULE}")
     if case.is_transform:
         rotation, position = _parts(case)

@@ -1,4 +1,4 @@
-"""Slips in one of several link transforms: what belongs in the links before it stands in it."""
+"""Slips in a link transform: angles or factors of earlier links are in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,9 +26,9 @@ from service.kinematics.transforms import Matrices, Numbers, rot_z
 
 @dataclass(frozen=True)
 class LinkAmongOthers:
-    """A link transform in its chain.
+    """A link transform and the links before it.
 
-    ``links`` ``(k, samples, 4, 4)`` are the right ones up to it, the last its own. ``angles``
+    ``links`` ``(k, samples, 4, 4)`` are right; the last one is the link itself. ``angles``
     ``(j, samples)`` are the joint angles of the links before it.
     """
 
@@ -45,7 +45,7 @@ class LinkAmongOthers:
         convention: Convention,
         count: int,
     ) -> "LinkAmongOthers":
-        """The last of ``links`` ``(k, SAMPLES, 4, 4)``, at ``count`` samples of each half."""
+        """Return the last of ``links`` ``(k, SAMPLES, 4, 4)``, at ``count`` samples per half."""
         turning = [joint.variable for joint in joints[: len(links) - 1] if not joint.prismatic]
         values = samples.subset(count).values
         subset = Samples.subset_of(np.moveaxis(links, 1, -1), count)
@@ -56,7 +56,7 @@ class LinkAmongOthers:
     of=LinkAmongOthers,
     rank=10,
     code="absolute_angle",
-    means="a link transform holds the angles of the joints before it, too: θ1 + θ2 in A2",
+    means="a link transform also contains the angles of the joints before it: θ1 + θ2 in A2",
     example=(
         "planar-rr",
         "links",
@@ -68,7 +68,7 @@ class LinkAmongOthers:
     unlike={"A1.3/2": "1"},
 )
 def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
-    """The angle was measured from the base: A2 holds θ1 + θ2, not θ2."""
+    """The angle was measured from the base: A2 contains θ1 + θ2 instead of θ2."""
     finding = says(
         "A link transform holds the variable of its own joint only. The joints before it have link "
         "transforms of their own.",
@@ -87,7 +87,7 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     of=LinkAmongOthers,
     rank=20,
     code="pose_for_link",
-    means="the product of all link transforms up to one in place of that one",
+    means="a link transform is replaced by the product of all up to it",
     example=(
         "planar-rr",
         "links",
@@ -112,13 +112,12 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     of=LinkAmongOthers,
     rank=30,
     code="translation_not_turned",
-    means="the rotation of a link transform with a and d written beside it, as if nothing turned "
-    "them",
+    means="the position of a link transform holds a and d as they are, not turned",
     example=("spatial-rrr", "links", {"A1.1/4": "R", "A1.2/4": "0"}),
     unlike={"A1.2/4": "R*s2"},
 )
 def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
-    """The translations were written beside the rotation, as if nothing turned them."""
+    """The position contains a and d as they are, not turned by the link's angle."""
     finding = says(
         "The rotation is right, but the last column is not turned with it. Check the order of the "
         "four factors of a link transform.",
@@ -140,7 +139,7 @@ class PositionAmongOthers:
 
 @misconception(of=RotationAmongOthers, rank=10)
 def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
-    """The rotation alone holds the angles of the joints before it."""
+    """Only the rotation contains the angles of earlier joints."""
     return _in_block(link, ROTATION_BLOCK)
 
 
@@ -150,7 +149,7 @@ def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
     example=("planar-rr", "links", {"A2.1/4": "a2 c12", "A2.2/4": "a2 s12"}),
 )
 def angle_in_position(link: LinkAmongOthers) -> Hypotheses:
-    """The position alone holds the angles of the joints before it."""
+    """Only the position contains the angles of earlier joints."""
     return _in_block(link, POSITION_BLOCK)
 
 
@@ -161,7 +160,7 @@ def _in_block(link: LinkAmongOthers, block: Block) -> Hypotheses:
 
 
 def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
-    """What explains a wrong link transform, or its rotation or position, by the links before it."""
+    """Return the explanation of a wrong link transform by the links before it, if there is one."""
     return as_explanations(case, explanation(case, link)) or [
         found
         for block, kind in (

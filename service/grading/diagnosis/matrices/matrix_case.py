@@ -1,4 +1,4 @@
-"""A wrong matrix with all that its diagnosis needs."""
+"""A wrong matrix with the data for its diagnosis."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,14 +24,13 @@ BOTTOM_ROW: Block = (slice(3, 4), slice(None))
 
 @dataclass(frozen=True)
 class MatrixCase(WrongNumbers):
-    """A wrong matrix: ``(rows, columns, SAMPLES)``, NaN where nothing could be read.
+    """A wrong matrix: ``(rows, columns, SAMPLES)``, NaN if unreadable.
 
-    ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` marks
-    a transform (4×4) or rotation (3×3), as against a matrix of any other meaning. ``chains`` holds
-    the links that it is the product of, in each convention; none where it is not a product of
-    links. ``motion`` is what the formulas say that it is made of, where the exercise gives them.
-    ``slips`` holds it against the answers that slips of the table lead to, None where it is not the
-    robot's.
+    ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` is
+    True for a transform (4×4) or a rotation (3×3). ``chains`` holds the links whose product the
+    matrix is; it is empty for other matrices. ``motion`` holds the single motions in the formulas
+    of the exercise. ``slips`` compares the matrix with the answers that slips of the table lead to;
+    it is None if no robot is involved.
     """
 
     wrong: Mask
@@ -42,14 +41,14 @@ class MatrixCase(WrongNumbers):
 
     @property
     def is_transform(self) -> bool:
-        """Whether it is homogeneous: a rotation, a position and the bottom row."""
+        """True if it is homogeneous: a rotation, a position and the bottom row."""
         return self.rigid and self.expected.shape[:2] == (4, 4)
 
     @cached_property
     def other_poses(self) -> tuple[list[Explained], Numbers]:
         """The poses that slips in the product of the links lead to, and their entries.
 
-        The entries are ``(poses, rows, columns, SAMPLES)``, as many rows and columns as expected.
+        The entries are ``(poses, rows, columns, SAMPLES)``, cut to the expected size.
         """
         poses = other_poses(self.chains)
         rows, columns = self.expected.shape[:2]
@@ -58,7 +57,7 @@ class MatrixCase(WrongNumbers):
         return poses, as_entries(np.array([pose.answer for pose in poses]))[:, :rows, :columns]
 
     def mask(self, *blocks: Index) -> Mask:
-        """The mask of the entries in these blocks, ``(rows, columns)``."""
+        """Return a mask ``(rows, columns)`` of the entries in these blocks."""
         mask = np.zeros(self.expected.shape[:2], dtype=np.bool_)
         for block in blocks:
             mask[block] = True
@@ -79,14 +78,14 @@ class PositionBlock:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What is wrong with many entries at once, and which entries that explains."""
+    """A finding on several entries at once, and a mask of the entries that it explains."""
 
     finding: Finding
     entries: Mask
 
 
 def as_explanations(case: MatrixCase, found: Explained | None) -> list[Explanation]:
-    """The findings of a hypothesis with the entries that it explains; none for None."""
+    """Return the findings of a hypothesis with the entries that it explains; none for None."""
     if found is None:
         return []
     return [Explanation(finding, case.mask(found.entries)) for finding in found.findings]

@@ -18,17 +18,16 @@ from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed, misconception, says
 from service.kinematics.transforms import Numbers
 
-# A planar arm of three joints has three runs of joints whose angles add up.
+# Three turning joints have three runs of joints whose angles add up: 12, 23, 123.
 MAX_RUNS = 3
-# In so many sines and cosines a joint angle may be missing in one place alone.
+# Up to this many sines and cosines, a joint angle is also tried in one place alone.
 MAX_PLACES = 3
-# How many nodes of unexplained formulas are taken apart before the rest of a matrix is only
-# compared: where so much has another cause, the rest will have it too. What can be explained costs
-# less of it, but not nothing: the work must be bounded.
+# The number of nodes that are rewritten before the rest of a matrix is only compared: after many
+# unexplained entries, the rest probably has the same unknown cause. An explained entry costs less,
+# but not nothing, because the work must be bounded.
 WORK_BUDGET = 100.0
 COST_IF_EXPLAINED = 0.25
-# The work of an entry, and of each node of a formula that is taken apart, as the budget of the
-# submission counts it.
+# The work of an entry, and of each node of a rewritten formula, as the budget counts it.
 ENTRY_WORK, NODE_WORK = 1.0, 0.2
 
 Formulas = Iterator[Rewritten]
@@ -38,12 +37,12 @@ Formulas = Iterator[Rewritten]
     of=WrongEntry,
     rank=100,
     code="sign",
-    means="the sign of the whole entry is wrong",
+    means="the whole entry has the wrong sign",
     example=("planar-rr", "pose", {"1/2": "s12"}),
     unlike={"1/2": "c12"},
 )
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
-    """The size is right, the direction is not."""
+    """The entry has the right size and the wrong sign."""
     yield Written(-case.expected, finding_on(case, "The sign is wrong."))
 
 
@@ -52,12 +51,12 @@ def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     rank=110,
     code="degrees_as_radians",
     when=lambda case: case.can_be_repaired,
-    means="a number of degrees in a sine or cosine where radians are read",
+    means="a number of degrees in a sine or cosine is read in radians",
     example=("planar-rr", "pose", {"1/2": "cos(q1 + q2 + 90)"}),
     unlike={"1/2": "s12"},
 )
 def degrees_as_radians(case: WrongEntry) -> Formulas:
-    """A number in degrees was written in a sine or cosine where radians are read."""
+    """A number of degrees was written in a sine or cosine, but is read in radians."""
     finding = says(
         "A number in a sine or cosine was read in radians, but it fits in degrees: write the unit "
         "behind it (deg or °).",
@@ -67,7 +66,7 @@ def degrees_as_radians(case: WrongEntry) -> Formulas:
 
 
 def _has_bare_number(node: Node) -> bool:
-    """Whether a number other than 0 stands in it without a unit."""
+    """True if the node contains a number other than 0 without a unit."""
     if isinstance(node, Number):
         return node.value != 0
     return not isinstance(node, Unit) and any(map(_has_bare_number, children(node)))
@@ -78,7 +77,7 @@ def _has_bare_number(node: Node) -> bool:
     rank=120,
     code="radians_as_degrees",
     when=lambda case: case.can_be_repaired,
-    means="a number of radians in a sine or cosine where the form is set to degrees",
+    means="a number of radians in a sine or cosine is read in degrees",
     example=(
         "planar-rr",
         "pose",
@@ -91,7 +90,7 @@ def _has_bare_number(node: Node) -> bool:
     unlike={"4/3": "1"},
 )
 def radians_as_degrees(case: WrongEntry) -> Formulas:
-    """A number in radians was written in a sine or cosine where degrees are read."""
+    """A number of radians was written in a sine or cosine, but is read in degrees."""
     finding = says(
         "A number in a sine or cosine was read in degrees, but it fits in radians: write the unit "
         "behind it (rad).",
@@ -109,7 +108,7 @@ def radians_as_degrees(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def sine_for_cosine(case: WrongEntry) -> Formulas:
-    """Sine was taken for cosine, or cosine for sine: throughout, or in one place."""
+    """Sine and cosine are exchanged, throughout or in one place."""
     count = len(case.sines_and_cosines)
     if count > 0:
         finding = says("Sine and cosine are exchanged.")
@@ -125,12 +124,12 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     rank=140,
     code="sum_of_cosines",
     when=lambda case: case.can_be_repaired,
-    means="cos(a + b) written as cos a + cos b; the sine likewise",
+    means="cos(a + b) is written as cos a + cos b, or the same with the sine",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 (c1 + c2)"}),
     unlike={"1/2": "s12"},
 )
 def sum_of_cosines(case: WrongEntry) -> Formulas:
-    """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
+    """The cosine of a sum was written as a sum of cosines, or the same with the sine."""
     finding = says(
         "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
         "first.",
@@ -144,12 +143,12 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
     rank=150,
     code="product_for_sum_angle",
     when=lambda case: case.can_be_repaired,
-    means="c12 taken for c1 c2; s12 likewise",
+    means="c12 is written as c1 c2, or s12 as s1 s2",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 c1 c2"}),
     unlike={"1/2": "s12"},
 )
 def product_for_sum_angle(case: WrongEntry) -> Formulas:
-    """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
+    """The student read the shorthand c12 as c1 c2, or s12 as s1 s2."""
     finding = says(
         "Check this product of sines or cosines: the direction of a link has one sine or cosine of "
         "a sum of joint angles.",
@@ -165,14 +164,14 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     rank=160,
     code="relative_angle",
     when=lambda case: case.can_be_repaired,
-    means="a joint's own angle where the sum of the angles up to it belongs: c2 for c12",
+    means="a joint's own angle is used for the sum of the angles up to it: c2 for c12",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + a2 c2"}),
     unlike={"1/2": "s12"},
 )
 def relative_angle(case: WrongEntry) -> Formulas:
-    """A joint angle was taken to be measured from the base, though it counts from the link before.
+    """The student wrote a joint's own angle for the sum of the angles up to it: c2 for c12.
 
-    So c2 stands where the sum of the angles belongs, c12.
+    A joint angle is measured from the link before, not from the base.
     """
     finding = says(
         "A joint angle is measured from the link before: the direction of a link is the sum of all "
@@ -188,12 +187,12 @@ def relative_angle(case: WrongEntry) -> Formulas:
     rank=180,
     code="joint_variable_missing",
     when=lambda case: case.can_be_repaired,
-    means="a joint angle is missing in the sum that a sine or cosine takes",
+    means="a joint angle is missing in the sum in a sine or cosine",
     example=("planar-rr", "pose", {"1/2": "-s1"}),
     unlike={"1/2": "s12"},
 )
 def angle_left_out(case: WrongEntry) -> Formulas:
-    """A joint angle is not counted in a sum of joint angles: c23 stands for c123."""
+    """A joint angle is missing in a sum of joint angles: c23 for c123."""
     for symbol in _joint_angles(case):
         finding = says(
             f"{case.spelling.name(symbol)} is missing in a sine or cosine: the direction of a link "
@@ -207,13 +206,12 @@ def angle_left_out(case: WrongEntry) -> Formulas:
     rank=190,
     code="joint_variable_extra",
     when=lambda case: case.can_be_repaired,
-    means="a joint angle too many in such a sum, or a joint variable where nothing may change "
-    "with it",
+    means="the entry contains a joint variable too many, alone or in a sum of joint angles",
     example=("planar-rr", "pose", {"1/4": "a1 c12 + a2 c12"}),
     unlike={"1/2": "s12"},
 )
 def angle_too_many(case: WrongEntry) -> Formulas:
-    """A joint angle is counted in a sum of joint angles that ends before it: c123 for c12."""
+    """A sum of joint angles contains one too many: c123 for c12."""
     for symbol in _joint_angles(case):
         finding = says(
             f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
@@ -223,14 +221,14 @@ def angle_too_many(case: WrongEntry) -> Formulas:
 
 
 def _joint_angles(case: WrongEntry) -> list[Symbol]:
-    """The joint angles, where there is a sine or cosine that may hold one."""
+    """Return the joint angles if the formula has a sine or cosine, or else none."""
     return [case.turning[k] for k in sorted(case.turning)] if case.sines_and_cosines else []
 
 
 def _with_angles_changed(
     case: WrongEntry, change: rewriting.Rewriting, finding: Finding
 ) -> Formulas:
-    """The formula with ``change`` throughout, and in one place where there are few."""
+    """Yield the formula with ``change`` everywhere; if it is short, also in each single place."""
     yield Rewritten(rewriting.at_sines_and_cosines(case.tree, change), finding, signed=True)
     if 1 < len(case.sines_and_cosines) <= MAX_PLACES:
         for tree, _ in rewriting.one_place(case.tree, change):
@@ -242,7 +240,7 @@ def _with_angles_changed(
     rank=170,
     code="term_sign",
     when=lambda case: case.can_be_repaired,
-    means="the sign of one term is wrong",
+    means="one term has the wrong sign",
     example=("planar-rr", "pose", {"1/4": "a1 c1 - a2 c12"}),
     unlike={"1/4": "a1 c1 + 2 a2 c12"},
 )
@@ -255,7 +253,7 @@ def term_sign(case: WrongEntry) -> Formulas:
 
 
 def diagnose(case: WrongEntry, required: Required | None = None) -> Finding:
-    """The finding on a wrong entry; ``required`` is what the right one depends on, if known."""
+    """Return the finding on a wrong entry; ``required`` is None if unknown."""
     return diagnosed(case) or _unexplained(case, required)
 
 
@@ -265,15 +263,15 @@ def diagnose_entries(
     work_budget: float = WORK_BUDGET,
     requirements: Requirements | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """The finding on each wrong entry, as far as the work budget ``affords`` it.
+    """Return the finding on each wrong entry that the submission's budget ``affords``.
 
-    Once ``work_budget``, that of the matrix, is used up, formulas stay whole.
+    After ``work_budget``, the budget of the matrix, is used up, formulas are not rewritten.
     """
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():
         if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
             continue
-        explained = diagnosed(entry if work_budget > 0 else replace(entry, stays_whole=True))
+        explained = diagnosed(entry if work_budget > 0 else replace(entry, only_compared=True))
         work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
         required = requirements.of(*place) if requirements and not explained else None
         findings[place] = explained or _unexplained(entry, required)

@@ -1,4 +1,4 @@
-"""Slips in a composite rotation: a turn about another axis, from the wrong side, or left out."""
+"""Slips in a composite rotation: a wrong axis, sense, angle, side or order, or a missing turn."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -16,13 +16,13 @@ from service.grading.numerics.samples import Samples
 from service.kinematics.rotations import composed
 from service.kinematics.transforms import Matrices, Numbers
 
-# Of more steps one alone is taken to have a slip.
+# With more steps, only one of them is assumed to be wrong.
 MAX_STEPS = 4
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One turn: axis "X", "Y" or "Z", rotation ``(SAMPLES, 3, 3)``, whether the axis is fixed."""
+    """A turn: axis "X", "Y" or "Z", rotation ``(SAMPLES, 3, 3)``, and True if the axis is fixed."""
 
     axis: str
     rotation: Matrices
@@ -43,7 +43,8 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     of=Step,
     rank=10,
     code="fixed_for_moving_axes",
-    means="a turn about a moving axis was multiplied as if the axis were fixed, or the other way",
+    means="a turn about a moving axis is multiplied as one about a fixed axis, or the other "
+    "way round",
     example=(
         "composite-rotations",
         "fixed",
@@ -69,12 +70,12 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=20,
     code="turn_sign",
-    means="a turn was made the wrong way round",
+    means="a turn has the opposite sense",
     example=("fundamental-rotations", "about-y", {"1/3": "-sin(phi)", "3/1": "sin(phi)"}),
     unlike={"1/1": "1"},
 )
 def turned_back(steps: Sequence[Step]) -> Hypotheses:
-    """Some turns, or all of them, were made the wrong way round their axes."""
+    """Some or all turns have the opposite sense."""
     back = [replace(step, rotation=np.swapaxes(step.rotation, 1, 2)) for step in steps]
     for some in _subsets(steps):
         axes = listed(sorted({steps[i].axis.lower() for i in some}))
@@ -89,7 +90,7 @@ def turned_back(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=30,
     code="turn_axis",
-    means="a turn was made about another axis",
+    means="a turn is about the wrong axis",
     example=(
         "composite-rotations",
         "fixed",
@@ -101,7 +102,7 @@ def turned_back(steps: Sequence[Step]) -> Hypotheses:
     unlike={"2/1": "0"},
 )
 def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
-    """One turn was made about another coordinate axis."""
+    """One turn is about another coordinate axis."""
     for i, step in enumerate(steps):
         for axis in "XYZ".replace(step.axis, ""):
             finding = says(
@@ -116,12 +117,12 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=40,
     code="turn_angle",
-    means="a turn was made by the angle of another",
+    means="a turn has the angle of another turn",
     example=("rigid-motion-chain", "rotation", "[cφ, -sφ cφ, sφ sφ; sφ, cφ cφ, -cφ sφ; 0, sφ, cφ]"),
     unlike={"3/2": "0"},
 )
 def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
-    """A turn was made by the angle of another, or two by each other's."""
+    """One turn has the angle of another, or two turns have exchanged angles."""
     for i, j in permutations(range(len(steps)), 2):
         finding = says(
             f"Turn {i + 1} was made by the angle of turn {j + 1}: check which angle belongs to "
@@ -145,7 +146,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=50,
     code="missing_turn",
-    means="a turn was left out",
+    means="a turn is missing",
     example=(
         "composite-rotations",
         "fixed",
@@ -154,7 +155,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     unlike={"3/1": "1"},
 )
 def left_out(steps: Sequence[Step]) -> Hypotheses:
-    """Some turns are not in the product."""
+    """Some turns are missing in the product."""
     for some in _subsets(steps):
         if len(some) < len(steps):
             verb = "are" if len(some) > 1 else "is"
@@ -166,8 +167,7 @@ def left_out(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=60,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "composite-rotations",
         "mobile",
@@ -188,13 +188,13 @@ def another_order(steps: Sequence[Step]) -> Hypotheses:
 
 
 def _about(axis: str, step: Step) -> Matrices:
-    """The turn of a step about another axis."""
+    """Return the turn of a step about another axis."""
     shift = (ord(axis) - ord(step.axis)) % 3
     return np.roll(step.rotation, (shift, shift), axis=(1, 2))
 
 
 def _subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
-    """The places of some steps, the fewest first; of many steps one alone."""
+    """Yield the places of some steps, the fewest first; with many steps, single places only."""
     most = len(steps) if len(steps) <= MAX_STEPS else 1
     return chain.from_iterable(combinations(range(len(steps)), k) for k in range(1, most + 1))
 
@@ -205,7 +205,7 @@ def _turns(places: Sequence[int]) -> str:
 
 
 def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
-    """What explains the whole of a wrong rotation that is made of ``steps``."""
+    """Return the explanation of a wrong rotation that is composed of ``steps``, if there is one."""
     count = case.actual.shape[-1] // 2
     subset = [replace(step, rotation=Samples.subset_of(step.rotation.T, count).T) for step in steps]
     return as_explanations(case, explanation(case, subset, Step)) if steps else []

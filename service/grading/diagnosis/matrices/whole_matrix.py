@@ -1,6 +1,6 @@
-"""Slips that run through a whole matrix, or through its rotation or its position.
+"""Slips in a whole matrix, or in its whole rotation or position.
 
-Entries that a hypothesis explains need no finding of their own.
+Entries that such a slip explains get no finding of their own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ from service.grading.diagnosis.matrices.matrix_case import (
     as_explanations,
 )
 from service.grading.diagnosis.motions.link_products import named
-from service.grading.diagnosis.upstream.slip_search import BEHIND_SIGNS
+from service.grading.diagnosis.upstream.slip_search import AFTER_SIGNS
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
@@ -57,13 +57,13 @@ class Lines:
     code=("transposed_matrix", "transposed_rotation"),
     means=(
         "the whole matrix is transposed",
-        "the rotation is transposed: it has the axes of the first frame in the last",
+        "the rotation is transposed: its columns are the axes of the first frame in the last",
     ),
     example=("planar-rpr-poe", "home", {"1/4": "0", "4/1": "L1 + L2"}),
     unlike={"3/3": "0", "3/4": "1"},
 )
 def transposed_matrix(case: MatrixCase) -> Hypotheses:
-    """Rows were written as columns, throughout."""
+    """The whole matrix was written with rows and columns exchanged."""
     code = "transposed_rotation" if case.rigid and not case.is_transform else "transposed_matrix"
     finding = Finding(code, "This matrix is transposed.", "Write its rows as columns.")
     if case.expected.shape[0] == case.expected.shape[1]:
@@ -74,7 +74,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     of=UpperRows,
     rank=50,
     code="inverse_transform",
-    means="the inverse: the first frame seen from the last",
+    means="the answer is the inverse: the first frame in the last",
     example=(
         "homogeneous-inverse",
         "about-z",
@@ -83,7 +83,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def inverse_transform(case: MatrixCase) -> Hypotheses:
-    """The first frame was described in the last."""
+    """The answer describes the first frame in the last one."""
     if case.is_transform:
         yield Written(_inverted(case.expected)[UPPER_ROWS], INVERTED, UPPER_ROWS)
 
@@ -93,7 +93,7 @@ INVERTED = says(
     "Its columns are the axes and the origin of the last frame, seen from the first.",
 )
 
-# The inverse of something else than what is asked for.
+# The message for the inverse of another pose than the one asked for.
 OTHER_WAY = replace(
     INVERTED,
     hint="This matrix leads the other way: check which frame it describes, and from which frame.",
@@ -102,13 +102,13 @@ OTHER_WAY = replace(
 
 
 def _inverted(matrix: Numbers) -> Numbers:
-    """The inverse of transforms ``(..., 4, 4, SAMPLES)``."""
+    """Return the inverse of transforms ``(..., 4, 4, SAMPLES)``."""
     return as_entries(inverse(np.moveaxis(matrix, -1, -3)))
 
 
 @misconception(of=UpperRows, rank=60)
 def other_pose(case: MatrixCase) -> Hypotheses:
-    """Another pose was worked out."""
+    """The answer is another pose."""
     for pose, entries in zip(*case.other_poses, strict=True):
         found = named(pose, "This matrix is")
         yield Written(entries[UPPER_ROWS], found, UPPER_ROWS, record=pose.record)
@@ -118,7 +118,7 @@ def other_pose(case: MatrixCase) -> Hypotheses:
     of=UpperRows,
     rank=70,
     code=("inverse_transform",),
-    means="the inverse: the first frame seen from the last",
+    means="the answer is the inverse: the first frame in the last",
     example=(
         "scara",
         "pose",
@@ -127,7 +127,7 @@ def other_pose(case: MatrixCase) -> Hypotheses:
     unlike={"2/2": "90"},
 )
 def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
-    """Another pose was worked out, then inverted."""
+    """The answer is the inverse of another pose."""
     if case.is_transform:
         poses, entries = case.other_poses
         for pose, inverted in zip(poses, _inverted(entries), strict=True):
@@ -139,12 +139,12 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     of=RotationBlock,
     rank=10,
     code="transposed_rotation",
-    means="the rotation is transposed: it has the axes of the first frame in the last",
+    means="the rotation is transposed: its columns are the axes of the first frame in the last",
     example=("planar-rrr", "pose", {"1/2": "s123", "2/1": "-s123"}),
     unlike={"1/3": "1", "4/4": "0"},
 )
 def transposed_rotation(case: MatrixCase) -> Hypotheses:
-    """The axes of the first frame were written down as seen from the last."""
+    """The rotation has the axes of the first frame, described in the last one."""
     finding = says(
         "The rotation is transposed: its columns, not its rows, must be the axes of the frame that "
         "is described.",
@@ -157,12 +157,12 @@ def transposed_rotation(case: MatrixCase) -> Hypotheses:
     of=RotationBlock,
     rank=50,
     code="columns_exchanged",
-    means="the axes of the frame stand in another order",
+    means="the columns of the rotation are in the wrong order",
     example=("rigid-motion-chain", "parallel-axes", "[0, 1, 0; 0, 0, -1; 1, 0, 0]"),
     unlike={"1/1": "0", "1/3": "1"},
 )
 def columns_exchanged(case: MatrixCase) -> Hypotheses:
-    """The axes of the last frame were written down in another order."""
+    """The axes of the last frame were written in another order."""
     for order in list(permutations(range(3)))[1:]:
         finding = says(
             "The columns of the rotation are in the wrong order: check which axis belongs in which "
@@ -174,19 +174,19 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
 
 @misconception(of=RotationBlock, rank=60)
 def other_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation, but not the position, was taken from another pose."""
+    """Only the rotation belongs to another pose."""
     return _from_other_poses(case, ROTATION_BLOCK, "The rotation comes from")
 
 
 @misconception(of=PositionBlock, rank=60)
 def other_position(case: MatrixCase) -> Hypotheses:
-    """The position, but not the rotation, was taken from another pose."""
+    """Only the position belongs to another pose."""
     return _from_other_poses(case, POSITION_BLOCK, "The position comes from")
 
 
 def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypotheses:
     poses, entries = case.other_poses
-    # A constant block, such as a position of zeros, does not show which pose it was taken from.
+    # A constant block, such as a position of zeros, does not show which pose it belongs to.
     varies = np.ptp(entries[:, *block], axis=-1).max(axis=(1, 2)) > EXACT_VALUE
     for i in np.flatnonzero(varies).tolist():
         found = named(poses[i], subject)
@@ -198,16 +198,16 @@ def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypothese
     rank=10,
     code=("column_sign", "row_sign"),
     means=(
-        "a column has the wrong sign throughout: an axis of the last frame points the other way",
-        "a row has the wrong sign throughout: an axis of the first frame points the other way",
+        "a whole column has the wrong sign: an axis of the last frame points the opposite way",
+        "a whole row has the wrong sign: an axis of the first frame points the opposite way",
     ),
     example=("homogeneous-inverse", "numbers", {"3/2": "1", "3/4": "-2"}),
     unlike={"1/4": "1"},
 )
 def line_sign(case: MatrixCase) -> Hypotheses:
-    """A whole column or row has the wrong sign: an axis was taken to point the opposite way.
+    """A whole column or row has the wrong sign, because an axis points the opposite way.
 
-    A line with one wrong entry is left to the entry itself.
+    A line with only one wrong entry is diagnosed as that entry.
     """
     opposite = case.agree(case.actual, -case.expected)
     wrong = case.wrong & case.mask(UPPER_ROWS)
@@ -257,16 +257,16 @@ def slip_of_position(case: MatrixCase) -> Explained | None:
 
 
 def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
-    """The slips of the table that explain a block.
+    """Return the slips of the table that explain a block, or None.
 
-    A frame of which only axes have the wrong sign is left to ``line_sign``. So is a single
-    wrong entry to itself, unless the slip explains the whole matrix.
+    ``line_sign`` is preferred if the axes of a frame have nothing but wrong signs. A single wrong
+    entry is diagnosed as an entry, unless the slip explains the whole matrix.
     """
     entries = case.mask(block)
     if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
         return None
     found = case.slips.explanation(entries)
-    if found is not None and found.findings[0].code in BEHIND_SIGNS:
+    if found is not None and found.findings[0].code in AFTER_SIGNS:
         signs = explanation(case, of=Lines)
         left = case.wrong & entries
         if signs is not None and not (left & ~case.mask(signs.entries)).any():
@@ -286,7 +286,7 @@ def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
     unlike={"3/3": "1"},
 )
 def bottom_row(case: MatrixCase) -> Explained | None:
-    """The bottom row was taken to hold anything but 0 0 0 1."""
+    """The bottom row is not 0 0 0 1."""
     if not (case.is_transform and case.wrong[BOTTOM_ROW].any()):
         return None
     hint = "The bottom row of a homogeneous transform is the same for every transform."
@@ -295,7 +295,7 @@ def bottom_row(case: MatrixCase) -> Explained | None:
 
 @dataclass(frozen=True)
 class WrongAxes:
-    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix, and the codes of its entries."""
+    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix, and the codes of its wrong entries."""
 
     rotation: Numbers
     codes: list[str]
@@ -310,7 +310,7 @@ class WrongAxes:
     unlike={"2/3": "0"},
 )
 def left_handed_rotation(axes: WrongAxes) -> Finding | None:
-    """The axes of a frame were taken to form a left hand: det R = −1."""
+    """The columns form a left-handed frame: det R = −1."""
     if _fault(axes.rotation) is not None or not (np.linalg.det(axes.rotation) < 0).all():
         return None
     finding = says(
@@ -325,13 +325,13 @@ def left_handed_rotation(axes: WrongAxes) -> Finding | None:
     rank=20,
     code="rotation_not_orthonormal",
     when=lambda axes: UNEXPLAINED in axes.codes,
-    means="the columns are no unit vectors at right angles; told where nothing else explains an "
+    means="the columns are not unit vectors at right angles; appears only with an unexplained "
     "entry (a hint)",
     example=("rigid-motion-chain", "parallel-axes", {"2/3": "0"}),
     unlike={"1/1": "l1"},
 )
 def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
-    """The columns are no unit vectors at right angles."""
+    """The columns are not unit vectors at right angles."""
     fault = _fault(axes.rotation)
     if fault is None:
         return None
@@ -343,7 +343,7 @@ def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
 
 
 def _fault(rotation: Numbers) -> str | None:
-    """The first column of another length than 1, or else the first two not at right angles."""
+    """Return in words the first column without length 1, else the first two not at right angles."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
     wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
@@ -356,7 +356,7 @@ def _fault(rotation: Numbers) -> str | None:
 
 
 def explain(case: MatrixCase) -> list[Explanation]:
-    """What is wrong with the matrix as a whole, or with a large part of it."""
+    """Return the explanations of the matrix as a whole, or of large parts of it."""
     whole = explanation(case)
     if whole is not None or not case.rigid:
         return as_explanations(case, whole)
@@ -376,14 +376,15 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
-    """The wrong entries that none of the explanations covers."""
+    """Return a mask of the wrong entries that no explanation covers."""
     return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
 
 
 def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:
-    """The property of a rotation that the student's lacks, where ``slips`` leave it unexplained.
+    """Return the finding on a property of rotations that the student's lacks, or None.
 
-    A left-handed frame is always named, any other fault only where the entries say no more.
+    A left-handed frame is always named, other faults only if an entry is unexplained. ``slips`` are
+    the findings on the entries.
     """
     rotation = np.moveaxis(case.actual[ROTATION_BLOCK], -1, 0)
     codes = [finding.code for (i, j), finding in slips.items() if i < 3 and j < 3]

@@ -1,1 +1,1 @@
-"""The slips in a product of transforms or motions."""
+"""Slips in a product of transforms or motions."""

@@ -1,8 +1,8 @@
-"""A motion made of several, where the exercise gives the result in formulas.
+"""A motion composed of several, whose result the exercise gives in formulas.
 
-The formulas tell what the motion is made of. A displacement is a part of the position that a length
-stands in; the angles that this part changes with are those of the turns before it. A turn is the
-rotation with all angles but one at 0.
+The formulas show the single motions. A displacement is the part of the position that contains
+certain lengths; the turns before it are those whose angles change this part. A turn is the rotation
+with all angles but one set to 0.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,13 +18,13 @@ from service.grading.numerics.samples import Samples
 from service.grading.numerics.tolerances import EXACT_VALUE
 from service.kinematics.transforms import Matrices, Numbers
 
-# More turns are not told apart.
+# With more turns, they are not told apart.
 MAX_TURNS = 4
 
 
 @dataclass(frozen=True, slots=True)
 class Displacement:
-    """The part of a position that ``lengths`` stand in, turned by ``angles``."""
+    """The part of a position that contains ``lengths`` and is turned by ``angles``."""
 
     lengths: tuple[str, ...]
     angles: tuple[str, ...]
@@ -35,9 +35,10 @@ IN_NUMBERS = Displacement((), ())
 
 @dataclass(frozen=True)
 class GivenMotion:
-    """The formulas of a position (one row), a rotation or a transform, and what is in them.
+    """The formulas of a position (one row), a rotation or a transform, taken apart.
 
-    ``values`` are those of the symbols at ``count`` samples.
+    ``values`` are the values of the symbols at ``count`` samples. ``angles`` and ``lengths`` are
+    the symbols in the formulas.
     """
 
     grid: FormulaGrid
@@ -48,7 +49,7 @@ class GivenMotion:
 
     @classmethod
     def of(cls, part_id: str, exercise: Exercise, samples: Samples) -> "GivenMotion | None":
-        """That of a part; None where the exercise gives no formulas for it."""
+        """Return the motion of a part, or None if the exercise gives no formulas for it."""
         grid = exercise.formulas.get(part_id)
         if grid is None:
             return None
@@ -61,12 +62,12 @@ class GivenMotion:
         return cls(grid, samples.values, samples.count, angles, of_kind["length"])
 
     def position(self, zeros: Iterable[str] = ()) -> Numbers:
-        """The position ``(n, samples)`` with 0 for some symbols."""
+        """Return the position ``(n, samples)`` with the symbols ``zeros`` set to 0."""
         column = self.grid[0] if len(self.grid) == 1 else [row[3] for row in self.grid[:3]]
         return np.asarray(self._numbers([column], zeros)[0])
 
     def rotation(self, zeros: Iterable[str] = ()) -> Numbers:
-        """The rotation ``(3, 3, samples)`` with 0 for some symbols."""
+        """Return the rotation ``(3, 3, samples)`` with the symbols ``zeros`` set to 0."""
         return self._numbers([row[:3] for row in self.grid[:3]], zeros)
 
     def _numbers(self, grid: Sequence[Sequence[Expression]], zeros: Iterable[str]) -> Numbers:
@@ -75,7 +76,7 @@ class GivenMotion:
             return grid_values(tuple(map(tuple, grid)), values, self.count)
 
     def part(self, displacement: Displacement, straight: Sequence[str] = ()) -> Numbers:
-        """A part of the position, not turned by the angles ``straight``."""
+        """Return a part of the position, with the angles ``straight`` set to 0."""
         key = displacement.lengths, tuple(straight)
         if key not in self._parts:
             self._parts[key] = self._part(displacement, straight)
@@ -88,14 +89,14 @@ class GivenMotion:
     def _part(self, displacement: Displacement, straight: Sequence[str]) -> Numbers:
         others = [name for name in self.lengths if name not in displacement.lengths]
         alone = self.position((*others, *straight))
-        # What holds no length is a displacement of its own, in numbers.
+        # The terms without a length are a displacement in numbers.
         return alone - self.position((*self.lengths, *straight)) if displacement.lengths else alone
 
     @cached_property
     def displacements(self) -> list[Displacement]:
-        """The displacements that the position is the sum of, those turned by the fewest first.
+        """The displacements whose sum is the position, those with the fewest turns first.
 
-        Empty where it is no such sum.
+        Empty if the position is no such sum.
         """
         by_angles: dict[tuple[str, ...], list[str]] = {}
         for name in self.lengths:
@@ -107,7 +108,7 @@ class GivenMotion:
         return sorted(found, key=lambda each: len(each.angles)) if _is_zero(rest) else []
 
     def _turning(self, displacement: Displacement) -> tuple[str, ...]:
-        """The angles that a part of the position changes with."""
+        """Return the angles that change a part of the position."""
         right = self.part(displacement)
         return tuple(
             angle for angle in self.angles if not _is_zero(self.part(displacement, [angle]) - right)
@@ -115,7 +116,7 @@ class GivenMotion:
 
     @cached_property
     def order(self) -> tuple[str, ...] | None:
-        """The angles in the order of their turns; None where the rotation is no such product."""
+        """The angles in the order of their turns, or None if the rotation is no such product."""
         if not self.angles or not _is_zero(self.rotation(self.angles) - np.eye(3)[..., None]):
             return None
         right = self.rotation()
@@ -123,12 +124,12 @@ class GivenMotion:
         return next(fits, None)
 
     def turned(self, order: Sequence[str]) -> Numbers:
-        """The product ``(3, 3, samples)`` of single turns."""
+        """Return the product ``(3, 3, samples)`` of single turns in this order."""
         return np.moveaxis(product([self._turns[angle] for angle in order]), 0, -1)
 
     @cached_property
     def _turns(self) -> dict[str, Matrices]:
-        """The single turn ``(samples, 3, 3)`` by each angle."""
+        """The turn ``(samples, 3, 3)`` by each angle alone."""
         return {
             angle: np.moveaxis(self.rotation(set(self.angles) - {angle}), -1, 0)
             for angle in self.angles
@@ -136,7 +137,7 @@ class GivenMotion:
 
     @cached_property
     def steps(self) -> list[Matrices] | None:
-        """Motions ``(samples, 4, 4)``, each a displacement and then a turn; None if it has none."""
+        """The motions ``(samples, 4, 4)``, each a displacement and then a turn, or None."""
         if self.order is None or len(self.displacements) > len(self.order) + 1:
             return None
         places = {frozenset(self.order[:i]): i for i in range(len(self.order) + 1)}
@@ -157,5 +158,5 @@ def _is_zero(numbers: Numbers) -> bool:
 
 
 def product(matrices: Sequence[Matrices]) -> Matrices:
-    """The product of matrices ``(samples, n, n)``."""
+    """Return the product of matrices ``(samples, n, n)``."""
     return np.asarray(reduce(np.matmul, matrices))

@@ -1,8 +1,8 @@
 """Slips in a product of link transforms.
 
-Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the whole of it,
-its rotation or its position; so the first sentence of the finding lacks its subject, which
-``named`` puts in front: "This matrix is …", "The position comes from …".
+Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the pose, its
+rotation or its position. So the first sentence of a finding has no subject; ``named`` adds it:
+"This matrix is …", "The position comes from …".
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -26,8 +26,8 @@ LinkPose = Written[Matrices]
 class Chain:
     """The links of the reference.
 
-    ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame that each row starts from, then
-    the last frame.
+    ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame before each row, then the last
+    frame.
     """
 
     table: Table
@@ -41,26 +41,26 @@ class Chain:
 
     @cached_property
     def from_base(self) -> Matrices:
-        """The pose of the frame behind each row in the base frame: A_1, A_1 A_2 and so on."""
+        """The pose of the frame after each row in the base frame: A_1, A_1 A_2 and so on."""
         return _running_products(self.links)
 
     @cached_property
     def to_end(self) -> Matrices:
-        """The pose of the last frame in the one before each row: A_1 … A_n first, A_n last."""
+        """The pose of the last frame in the frame before each row: A_1 … A_n first, A_n last."""
         turned = np.swapaxes(self.links[::-1], -1, -2)
         return np.swapaxes(_running_products(turned), -1, -2)[::-1]
 
     @cached_property
     def misread_links(self) -> Matrices:
-        """The link transforms of the same numbers in the other convention."""
+        """The link transforms of the table, computed with the formula of the other convention."""
         return links(self.table, self.convention.other)
 
     def product(self, order: Sequence[int]) -> str:
-        """The product of the links in this order as a formula: A1·A2·A3."""
+        """Return the product of the links in this order as a formula: A1·A2·A3."""
         return "·".join(f"A{self.frames[i + 1]}" for i in order)
 
     def frame(self, i: int) -> str:
-        """Frame ``i`` as a textbook writes it."""
+        """Return the name of frame ``i`` in braces, as in textbooks."""
         return f"{{{self.frames[i]}}}"
 
 
@@ -73,7 +73,7 @@ def _running_products(transforms: Matrices) -> Matrices:
 
 
 def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
-    """The links of the exercise's robot, in its own convention: a student knows no other."""
+    """Return the links of the exercise's robot, in its own convention."""
     robot = exercise.robot
     table = robot.tables[robot.convention]
     base = str(robot.joints[0].index - 1)
@@ -85,8 +85,7 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     of=Chain,
     rank=10,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=("planar-rr", "position", "[a2 c2 + a1 c12, a2 s2 + a1 s12]"),
     unlike={"1/1": "a0*c1 + a2*c12"},
 )
@@ -105,7 +104,7 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=20,
     code="other_convention",
-    means="the right table, multiplied out with the link transform of the other convention",
+    means="the table is multiplied out with the link transform of the other convention",
     example=("planar-rr", "position", "[a1 + a2 c1, a2 s1]"),
     unlike={"2/1": "0"},
 )
@@ -124,7 +123,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=30,
     code="wrong_frame",
-    means="the pose of a frame before the last",
+    means="the answer is the pose of a frame before the last one",
     example=(
         "spherical-wrist",
         "pose",
@@ -133,7 +132,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     unlike={"3/1": "-c5*s6"},
 )
 def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
-    """The pose of a frame before the last was handed in."""
+    """The pose of a frame before the last one was handed in."""
     last = len(chain.links)
     for k in reversed(range(1, last)):
         finding = says(
@@ -148,7 +147,7 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=40,
     code="wrong_base",
-    means="the pose seen from a frame behind the first",
+    means="the answer is the pose in a frame after the first one",
     example=("planar-rr", "position", "[a2 c2, a2 s2]"),
     unlike={"2/1": "0"},
 )
@@ -167,7 +166,7 @@ def wrong_base(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=50,
     code="missing_link",
-    means="a link transform was left out of the product",
+    means="a link transform is missing in the product",
     example=(
         "scara",
         "pose",
@@ -192,7 +191,7 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=60,
     code="premultiplied",
-    means="a link transform was multiplied from the left, or all turns and shifts were",
+    means="one link transform, or every turn and shift, is multiplied from the left",
     example=(
         "scara",
         "pose",
@@ -205,9 +204,10 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     unlike={"1/4": "-(a1*c1 + a2*c12)", "3/3": "-1/2"},
 )
 def premultiplied(chain: Chain) -> Iterator[LinkPose]:
-    """One link transform was multiplied from the left, as if it turned about the base axes.
+    """One link transform, or every turn and shift, was multiplied from the left.
 
-    Multiplied so throughout, the whole product is reversed, down to the turns and shifts in a link.
+    The student took the turns as if they were about the base axes. With every turn and shift on the
+    left, the whole product is reversed.
     """
     order = list(range(len(chain.links)))
     advice = "Check on which side a motion about a moving axis is multiplied."
@@ -227,7 +227,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=70,
     code="row_order",
-    means="a link transform was multiplied at another place in the product",
+    means="a link transform is at the wrong place in the product",
     example=(
         "planar-rrr-standard",
         "pose",
@@ -239,10 +239,10 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/2": "2*c123"},
 )
 def row_order(chain: Chain) -> Iterator[LinkPose]:
-    """One row of the table, or its link transform, stands at another place.
+    """One row of the table, or its link transform, is at another place in the product.
 
-    Two that are next to each other are exchanged, which is a slip of the table
-    (``rows_and_columns``); and one in front of all was multiplied from the left.
+    An exchange of two neighbours is a slip of the table (``rows_and_columns``). A link transform
+    moved to the front was multiplied from the left (``premultiplied``).
     """
     count = len(chain.links)
     orders = [
@@ -265,12 +265,15 @@ def row_order(chain: Chain) -> Iterator[LinkPose]:
 
 
 def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
-    """The poses that all misconceptions lead to."""
+    """Return the poses that all misconceptions lead to."""
     return [pose for chain in chains for pose in hypotheses_of(chain)]
 
 
 def named(pose: Explained, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
-    """``others``, then the finding on the pose with the subject of its first sentence."""
+    """Return a function that builds the findings on a pose, with ``subject`` before the hint.
+
+    The findings ``others`` come first.
+    """
     return lambda: (
         *others,
         *(replace(each, hint=f"{subject} {each.hint}") for each in pose.findings),

@@ -1,4 +1,4 @@
-"""Slips in a motion made of several, where the exercise gives the result in formulas."""
+"""Slips in a motion composed of several, whose result the exercise gives in formulas."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -25,21 +25,21 @@ from service.grading.feedback import Finding
 from service.grading.misconception import Written, hypotheses_of, misconception, says
 from service.grading.numerics.tolerances import EXACT_VALUE
 
-# More ways to leave turns out are not tried.
+# If there are more ways to leave turns out, none is tried.
 MAX_WAYS = 64
 ORDINALS = ("first", "second", "third", "fourth", "fifth")
 
 
 class WholeMotion:
-    """A transform that is made of turns and displacements."""
+    """A transform that is composed of turns and displacements."""
 
 
 class TurnsOfMotion:
-    """A rotation that is made of turns."""
+    """A rotation that is composed of turns."""
 
 
 class Displacements:
-    """A position that is the sum of displacements."""
+    """A position that is a sum of displacements."""
 
 
 SUM = "The position is the sum of all displacements, each turned by the turns before it."
@@ -49,12 +49,12 @@ SUM = "The position is the sum of all displacements, each turned by the turns be
     of=Displacements,
     rank=10,
     code="displacement_not_turned",
-    means="a displacement was added as it stands in its own frame: d1 + d2 for d1 + R1 d2",
+    means="a displacement is added without the turns before it: d1 + d2 for d1 + R1 d2",
     example=("rigid-motion-chain", "origin", "[l1, l2, h]"),
     unlike="[l1, 0, h]",
 )
 def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
-    """A displacement was added as it stands in its own frame: d1 + d2 for d1 + R1 d2."""
+    """A displacement was added without the turns before it: d1 + d2 for d1 + R1 d2."""
     found = motion.displacements
     if prod(2 ** len(each.angles) for each in found) > MAX_WAYS:
         return
@@ -63,7 +63,7 @@ def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
         if any(straight):
             pairs = zip(found, straight, strict=True)
             position = sum((motion.part(each, angles) for each, angles in pairs), np.zeros(1))
-            # A position of zeros does not show how it came about.
+            # A position of zeros does not show which displacements it contains.
             if np.abs(position).max() > EXACT_VALUE:
                 yield Written(position, _not_turned(found, straight))
 
@@ -85,12 +85,12 @@ def _not_turned(found: Sequence[Displacement], straight: Sequence[tuple[str, ...
     of=Displacements,
     rank=20,
     code="missing_displacement",
-    means="the displacement of one motion is left out of the sum, or stands alone",
+    means="the displacement of one motion is missing in the sum, or is the whole answer",
     example=("rigid-motion-chain", "origin", "[l1, 0, h]"),
     unlike={"1/1": "0"},
 )
 def missing_displacement(motion: GivenMotion) -> Hypotheses:
-    """The displacement of one motion is not in the sum."""
+    """The displacement of one motion is missing in the sum."""
     found = motion.displacements
     for i in range(len(found)) if len(found) > 1 else ():
         finding = says(f"The displacement of {_which(found, i)} is missing. {SUM}")
@@ -101,12 +101,12 @@ def missing_displacement(motion: GivenMotion) -> Hypotheses:
     of=Displacements,
     rank=30,
     code="missing_displacement",
-    means="the displacement of one motion is left out of the sum, or stands alone",
+    means="the displacement of one motion is missing in the sum, or is the whole answer",
     example=("rigid-motion-chain", "point", "[l1, 0, h]"),
     unlike="[0, 0, 0]",
 )
 def lone_displacement(motion: GivenMotion) -> Hypotheses:
-    """The displacement of one motion was given for the sum of all, in whatever frame."""
+    """The answer is the displacement of one motion alone, in any of the frames."""
     found = motion.displacements
     for i, each in enumerate(found) if len(found) > 1 else ():
         finding = says(f"This is the displacement of {_which(found, i)} alone. {SUM}")
@@ -115,7 +115,7 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
 
 
 def _which(found: Sequence[Displacement], i: int) -> str:
-    """The motion that a displacement belongs to, where each has one and turns about one axis."""
+    """Return the name of the motion with displacement ``i``: "the first motion" or "one motion"."""
     is_plain = [len(each.angles) for each in found] == list(range(len(found)))
     return f"the {ORDINALS[i]} motion" if is_plain else "one motion"
 
@@ -124,7 +124,7 @@ def _which(found: Sequence[Displacement], i: int) -> str:
     of=TurnsOfMotion,
     rank=20,
     code="missing_turn",
-    means="a turn was left out",
+    means="a turn is missing",
     example=(
         "rigid-motion-chain",
         "transform",
@@ -133,7 +133,7 @@ def _which(found: Sequence[Displacement], i: int) -> str:
     unlike={"1/3": "1", "3/3": "cos(theta)/2"},
 )
 def turn_left_out(motion: GivenMotion) -> Hypotheses:
-    """A turn is not in the rotation."""
+    """A turn is missing in the rotation."""
     for some in _subsets(motion.angles):
         if 0 < len(some) < len(motion.angles):
             hint = f"The turn by {listed(some)} is missing from this rotation."
@@ -144,7 +144,7 @@ def turn_left_out(motion: GivenMotion) -> Hypotheses:
     of=TurnsOfMotion,
     rank=30,
     code="turn_sign",
-    means="a turn was made the wrong way round",
+    means="a turn has the opposite sense",
     example=(
         "rigid-motion-chain",
         "transform",
@@ -165,8 +165,7 @@ def turn_reversed(motion: GivenMotion) -> Hypotheses:
     of=TurnsOfMotion,
     rank=10,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "rigid-motion-chain",
         "transform",
@@ -190,8 +189,7 @@ OTHER_ORDER = says(
     of=WholeMotion,
     rank=10,
     code="reversed_product",
-    means="the link transforms, the exponentials or the motions were multiplied in reverse order, "
-    "or another",
+    means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "rigid-motion-chain",
         "transform",
@@ -200,7 +198,7 @@ OTHER_ORDER = says(
     unlike={"2/2": "0"},
 )
 def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
-    """The motions were multiplied in reverse order, the last displacement with either turn."""
+    """The motions were multiplied in reverse order; the last turn may come before its shift."""
     steps = motion.steps
     if steps is not None and len(steps) > 2:
         *moved, last = steps
@@ -213,7 +211,7 @@ def _subsets(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
-    """The misconceptions about one block of a matrix."""
+    """Yield the hypotheses about one block of a matrix."""
     motion = None if block != ROTATION_BLOCK and not case.is_transform else case.motion
     for hypothesis in hypotheses_of(motion, of) if motion else ():
         answer = hypothesis.answer.reshape(case.expected[block].shape)
@@ -222,17 +220,17 @@ def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
 
 @misconception(of=UpperRows, rank=90)
 def motion_of_rows(case: MatrixCase) -> Hypotheses:
-    """The transform is another motion than the formulas say."""
+    """The transform is composed of other motions than the formulas say."""
     return _in_matrix(case, WholeMotion, UPPER_ROWS)
 
 
 @misconception(of=RotationBlock, rank=90)
 def turns_of_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation is made of other turns."""
+    """The rotation is composed of other turns."""
     return _in_matrix(case, TurnsOfMotion, ROTATION_BLOCK)
 
 
 @misconception(of=PositionBlock, rank=90)
 def displacements_of_position(case: MatrixCase) -> Hypotheses:
-    """The position is made of other displacements."""
+    """The position is a sum of other displacements."""
     return _in_matrix(case, Displacements, POSITION_BLOCK)

@@ -1,1 +1,1 @@
-"""The slips in screw axes."""
+"""Slips in screw axes."""

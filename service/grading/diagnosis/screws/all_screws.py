@@ -1,4 +1,4 @@
-"""Slips that run through the screw axes of all joints."""
+"""Slips in the screw axes of all joints."""
 
 from dataclasses import dataclass
 
@@ -21,8 +21,8 @@ from service.kinematics.transforms import Numbers
 class WrongScrews(WrongNumbers):
     """Screw axes that are not the expected ones, ``(joints, 6, SAMPLES)`` each.
 
-    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``elsewhere`` and ``frame`` are as in
-    ``WrongScrew``, ``elsewhere`` of all axes.
+    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``elsewhere`` holds all axes in the other
+    frame, and ``frame`` is "space" or "body", as in ``WrongScrew``.
     """
 
     wrong: Mask
@@ -31,16 +31,16 @@ class WrongScrews(WrongNumbers):
 
     @property
     def several(self) -> bool:
-        """Whether more than one axis is wrong."""
+        """True if more than one axis is wrong."""
         return int(self.wrong.any(axis=1).sum()) > 1
 
     @property
     def axes(self) -> list[WrongScrew]:
-        """The axes one by one."""
+        """All axes, each as a case of its own."""
         return [self.axis(i) for i in range(len(self.expected))]
 
     def axis(self, i: int) -> WrongScrew:
-        """Axis ``i`` by itself."""
+        """Return axis ``i`` as a case of its own."""
         elsewhere = None if self.elsewhere is None else self.elsewhere[i]
         return WrongScrew(self.actual[i], self.expected[i], self.scale, elsewhere, self.frame)
 
@@ -49,7 +49,7 @@ class WrongScrews(WrongNumbers):
     of=WrongScrews,
     rank=10,
     code="exchanged_halves",
-    means="v in front of ω",
+    means="the axis is written as (v; ω) instead of (ω; v)",
     example=("simple-twist", "infinite-pitch", "1, 0, 0, 0, 0, 0"),
     unlike={"1/2": "90"},
 )
@@ -63,7 +63,7 @@ def exchanged_halves(case: WrongScrews) -> Hypotheses:
     rank=20,
     code="axis_reversed",
     when=lambda case: case.several,
-    means="the axis points the opposite way, where the exercise does not leave that open",
+    means="the axis points the opposite way, but the exercise asks for one direction",
     example=(
         "planar-rpr-poe",
         "space-screws",
@@ -72,7 +72,7 @@ def exchanged_halves(case: WrongScrews) -> Hypotheses:
     unlike={"1/3": "2"},
 )
 def axes_reversed(case: WrongScrews) -> Hypotheses:
-    """Every axis was taken to point the opposite way."""
+    """Every axis points the opposite way."""
     yield Written(-case.expected, AXIS_REVERSED)
 
 
@@ -81,12 +81,12 @@ def axes_reversed(case: WrongScrews) -> Hypotheses:
     rank=30,
     code="moment_sign",
     when=lambda case: case.several,
-    means="v = ω × q in place of −ω × q",
+    means="v is ω × q instead of −ω × q",
     example=("planar-rpr-poe", "body-screws", {"1/5": "-L1 - L2", "3/5": "-L2"}),
     unlike={"2/4": "0", "2/6": "1"},
 )
 def moment_signs(case: WrongScrews) -> Hypotheses:
-    """V was taken to be ω × q for every turning joint."""
+    """Every turning joint has v = ω × q."""
     axes = [
         axis.with_velocity(axis.pitch * axis.direction - axis.moment) if axis.turns else right
         for axis, right in zip(case.axes, case.expected, strict=True)
@@ -100,22 +100,23 @@ def moment_signs(case: WrongScrews) -> Hypotheses:
     code=("body_for_space", "space_for_body"),
     when=lambda case: case.several,
     means=(
-        "the body axis where the space axis is asked for",
-        "the space axis where the body axis is asked for",
+        "the body axis is given for the space axis",
+        "the space axis is given for the body axis",
     ),
     example=("planar-rpr-poe", "body-screws", {"1/5": "0", "3/5": "-L1"}),
     unlike={"1/3": "0", "3/5": "0"},
 )
 def other_frame(case: WrongScrews) -> Hypotheses:
-    """Every axis was seen from the tool where the base is asked for, or the other way."""
+    """Every axis is described in the other frame: body for space, or space for body."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
 
 def explain_screws(case: WrongScrews) -> Finding | None:
-    """The finding that explains all wrong axes; None where they are not all read.
+    """Return the finding that explains all wrong axes, or None.
 
-    One wrong axis does not show what runs through all, but for the order of its halves.
+    None also if an axis could not be read. With a single wrong axis, only the order of its halves
+    is checked.
     """
     if not np.isfinite(case.actual).all():
         return None

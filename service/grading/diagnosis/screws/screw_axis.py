@@ -17,8 +17,8 @@ from service.kinematics.transforms import Numbers
 class WrongScrew(WrongNumbers):
     """A screw axis that is not the expected one, ``(6, SAMPLES)`` each.
 
-    ``elsewhere`` is the same axis seen from the other frame, the tool's for the base's or the other
-    way; None where that is not known. ``frame`` is "space" or "body", whichever is asked for.
+    ``frame`` is the frame that is asked for, "space" or "body". ``elsewhere`` is the right axis in
+    the other frame, or None if it is unknown.
     """
 
     elsewhere: Numbers | None
@@ -26,7 +26,7 @@ class WrongScrew(WrongNumbers):
 
     @property
     def length_scale(self) -> float:
-        """The typical length that v is measured against."""
+        """The typical length that v is compared with."""
         return float(np.asarray(self.scale)[-1])
 
     @property
@@ -36,7 +36,7 @@ class WrongScrew(WrongNumbers):
 
     @cached_property
     def turns(self) -> bool:
-        """Whether the joint turns; else it slides along v."""
+        """True if the joint turns, False if it slides along v."""
         return bool(np.abs(self.direction).max() > EXACT_VALUE)
 
     @cached_property
@@ -46,11 +46,11 @@ class WrongScrew(WrongNumbers):
 
     @cached_property
     def moment(self) -> Numbers:
-        """The part −ω × q of v, which the place of the axis gives, ``(3, SAMPLES)``."""
+        """The part −ω × q of v, which depends on the place of the axis, ``(3, SAMPLES)``."""
         return self.expected[3:] - self.pitch * self.direction
 
     def with_velocity(self, velocity: Numbers) -> Numbers:
-        """The expected ω with another v."""
+        """Return the screw of the expected ω and this v."""
         return np.concatenate([self.direction, velocity])
 
 
@@ -65,7 +65,7 @@ MOMENT_SIGN = says(
 
 
 def seen_from_elsewhere(frame: str) -> Finding:
-    """The finding that an axis is seen from the other frame than "space" or "body", asked for."""
+    """Return the finding that an axis is described in the other frame than ``frame``."""
     seen, asked = ("end-effector", "base") if frame == "space" else ("base", "end-effector")
     return Finding(
         "body_for_space" if frame == "space" else "space_for_body",
@@ -79,12 +79,12 @@ def seen_from_elsewhere(frame: str) -> Finding:
     of=WrongScrew,
     rank=10,
     code="axis_reversed",
-    means="the axis points the opposite way, where the exercise does not leave that open",
+    means="the axis points the opposite way, but the exercise asks for one direction",
     example=("simple-twist", "infinite-pitch", {"1/4": "-1"}),
     unlike={"1/1": "1"},
 )
 def axis_reversed(case: WrongScrew) -> Hypotheses:
-    """The axis was taken to point the opposite way."""
+    """The axis points the opposite way."""
     yield Written(-case.expected, AXIS_REVERSED)
 
 
@@ -92,12 +92,12 @@ def axis_reversed(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=20,
     code="moment_sign",
-    means="v = ω × q in place of −ω × q",
+    means="v is ω × q instead of −ω × q",
     example=("simple-twist", "zero-pitch", {"1/5": "2"}),
     unlike="[1, -2, 0, 0, 0, 0]",
 )
 def moment_sign(case: WrongScrew) -> Hypotheses:
-    """V was taken to be ω × q."""
+    """The student wrote v = ω × q."""
     if case.turns:
         velocity = case.pitch * case.direction - case.moment
         yield Written(case.with_velocity(velocity), MOMENT_SIGN)
@@ -108,14 +108,14 @@ def moment_sign(case: WrongScrew) -> Hypotheses:
     rank=30,
     code=("body_for_space", "space_for_body"),
     means=(
-        "the body axis where the space axis is asked for",
-        "the space axis where the body axis is asked for",
+        "the body axis is given for the space axis",
+        "the space axis is given for the body axis",
     ),
     example=("planar-rpr-poe", "space-screws", {"3/5": "L2"}),
     unlike={"1/3": "2"},
 )
 def other_frame(case: WrongScrew) -> Hypotheses:
-    """The body axis was given for the space axis, or the other way."""
+    """The axis is described in the other frame: body for space, or space for body."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
@@ -124,18 +124,18 @@ def other_frame(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=40,
     code="infinite_pitch",
-    means="a turning joint written as one that slides, or the other way",
+    means="a turning joint is written as a sliding one, or a sliding joint as a turning one",
     example=("simple-twist", "infinite-pitch", {"1/1": "1"}),
     unlike={"1/5": "1"},
 )
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
-    """A sliding joint was written as one that turns: infinite pitch is ω = 0."""
+    """A sliding joint was written as a turning one; it needs ω = 0 (infinite pitch)."""
     finding = says(
         "This joint slides and does not turn: check which of ω and v holds its direction.",
         "ω is 0, and v is the unit vector of the direction.",
     )
     if not case.turns and (np.abs(case.actual[:3]).max(axis=0) > EXACT_VALUE).all():
-        # Whatever was written for ω and v.
+        # For any ω and v that were written.
         yield Written(case.actual, finding)
 
 
@@ -143,12 +143,12 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=50,
     code="infinite_pitch",
-    means="a turning joint written as one that slides, or the other way",
+    means="a turning joint is written as a sliding one, or a sliding joint as a turning one",
     example=("planar-rpr-poe", "space-screws", {"1/3": "0", "1/6": "1"}),
     unlike={"1/3": "0", "1/5": "1"},
 )
 def turning_as_sliding(case: WrongScrew) -> Hypotheses:
-    """The axis of a turning joint was written in v."""
+    """The axis of a turning joint was written as v."""
     finding = says(
         "This joint turns and does not slide: check which of ω and v holds its direction.",
         "ω is the unit vector along the axis, and v = −ω × q.",
@@ -161,12 +161,12 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=60,
     code="exchanged_halves",
-    means="v in front of ω",
+    means="the axis is written as (v; ω) instead of (ω; v)",
     example=("planar-rpr-poe", "space-screws", {"3/2": "-L1", "3/3": "0", "3/5": "0", "3/6": "1"}),
     unlike={"1/3": "0", "1/5": "1"},
 )
 def exchanged_halves(case: WrongScrew) -> Hypotheses:
-    """V was written in front of ω."""
+    """The halves were written as (v; ω)."""
     yield Written(np.concatenate([case.expected[3:], case.direction]), EXCHANGED_HALVES)
 
 
@@ -174,7 +174,7 @@ def exchanged_halves(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=70,
     code="not_normalised",
-    means="ω, or v of a sliding joint, is no unit vector",
+    means="ω, or v of a sliding joint, is not a unit vector",
     example=("simple-twist", "infinite-pitch", {"1/4": "2"}),
     unlike={"1/4": "0"},
 )
@@ -194,7 +194,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=80,
     code="point_for_velocity",
-    means="a point on the axis in place of v",
+    means="v is a point on the axis",
     example=("planar-rpr-poe", "space-screws", {"3/4": "L1", "3/5": "0"}),
     unlike={"1/3": "0", "1/5": "1"},
 )
@@ -212,12 +212,12 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=90,
     code="pitch",
-    means="v has a part along ω that does not belong there, or lacks one",
+    means="the part of v along ω, which gives the pitch, is wrong",
     example=("simple-twist", "zero-pitch", {"1/6": "1"}),
     unlike={"1/4": "1"},
 )
 def pitch(case: WrongScrew) -> Hypotheses:
-    """The advance along the axis was left out, added, or is another."""
+    """The advance along the axis is missing, superfluous or wrong."""
     if not case.turns:
         return
     hint = "The part of v along ω is not right: check the pitch of this joint."
@@ -231,12 +231,12 @@ def pitch(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=100,
     code="point_off_axis",
-    means="ω is right, but v is that of a point beside the axis",
+    means="ω is right, but v is computed from a point that is not on the axis",
     example=("simple-twist", "pitch", {"1/4": "1"}),
     unlike={"1/1": "1"},
 )
 def point_off_axis(case: WrongScrew) -> Hypotheses:
-    """The point q that v was taken from does not lie on the axis."""
+    """The point q from which v was computed is not on the axis."""
     finding = says(
         "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates of q "
         f"in the {'base' if case.frame == 'space' else 'end-effector'} frame, and the cross "
@@ -251,12 +251,12 @@ def point_off_axis(case: WrongScrew) -> Hypotheses:
     of=WrongScrew,
     rank=110,
     code="other_direction",
-    means="a unit vector that does not lie along the axis",
+    means="the unit vector is not parallel to the axis",
     example=("simple-twist", "infinite-pitch", "[0, 0, 0, 0, 0, 1]"),
     unlike={"1/1": "1"},
 )
 def other_direction(case: WrongScrew) -> Hypotheses:
-    """The unit vector lies along another line than the joint."""
+    """The unit vector is not parallel to the joint axis."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = says(
         f"{letter} is not along the axis of this joint: check the axis in the home position.",
@@ -268,5 +268,5 @@ def other_direction(case: WrongScrew) -> Hypotheses:
 
 
 def explain_screw(case: WrongScrew) -> Finding | None:
-    """The finding that explains the whole of a wrong axis; None where it is not all read."""
+    """Return the finding that explains a wrong axis as a whole, or None."""
     return diagnosed(case) if np.isfinite(case.actual).all() else None

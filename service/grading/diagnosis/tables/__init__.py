@@ -1,1 +1,1 @@
-"""The slips in a DH table."""
+"""Slips in a DH table."""

@@ -1,4 +1,4 @@
-"""Slips in the joint variables of a single table cell, and in its quantity."""
+"""Slips in the joint variables of a single table cell, or in its quantity."""
 
 import re
 from collections.abc import Callable
@@ -24,8 +24,7 @@ CONVERTED = (
     of=WrongCell,
     rank=2,
     code="unknown_symbol",
-    means="a length that the exercise does not have, though it looks like a joint variable: d1 "
-    "where joint 1 turns",
+    means="the cell contains a length that the exercise does not have: d1 although joint 1 turns",
     example=("stanford-arm", "table", {"1/d": "d1"}),
     unlike={"6/d": "0"},
 )
@@ -43,7 +42,8 @@ def unknown_length(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=4,
     code="joint_variable_absent",
-    means="a joint variable that the robot does not have: θ3 where joint 3 slides, θ0",
+    means="the cell contains a joint variable that the robot does not have: θ0, or θ3 if "
+    "joint 3 slides",
     example=("stanford-arm", "table", {"3/theta": "theta3"}),
     unlike={"3/theta": "d3"},
 )
@@ -60,7 +60,10 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """A name in the cell that the robot does not have, and the joint that it counts; else ""."""
+    """Return a name in the cell that the robot does not have, and the joint with its number.
+
+    The name is "" if the robot has all names; the joint is None if no joint has the number.
+    """
     absent = sorted(absent_names([case.expression], case.samples))
     if not absent:
         return "", None
@@ -72,12 +75,12 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
     of=WrongCell,
     rank=20,
     code="joint_variable_missing",
-    means="the joint's variable is left out: the table describes the drawing, not the robot",
+    means="the joint's variable is missing, so the table describes only the drawn pose",
     example=("stanford-arm", "table", {"1/theta": "0"}),
     unlike={"1/theta": "-theta1"},
 )
 def joint_variable_missing(case: WrongCell) -> Finding | None:
-    """The table was taken to describe the drawn pose, so the joint variable was left out."""
+    """The joint variable is missing, as if the table described the drawn pose."""
     if case.joint is None or not case.required or case.contained != {}:
         return None
     return finding_on(
@@ -94,12 +97,12 @@ def _motion(joint: Joint) -> str:
     of=WrongCell,
     rank=25,
     code="joint_variable_sign",
-    means="the variable counts the wrong way round or along its axis",
+    means="the joint variable has the wrong sign",
     example=("stanford-arm", "table", {"3/d": "-d3"}),
     unlike={"6/d": "0"},
 )
 def joint_variable_sign(case: WrongCell) -> Finding | None:
-    """The joint was taken to move in the negative sense of its axis."""
+    """The joint moves in the negative sense of its axis."""
     opposite = {joint: -count for joint, count in case.required.items()}
     if case.joint is None or not opposite or case.contained != opposite:
         return None
@@ -114,12 +117,12 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=30,
     code="joint_variable_index",
-    means="the variable of another joint",
+    means="the cell contains the variable of another joint",
     example=("stanford-arm", "table", {"2/theta": "theta1"}),
     unlike={"2/theta": "2*theta2"},
 )
 def joint_variable_index(case: WrongCell) -> Finding | None:
-    """The variable of a neighbouring joint was taken."""
+    """The cell contains the variable of a neighbouring joint."""
     other, count = case.contained_alone
     if not (case.joint and other and case.required) or other == case.joint or abs(count) != 1:
         return None
@@ -134,12 +137,12 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=35,
     code="joint_variable_doubled",
-    means="the variable more than once",
+    means="the joint variable counts more than once",
     example=("three-link-cylindrical", "table", {"3/d": "2*d3"}),
     unlike={"1/d": "2*d1"},
 )
 def joint_variable_doubled(case: WrongCell) -> Finding | None:
-    """The joint variable was counted more than once."""
+    """The joint variable is counted more than once."""
     joint, count = case.contained_alone
     if joint is None or joint != case.joint or joint not in case.required or abs(count) < 2:
         return None
@@ -154,7 +157,7 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=40,
     code="degrees_as_radians",
-    means="a number of degrees where radians are read, or a variable times 180/π",
+    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
     example=("planar-rr", "table", {"1/theta": "180*theta1/pi"}),
     unlike={"1/d": "1"},
 )
@@ -167,7 +170,7 @@ def cell_in_degrees(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=45,
     code="radians_as_degrees",
-    means="a number of radians where the form is set to degrees, or a variable times π/180",
+    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
     example=("planar-rr", "table", {"1/theta": "pi*theta1/180"}),
     unlike={"1/d": "1"},
 )
@@ -188,12 +191,12 @@ def _is_converted(case: WrongCell, convert: Callable[[Numbers], Numbers]) -> boo
     of=WrongCell,
     rank=50,
     code="joint_variable_column",
-    means="the variable in a column that is constant for such a joint: θ of one that slides",
+    means="the joint variable is in a column that must be constant: θ if the joint slides",
     example=("stanford-arm", "table", {"3/theta": "d3"}),
     unlike={"6/d": "0"},
 )
 def joint_variable_column(case: WrongCell) -> Finding | None:
-    """The joint variable was put in the column that stays constant for this kind of joint."""
+    """The joint variable is in the column that is constant for this kind of joint."""
     joint, _ = case.contained_alone
     if joint is None or joint != case.joint or case.required:
         return None
@@ -209,12 +212,12 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=55,
     code="joint_variable_extra",
-    means="the variable of a joint that does not move what this cell describes",
+    means="the cell contains a joint variable that it must not depend on",
     example=("stanford-arm", "table", {"2/d": "d2 + d3"}),
     unlike={"2/d": "d6"},
 )
 def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """A joint variable was added that has nothing to do with this cell."""
+    """The cell contains a joint variable that must not change it."""
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None
@@ -229,12 +232,12 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     of=WrongCell,
     rank=60,
     code="wrong_quantity",
-    means="an angle where a length is asked for, or a length where an angle is",
+    means="the cell is an angle but must be a length, or a length but must be an angle",
     example=("stanford-arm", "table", {"2/d": "90deg"}),
     unlike={"2/d": "d6"},
 )
 def wrong_quantity(case: WrongCell) -> Finding | None:
-    """An angle where a length is asked for, or a length where an angle is."""
+    """The cell is an angle instead of a length, or a length instead of an angle."""
     found = quantity_of(case.expression.tree)
     if found not in ("angle", "length") or (found == "angle") == case.angle:
         return None

@@ -1,4 +1,4 @@
-"""Tables whose columns stand in another order: θ, d, a, α, or α, a, d, θ.
+"""Tables whose columns are in another order, such as θ, d, a, α or α, a, d, θ.
 
 They have no headers, or their cells were typed one by one under the headers a, α, d, θ.
 """
@@ -25,31 +25,30 @@ from service.grading.reading.tables.table import IS_ANGLE, StudentRow, StudentTa
 from service.grading.report import Verdict
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
 
-# The column that each written one is, from left to right.
+# For each written column, from left to right, the column that it is meant to be.
 Order = tuple[int, ...]
 
-# The orders of the Robotics Toolbox and of Craig: where several read a table alike, one of these.
+# The orders of the Robotics Toolbox and of Craig; they are preferred among equals.
 _USUAL: Final[tuple[Order, ...]] = ((THETA, D, A, ALPHA), (ALPHA, A, D, THETA))
-# Each column read as the other quantity: an angle for a length.
+# For each column, one of the other quantity: an angle for a length.
 _OTHER_QUANTITY: Final[Order] = (ALPHA, A, THETA, D)
-# So many orders may be judged; the first is right almost always.
-_MOST: Final = 2
+# At most this many orders are judged; the first is almost always right.
+_MAX_ORDERS: Final = 2
 _PERMUTED = register(
     of=StudentTable,
     code="columns_permuted",
-    means="the columns stand in another order, such as θ, d, a, α: of a table without headers, or "
-    "of cells typed one by one",
+    means="the columns are in another order, such as θ, d, a, α, without headers that say so",
     example=("planar-rr", "table", "theta1, 0, a1, 0 ↵ theta2, 0, a2, 0"),
     unlike={"1/a": "0"},
 )
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
-    """The table with its columns in the orders that suit what is in them, most likely first.
+    """Yield the table in each order of columns that suits its cells, most likely first.
 
-    A column of joint variables is that of θ or d, formulas in lengths are no angles, and those in
-    degrees no lengths. Nothing where that does not tell more than that the columns are in order.
-    Each table is built when it is asked for.
+    A column with joint variables is d or θ. Formulas with lengths are not angles; formulas in
+    degrees are not lengths. Yield nothing if the written order suits the cells as well as any
+    other. Each table is built on demand.
     """
     if table.reread is None or _suits(table, grading):
         return
@@ -68,7 +67,7 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
         intended = _reordered(order, table, other)
         if any(_is_same(intended, one) for one in tried):
             continue
-        if len(tried) > _MOST:
+        if len(tried) > _MAX_ORDERS:
             return
         tried.append(intended)
         finding = _finding(order, named=table.named)
@@ -76,9 +75,9 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
 
 
 def _suits(table: StudentTable, grading: Grading) -> bool:
-    """Whether plainly no cell misfits its own column, as ``_misfits`` counts.
+    """True if all cells obviously suit their own columns.
 
-    Of most wrong tables that is seen without reading their cells as anything else.
+    This is a fast test: for most wrong tables it saves reading the cells as another quantity.
     """
     sliding = _sliding(grading.exercise.joints)
     known = grading.exercise.vocabulary.by_name
@@ -94,7 +93,7 @@ def _suits(table: StudentTable, grading: Grading) -> bool:
 def _suits_column(
     expression: Expression, column: int, sliding: Mapping[str, bool], known: Mapping[str, Symbol]
 ) -> bool:
-    # A name in front of a value has a say in its column.
+    # A name before a value may name its column.
     if any(note.code == "equation" for note in expression.notes):
         return False
     moving = [sliding[name] for name in expression.symbols if name in sliding]
@@ -102,22 +101,22 @@ def _suits_column(
         return column == (D if moving[0] else THETA)
     if not IS_ANGLE[column]:
         return expression.source.isdecimal() or quantity_of(expression.tree) != "angle"
-    # As a length it is one only where a length stands in it.
+    # An angle column is suspicious only if its cell contains a length.
     return all(name in known and known[name].kind != "length" for name in expression.symbols)
 
 
 def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
-    """Whether the joint of a variable slides."""
+    """Return True for the variable of each joint that slides, False for one that turns."""
     return {joint.variable: joint.prismatic for joint in joints}
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    """How many cells of a written column do not suit each column: ``(written, columns)``."""
+    """Return the counts ``(written, columns)`` of cells that do not suit a column."""
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):
         for place in range(len(COLUMNS)):
-            # As an angle a bare number may have a unit that was not written.
+            # Read as an angle, a bare number may get a unit that the student did not write.
             as_length = two if IS_ANGLE[place] else one
             expression = as_length.expressions[_OTHER_QUANTITY[place] if IS_ANGLE[place] else place]
             if expression is None or expression.source == "0":
@@ -131,14 +130,14 @@ def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) 
 
 
 def _reordered(order: Order, table: StudentTable, other: StudentTable) -> StudentTable:
-    """The table whose written columns are those of ``order``.
+    """Return the table with its columns read in this order.
 
-    ``other`` is the table read with each column as the other quantity.
+    ``other`` is the table with each column read as the other quantity.
     """
     rows = tuple(
         _reordered_row(order, one, two) for one, two in zip(table.rows, other.rows, strict=True)
     )
-    # The note on the order in which the columns were read holds no longer.
+    # The note on the order of columns is no longer true.
     findings = tuple(each for each in table.findings if each.code != "column_order")
     return replace(table, rows=rows, values=values_of(rows), findings=findings)
 
@@ -159,7 +158,7 @@ def _is_same(one: StudentTable, other: StudentTable) -> bool:
 
 
 def _moved(intended: StudentTable, table: StudentTable) -> frozenset[tuple[int, int]]:
-    """The cells that hold something else than in the order in which the table is read."""
+    """Return the cells that differ between the intended table and the table as read."""
     error = np.abs(difference(intended.values, table.values, IS_ANGLE[:, None])).max(axis=-1)
     return frozenset((i, column) for i, column in np.argwhere(error > INTENDED_CELL).tolist())
 

@@ -1,4 +1,4 @@
-"""Slips in the DH row of a transform: a condition overlooked, or the row of something else."""
+"""Slips in the DH row of a transform: a missed condition, or another transform's row."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -26,7 +26,7 @@ class WrongRow(WrongNumbers):
     angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
 
     def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
-        """The row of another transform or convention, ``(4, SAMPLES)``; None where it has none."""
+        """Return the row ``(4, SAMPLES)`` of a transform in a convention, or None."""
         length_scale = float(np.asarray(self.scale)[A])
         if violated(transform, convention, length_scale):
             return None
@@ -37,12 +37,12 @@ class WrongRow(WrongNumbers):
     of=WrongRow,
     rank=10,
     code="exchanged_parameters",
-    means="a and d, or α and θ, stand in each other's places",
+    means="a and d, or α and θ, are exchanged",
     example=("dh-conditions", "fourth", {"a": "2", "alpha": "0", "d": "3", "theta": "pi/2"}),
     unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
 )
 def exchanged_parameters(case: WrongRow) -> Hypotheses:
-    """A and d, or α and θ, stand in each other's places."""
+    """The student's row has a and d, or α and θ, in each other's places."""
     for names, order in (
         ("a and d", [2, 1, 0, 3]),
         ("α and θ", [0, 3, 2, 1]),
@@ -59,7 +59,7 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
     of=WrongRow,
     rank=20,
     code="other_convention",
-    means="the row is that of the other convention",
+    means="the row follows the other convention",
     example=("several-kinds", "turned-row", "l, 0, a, pi"),
     unlike="l, 0, 2*a, pi",
 )
@@ -79,7 +79,7 @@ def other_convention(case: WrongRow) -> Hypotheses:
     of=WrongRow,
     rank=30,
     code="inverse_transform",
-    means="the row is that of the inverse",
+    means="the row describes the inverse transform",
     example=("several-kinds", "turn-row", "0, 0, -a, -phi"),
     unlike="0, 0, -a, phi",
 )
@@ -93,37 +93,37 @@ def inverse_row(case: WrongRow) -> Hypotheses:
         yield Written(found, finding)
 
 
-# --- the conditions that a transform with a row meets
+# --- the conditions for a transform to have a row
 _NOT_PERPENDICULAR = register(
     of=WrongRow,
     code="dh_not_perpendicular",
-    means="a row for a transform that has none: x is not perpendicular to z",
+    means="a row is given, but the transform has none: x is not perpendicular to z",
     example=("dh-conditions", "second", {"a": "l", "alpha": "0", "d": "h", "theta": "phi"}),
     unlike="l, 0, h",
 )
 _NOT_INTERSECTING = register(
     of=WrongRow,
     code="dh_not_intersecting",
-    means="a row for a transform that has none: the line of x does not meet the line of z",
+    means="a row is given, but the transform has none: the lines of x and z do not meet",
     example=("dh-conditions", "third", {"a": "l", "alpha": "phi", "d": "h", "theta": "0"}),
     unlike="l, 0, h",
 )
 _ROW_EXISTS = register(
     of=WrongRow,
     code="dh_row_exists",
-    means='"none" for a transform that has a row',
+    means='the answer is "none", but the transform has a row',
     example=("dh-conditions", "fourth", {"none": True}),
     unlike={"a": "3", "alpha": "0", "d": "2", "theta": "0"},
 )
 
 
 def axes_named(convention: Convention) -> tuple[str, str]:
-    """The two axes that the conditions are about: x and z."""
+    """Return the names of the two axes in the conditions: an x axis and a z axis."""
     return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
 
 
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """The findings on the conditions that a transform does not meet; none where it has a row."""
+    """Return the findings on the conditions that a transform violates; none if it has a row."""
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = _NOT_PERPENDICULAR.finding(
@@ -147,7 +147,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
 
 
 def has_a_row(convention: Convention) -> Finding:
-    """The finding on the answer "none" where the transform has a row."""
+    """Return the finding for the answer "none" to a transform that has a row."""
     x, z = axes_named(convention)
     return _ROW_EXISTS.finding(
         f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "

@@ -1,4 +1,4 @@
-"""A table as it was intended, without one slip that runs through it or through a row of it."""
+"""A table without a systematic slip, and the search for one row with a and d exchanged."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -20,7 +20,7 @@ _EXCHANGED = [D, 1, A, 3]
 
 
 class IntendedTable(NamedTuple):
-    """A table without a slip, the finding on the slip, and the cells that it is in."""
+    """A table without a slip, the finding on the slip, and the cells that have it."""
 
     table: StudentTable
     finding: Finding
@@ -30,10 +30,10 @@ class IntendedTable(NamedTuple):
 def with_exchanged_row(
     table: StudentTable, convention: Convention | None, grading: Grading
 ) -> IntendedTable | None:
-    """The table with a and d exchanged in the one row where that makes them the reference's.
+    """Return the table with a and d exchanged in one row, if that gives the reference's row.
 
-    None where there is no such row, or more than one. Before a sliding joint a wrong ``a`` may pass
-    for the choice of an axis, so that another row is blamed.
+    None if no row, or more than one, is such a row. Without this test another row may be blamed:
+    before a sliding joint, a wrong ``a`` can look like a choice of frames.
     """
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)

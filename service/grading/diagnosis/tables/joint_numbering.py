@@ -1,4 +1,4 @@
-"""Tables whose joint variables are numbered otherwise: from 0, or turning joints by themselves."""
+"""Tables with other joint numbers: from 0, or separate for turning and sliding joints."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,12 +13,12 @@ from service.grading.part import Grading
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.tables.table import StudentRow, StudentTable, table_values
 
-# What a name stands for by a way of counting: the joint variable that is meant.
+# Maps the names under a numbering to the joint variables that they mean.
 Meanings = Mapping[str, str]
 _NUMBERED = register(
     of=StudentTable,
     code="joint_numbering",
-    means="the joints are numbered from another number: θ0, θ1, θ2 for θ1, θ2, θ3",
+    means="the joint numbers start at another number: θ0, θ1, θ2 for θ1, θ2, θ3",
     example=("planar-rr", "table", {"1/theta": "theta0"}),
     unlike={"1/a": "0", "1/d": "a1"},
 )
@@ -40,9 +40,9 @@ _NUMBERED_BY_KIND = register(
 
 
 def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:
-    """The table with each joint variable for the joint that the student counts so.
+    """Return the table with its joint variables renumbered, or None.
 
-    None where no other way of counting gives each row the variable of its own joint.
+    None if no other numbering gives each row the variable of its own joint.
     """
     joints = grading.exercise.joints
     vocabulary = with_absent_variables(grading.exercise.vocabulary)
@@ -70,15 +70,16 @@ def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable |
 
 
 def _joint_variables(row: StudentRow, vocabulary: Vocabulary) -> set[str]:
-    """The joint variables in a row, those included that the robot does not have."""
+    """Return the joint variables in a row, also those that the robot does not have."""
     symbols = set[str]().union(*(each.symbols for each in row.expressions if each is not None))
     return {name for name in symbols if vocabulary.by_name[name].joint is not None}
 
 
 def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joint]) -> bool:
-    """Whether each row contains the variable of its joint, counted so, and none by its own name.
+    """True if this numbering gives each row the variable of its own joint and no other.
 
-    One row alone shows a way of counting only by a variable that the robot does not have.
+    If the numbering changes only one row, that row must contain a variable of no joint of the
+    robot.
     """
     if len(used) < len(joints):
         return False
@@ -92,7 +93,7 @@ def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joi
 
 
 def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[Finding, Meanings]]:
-    """The ways to count the joints, and what the names mean by each."""
+    """Yield the other numberings, each with its finding and the meanings of names."""
     first = joints[0].index
     by_index = {joint.index: joint for joint in joints}
     for start in {0, 1} - {first}:
@@ -118,7 +119,7 @@ def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[F
 
 
 def _names(index: int, joints: Mapping[int, Joint]) -> tuple[str, str]:
-    """The names of the variable with this index, of a turning joint and of a sliding one."""
+    """Return the variable names of a turning and of a sliding joint with this index."""
     return _name(index, joints, False), _name(index, joints, True)
 
 

@@ -1,7 +1,6 @@
-"""Slips in whole rows and columns of the robot's table, of which a wrong answer follows.
+"""Slips in whole rows or columns of the robot's table that lead to a wrong answer.
 
-They change the numbers of the table and no symbols, so they are the same in whatever frames a table
-is right.
+They change the numbers of the table but no symbols, so they are the same in any frames.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -36,8 +35,9 @@ MOVE_COLUMNS = "In the other convention a and α stand one row higher or lower."
 class TableRows:
     """The rows of a table: ``constants`` ``(rows, 4)`` at home, at one sample.
 
-    ``joints`` are those of the first rows, ``labels`` the names of all. At ``home`` no joint moves.
-    ``multiplied`` says that the answer is the product of the links, and not the links themselves.
+    ``joints`` belong to the first rows; ``labels`` are the labels of all rows. At ``home`` no joint
+    moves. ``multiplied`` is True if the answer is the product of the links, False if it is the
+    links themselves.
     """
 
     constants: Numbers
@@ -48,14 +48,14 @@ class TableRows:
     multiplied: bool = True
 
     def moves(self, row: int, column: int) -> bool:
-        """Whether a cell contains a joint variable."""
+        """True if a cell contains a joint variable."""
         if self.home or row >= len(self.joints):
             return False
         return column == (D if self.joints[row].prismatic else THETA)
 
 
 def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
-    """The slips in the whole table."""
+    """Yield the slips in whole rows and columns."""
     yield from exchanged_throughout(rows)
     yield from negated_columns(rows)
     yield from other_table(rows)
@@ -66,7 +66,10 @@ def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
 def exchanged_in_row(
     row: int, label: str, constants: Sequence[float], *, slides: bool
 ) -> Iterator[Slip]:
-    """Exchange a and d in one row; the variable of a joint that ``slides`` may go along."""
+    """Yield the exchange of a and d in one row.
+
+    If its joint ``slides``, its variable stays or moves along.
+    """
     ways = [False] if abs(constants[A] - constants[D]) > CONSTANT else []
     for moving in [*ways, True] if slides else ways:
         yield Slip(
@@ -79,7 +82,7 @@ def exchanged_in_row(
 
 
 def exchanged_throughout(rows: TableRows) -> Iterator[Slip]:
-    """Exchange a and d in all rows."""
+    """Yield the exchange of a and d in all rows."""
     yield Slip(
         COLUMNS_SWAPPED,
         "the lengths a and the offsets d are exchanged throughout",
@@ -97,13 +100,13 @@ def _exchanged(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
 
 
 def negated_columns(rows: TableRows) -> Iterator[Slip]:
-    """One parameter has the wrong sign in all rows; joint variables may have changed along."""
+    """Yield the slips: one parameter has the wrong sign in all rows, with or without variables."""
     for column in range(len(COLUMNS)):
         cells = rows.constants[:, column]
         sizes = np.sin(cells) if IS_ANGLE[column] else cells
         wrong = {i for i, size in enumerate(sizes.tolist()) if abs(size) > CONSTANT}
         moved = {i for i in range(len(cells)) if rows.moves(i, column)}
-        # In one row alone it is the slip of a cell.
+        # In one row alone it is a slip of the cell.
         if len(wrong) > 1:
             yield _negated(column, wrong, moving=False)
         if moved and len(wrong | moved) > 1:
@@ -121,10 +124,10 @@ def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
 
 
 def other_table(rows: TableRows) -> Iterator[Slip]:
-    """The table was set up in the other convention, where a and α stand one row further.
+    """Yield the slips of a table in the other convention, with a and α in the next row.
 
-    A standard table begins on the axis of the first joint. The last row of a modified one, which
-    leads from the last joint to the end effector, may be missing.
+    A standard table begins on the axis of the first joint. The last row of a modified table, from
+    the last joint to the end effector, may be missing.
     """
     last = len(rows.constants) - 1
     cells: list[CellChange] = []
@@ -142,7 +145,7 @@ def other_table(rows: TableRows) -> Iterator[Slip]:
 
 
 def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
-    """The link's own columns of a row, taken from another."""
+    """Return the changes that take a row's a and α from another row."""
     return tuple(CellChange(row, column, source=(source, column)) for column in (A, ALPHA))
 
 
@@ -158,9 +161,9 @@ def _other_table(convention: Convention, cells: tuple[CellChange, ...]) -> Slip:
 
 
 def other_formula(rows: TableRows) -> Iterator[Slip]:
-    """The numbers of the table were put into the link transform of the other convention.
+    """Yield the slip of a table multiplied with the link transform of the other convention.
 
-    Without twists, that of the modified one is a translation that was not turned (``link_slips``).
+    If a standard table has no twists, this slip is ``translation_not_turned`` (``link_slips``).
     """
     has_twists = (np.cos(rows.constants[:, ALPHA]) < 1 - CONSTANT).any()
     if rows.convention is Convention.STANDARD and not has_twists:
@@ -176,12 +179,12 @@ def other_formula(rows: TableRows) -> Iterator[Slip]:
 
 
 def exchanged_rows(rows: TableRows) -> Iterator[Slip]:
-    """Two rows stand in each other's places, or all but their joint variables."""
+    """Yield the exchanges of two rows, with or without their joint variables."""
     count = len(rows.constants)
     kinds = [joint.prismatic for joint in rows.joints]
     for i, j in combinations(range(count), 2):
         labels = f"{rows.labels[i]} and {rows.labels[j]}"
-        # All links in reverse order are told as such a product.
+        # The reverse order of all links is a slip of the product.
         if not (rows.multiplied and i == 0 and j == count - 1 <= 2):
             clause = f"rows {labels}, or their link transforms, are exchanged"
             yield Slip(ROW_ORDER, clause, CHECK_ROWS, cells=_rows_exchanged(i, j, moving=True))
@@ -199,9 +202,9 @@ def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, 
 
 
 def missing_links(rows: TableRows) -> Iterator[Slip]:
-    """One row between the first and the last takes no part in the product.
+    """Yield the slips of one inner row that is missing in the product.
 
-    It is named only beside rows in another order, where no advice is given.
+    It is only listed together with exchanged rows, so it has no advice.
     """
     for row in range(1, len(rows.constants) - 1):
         yield Slip(

@@ -31,22 +31,22 @@ SUM_COUNTS = (
     "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
 )
 
-# The turn that an angle is off by may itself have been rounded.
+# The numbers of an angle with a wrong turn may be rounded, too.
 ROUNDED_TURN = ROUNDED_VALUE * np.pi
 
-# --- misconceptions about the constant, where the joint variables are right
+# --- misconceptions about the constant, if the joint variables are right
 
 
 @misconception(
     of=WrongCell,
     rank=100,
     code="sign",
-    means="the wrong sign of a length or an angle",
+    means="a length or an angle has the wrong sign",
     example=("stanford-arm", "table", {"1/alpha": "pi/2"}),
     unlike={"1/alpha": "0"},
 )
 def sign(case: WrongCell) -> Hypotheses:
-    """The size is right, the direction is not."""
+    """The constant has the right size and the wrong sign."""
     finding = finding_on(
         case,
         f"The sign of {case.symbol} is wrong: it must be measured {case.measured}, positive "
@@ -60,12 +60,12 @@ def sign(case: WrongCell) -> Hypotheses:
     rank=110,
     code="distance_left_out",
     when=lambda case: not case.angle,
-    means="a distance between two frames is overlooked",
+    means="a distance between two frames is missing",
     example=("stanford-arm", "table", {"6/d": "0"}),
     unlike={"2/d": "d6"},
 )
 def distance_left_out(case: WrongCell) -> Hypotheses:
-    """A distance between the frames was overlooked."""
+    """A distance between the frames is missing."""
     finding = finding_on(
         case,
         f"A distance is left out of {case.symbol}{_beside(case)}: the two frames are apart "
@@ -79,12 +79,12 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
     rank=120,
     code="distance_extra",
     when=lambda case: not case.angle,
-    means="a distance where there is none, or one more beside the joint variable",
+    means="the cell contains a distance that does not belong there",
     example=("stanford-arm", "table", {"1/a": "d2"}),
     unlike={"2/d": "d6"},
 )
 def distance_extra(case: WrongCell) -> Hypotheses:
-    """A distance was put where there is none: into the wrong cell, or counted twice."""
+    """The cell contains a distance that belongs in another cell or in none."""
     finding = finding_on(
         case,
         f"Check whether the distance in {case.symbol}{_beside(case)} belongs there: it may lie "
@@ -102,12 +102,12 @@ def _beside(case: WrongCell) -> str:
     rank=130,
     code="degrees_as_radians",
     when=lambda case: case.angle,
-    means="a number of degrees where radians are read, or a variable times 180/π",
+    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
     example=("stanford-arm", "table", {"1/alpha": "-90"}),
     unlike={"1/alpha": "-91"},
 )
 def degrees_as_radians(case: WrongCell) -> Hypotheses:
-    """A number in degrees was handed in where radians are read."""
+    """A number was written in degrees, but is read in radians."""
     hint = (
         "This number was read in radians, but it fits in degrees: write the unit behind it "
         "(deg or °)."
@@ -122,7 +122,7 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
     rank=140,
     code="radians_as_degrees",
     when=lambda case: case.angle,
-    means="a number of radians where the form is set to degrees, or a variable times π/180",
+    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
     example=(
         "stanford-arm",
         "table",
@@ -135,7 +135,7 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
     unlike={"6/d": "-d6"},
 )
 def radians_as_degrees(case: WrongCell) -> Hypotheses:
-    """A number in radians was handed in where degrees are read."""
+    """A number was written in radians, but is read in degrees."""
     finding = finding_on(
         case,
         "This number was read in degrees, but it fits in radians: write the unit behind it (rad).",
@@ -153,7 +153,7 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
     unlike={"2/theta": "theta2 + pi"},
 )
 def quarter_turn(case: WrongCell) -> Hypotheses:
-    """A turn by 90° was left out, added, or made the wrong way from a quarter to three quarters."""
+    """The angle is off by 90°."""
     finding = finding_on(
         case,
         _compare_axes(case),
@@ -177,12 +177,12 @@ def _compare_axes(case: WrongCell) -> str:
     rank=160,
     code="half_turn",
     when=lambda case: case.angle,
-    means="an angle is off by 180°: an axis was taken to point the other way",
+    means="an angle is off by 180°, because an axis points the opposite way",
     example=("stanford-arm", "table", {"3/alpha": "180°"}),
     unlike={"6/d": "0"},
 )
 def half_turn(case: WrongCell) -> Hypotheses:
-    """An axis was taken to point the opposite way."""
+    """An axis points the opposite way."""
     finding = finding_on(
         case,
         _compare_axes(case),
@@ -191,7 +191,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
 
-# The codes of a joint variable in the column that stays constant.
+# The codes of a joint variable in the column that is constant for its joint.
 MISPLACED = ("joint_variable_absent", "joint_variable_column")
 # The work of one wrong cell, as the budget counts it.
 CELL_WORK = 1.2
@@ -201,7 +201,7 @@ CELL_WORK = 1.2
     of=WrongCell,
     rank=300,
     code=UNEXPLAINED,
-    means="wrong, and none of the above: another length, another angle",
+    means="the value is wrong, and no other code explains it: for example another length or angle",
     example=("stanford-arm", "table", {"2/d": "d6"}),
     unlike={"6/d": "0"},
 )
@@ -215,7 +215,7 @@ def unexplained(case: WrongCell) -> Finding:
 
 
 def diagnose(case: WrongCell) -> Finding:
-    """The finding on a wrong cell."""
+    """Return the finding on a wrong cell."""
     finding = diagnosed(case)
     assert finding is not None
     if case.column == D and case.shared and case.same_motion:
@@ -230,7 +230,7 @@ def _too_large(case: WrongCell) -> str:
 
 
 def _in_symbols(case: WrongCell) -> str:
-    """The advice for a number where a length of the exercise is expected; it names none of them."""
+    """Return advice to use symbols if a number was written for a length, or ""."""
     expected = case.constants[1]
     if case.angle or case.expression.symbols:
         return ""
@@ -240,14 +240,14 @@ def _in_symbols(case: WrongCell) -> str:
 
 
 def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:
-    """Those of the joints that are contained at all, and how often."""
+    """Return the joints with a count other than 0, and their counts."""
     if counts is None:
         return None
     return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
 
 
 def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
-    """The wrong cells that were read, by row and column, as far as the work budget allows."""
+    """Return the wrong readable cells by row and column, as far as the work budget allows."""
     if not judgement.wrong:
         return {}
     written = [
@@ -266,7 +266,7 @@ def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Wrong
     counts = coefficients(values, joints, samples, np.array(angles * 2))
     scales = column_scales(grading).tolist()
     spelling = PLAIN
-    # A hint names no symbols but joint variables that the cell contains.
+    # Below the level ``full``, only the joint variables in the cell are named.
     if grading.corrects or any(map(any, filter(None, counts[: len(written)]))):
         rows = [judged.row for judged in judgement.rows if judged.row is not None]
         spelling = grading.spelling(entry for row in rows for entry in row.entries)
@@ -303,7 +303,7 @@ def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Wrong
 def diagnose_cells(
     cases: Mapping[CellIndex, WrongCell], judgement: Judgement
 ) -> dict[CellIndex, Finding]:
-    """The finding on each of the wrong cells."""
+    """Return the finding on each wrong cell."""
     slips = {cell: diagnose(case) for cell, case in cases.items()}
     return _of_misplaced_variables(slips, judgement)
 
@@ -311,9 +311,9 @@ def diagnose_cells(
 def _of_misplaced_variables(
     slips: dict[CellIndex, Finding], judgement: Judgement
 ) -> dict[CellIndex, Finding]:
-    """The findings with one for both cells where a joint's variable stands in the other's place.
+    """Return the findings, with the same one for both cells of a misplaced joint variable.
 
-    Where the angle of a sliding joint has its variable, or a name like theta3, the offset lacks it.
+    For example, the variable of a sliding joint is in θ and missing in d.
     """
     told = dict(slips)
     for (i, column), finding in slips.items():

@@ -33,19 +33,19 @@ from service.kinematics.transforms import Numbers
 
 _OF_UNIT = frozenset({"degrees_as_radians", "radians_as_degrees"})
 
-# Of more lengths in wrong cells nobody can say which two were exchanged.
-MOST_LENGTHS = 4
+# If more lengths are in wrong cells, the search for two exchanged ones is not reliable.
+MAX_LENGTHS = 4
 
-# How many samples of each half tell tables apart that are tried by the dozen.
+# Samples of each half that are enough to compare dozens of tables.
 TABLE_SAMPLES = 3
 
 
 @dataclass(frozen=True, slots=True)
 class _Intended:
-    """The table without the slips: ``(rows, 4, SAMPLES)``, None where that takes other rows.
+    """The table without the slips: ``(rows, 4, SAMPLES)``, or None if it needs other rows.
 
-    ``changed`` are the cells in which it differs from the student's, ``(rows, 4)``; ``departures``
-    is the cost of its frames.
+    ``changed`` ``(rows, 4)`` marks the cells that differ from the student's. ``departures`` is the
+    cost of its frames.
     """
 
     findings: tuple[Finding, ...]
@@ -63,11 +63,12 @@ def explained(
     *,
     combine: bool,
 ) -> tuple[tuple[Finding, ...], Judgement]:
-    """The findings that explain the whole of a wrong table, and the judgement that agrees.
+    """Return the findings that explain a whole wrong table, and a judgement that fits them.
 
-    An explanation must not contradict the findings on single cells. So it stands if its cells are
-    those that were found wrong; or else if its table lies nearer to the reference's frames than the
-    judgement's, or as near if it is the other convention: then the cells are judged by that table.
+    An explanation must not contradict the findings on single cells. It is accepted in two cases.
+    First, if it changes exactly the cells that were found wrong. Second, if its table is nearer to
+    the reference's frames than the judgement's table; for the other convention, equally near is
+    enough. In the second case the cells are judged again by that table.
     """
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
@@ -81,14 +82,14 @@ def explained(
         intended.append(_intended(repaired, case.written, roles, grading))
         findings, table = intended[-1].findings, intended[-1].table
         if table is not None and not np.array_equal(intended[-1].changed, wrong):
-            # A whole table that is right in the other convention is no accident of its cells.
+            # A table that is right in the other convention is no coincidence of single cells.
             if _is_other_convention(intended[-1], judgement):
                 break
             continue
         if table is None or _OF_UNIT.intersection(finding.code for finding in findings):
-            # Converted numbers are rounded: they tell nothing of the frames.
+            # Converted numbers are rounded, so they do not show the frames.
             return findings, replace(judgement, findings=())
-        # The frames that the student chose are those of the table without the slip.
+        # The student's frames are those of the table without the slip.
         chosen = judged_by_intended(table, roles, convention, grading).findings
         return findings, replace(judgement, findings=chosen)
     nearest = min(intended, key=lambda each: each.departures, default=None)
@@ -101,7 +102,7 @@ def explained(
 
 
 def _is_other_convention(intended: _Intended, judgement: Judgement) -> bool:
-    """Whether the slip is the other convention, in frames as near as those of the judgement."""
+    """True if the slip is the other convention, in frames as near as the judgement's."""
     codes = [finding.code for finding in intended.findings]
     return codes == ["other_convention"] and intended.departures <= judgement.departures
 
@@ -130,7 +131,7 @@ def _wrong_table(
 def _exchanges(
     judgement: Judgement, roles: Sequence[Role], grading: Grading
 ) -> Iterator[tuple[str, str, Table]]:
-    """Each two lengths in the wrong cells, with the change of the table if they are exchanged."""
+    """Yield pairs of lengths in wrong cells, and the change of the table if exchanged."""
     by_name = grading.exercise.vocabulary.by_name
     lengths: set[str] = set()
     for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():
@@ -138,7 +139,7 @@ def _exchanges(
         expression = None if row is None else row.expressions[column]
         if expression is not None:
             lengths.update(name for name in expression.symbols if _is_length(by_name.get(name)))
-    if not 2 <= len(lengths) <= MOST_LENGTHS:
+    if not 2 <= len(lengths) <= MAX_LENGTHS:
         return
     rows = [role.row for role in roles if role.row is not None]
     written = table_values(rows, grading.samples)
@@ -167,7 +168,7 @@ def _intended(
 def freedom_lost(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """The findings on joints of the student's table that share an axis or depend on each other."""
+    """Return the findings on joints that share an axis or depend on each other."""
     present = [role for role in roles if role.row is not None]
     joints = grading.exercise.robot.joints
     where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]

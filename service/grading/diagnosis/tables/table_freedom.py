@@ -1,8 +1,8 @@
-"""Tables whose joints have lost a degree of freedom that the robot has.
+"""Tables whose joints have fewer degrees of freedom than the robot.
 
-Two joints that turn about one line, or slide along one direction, move the arm as one joint does. A
-degree of freedom is lost wherever joint screws depend on each other that are independent in the
-reference.
+Two joints that turn about one line, or slide along one direction, move the arm like a single joint.
+More generally, a degree of freedom is lost if joint screws depend linearly on each other that are
+independent in the reference.
 """
 
 from collections.abc import Sequence
@@ -23,15 +23,15 @@ from service.kinematics.dh import Convention
 from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
 from service.kinematics.tolerances import SAME_SCREW
 
-# How many samples of each half stand for a generic configuration.
+# The samples of each half at which the rank is computed.
 POSTURES = 2
-# Beside lengths so many times the typical one, what the others do counts as nothing.
+# Lengths over this multiple of the typical length make a numerical rank meaningless.
 TOO_LONG = 300.0
 _LOST = register(
     of=StudentTable,
     code="lost_freedom",
-    means="joints share one axis, or lie so that the arm can move in fewer ways than the robot; "
-    "the cells cost the points, not this",
+    means="some joints share an axis or depend on each other, so the arm has fewer degrees of "
+    "freedom than the robot; the message itself costs no points",
     example=("planar-rrr-drawn", "table", {"2/a": "0"}),
     unlike={"1/theta": "q2"},
 )
@@ -45,7 +45,7 @@ class _Arm:
     screws: Screws
 
     def directions(self, i: int) -> NDArray[np.float64]:
-        """The axis of a joint, ``(samples, 3)``."""
+        """Return the axis of joint ``i``, ``(samples, 3)``."""
         return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
 
 
@@ -56,12 +56,12 @@ def lost_freedom(
     exercise: Exercise,
     samples: Samples,
 ) -> tuple[Finding, ...]:
-    """The findings on joints that share an axis or depend on each other.
+    """Return the findings on joints that share an axis or depend on each other.
 
-    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
-    where a cell was not read, or with a length beyond all others has no finding. ``joint_rows``
-    names the row of each of the robot's joints; a joint without a row is left out. One without its
-    variable has a finding in its cell.
+    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``. There is no finding
+    if it contains NaN (an unreadable cell) or an extremely large length. ``joint_rows`` gives the
+    row of each joint of the robot; joints with None are left out. A joint without its variable has
+    a finding in its cell.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
@@ -69,7 +69,7 @@ def lost_freedom(
     present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
     own = [D if joint.prismatic else THETA for joint in exercise.robot.joints]
     if any(np.abs(changes(table[row, own[j]])).max() < SAME_SCREW for j, row in present):
-        # Other joints may have lost their freedom only because this one stands still.
+        # This joint has no variable; that alone may be why other joints depend on each other.
         return ()
     written = _arm(table, convention, present, exercise)
     if rank(written.screws) == len(present) or np.abs(written.screws).max() > TOO_LONG:
@@ -92,7 +92,7 @@ def _arm(
 
 
 def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """The finding on each axis that joints share, but do not share in the reference."""
+    """Return a finding for each axis that joints share here but not in the reference."""
     joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
     findings, done = [], set[int]()
     for i, others in enumerate(joined):
@@ -104,12 +104,12 @@ def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple
 
 
 def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """The finding on joints of which one can do nothing that the others cannot do as well."""
+    """Return a finding on joints whose motions are linearly dependent."""
     if rank(written.screws) >= rank(intended.screws):
         return ()
     involved = dependent(written.screws)
     if involved.sum() < 2:
-        # No joint depends on itself alone, so the samples do not agree on which they are.
+        # A single joint cannot be dependent: the samples disagree, so all joints are named.
         involved = np.ones_like(involved)
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
     first, *_, last = np.flatnonzero(involved).tolist()
@@ -141,7 +141,7 @@ def _one_axis(
 
 
 def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, str]:
-    """Whether two axes ``(samples, 3)`` are parallel throughout, and in words how they lie."""
+    """Return True if two axes ``(samples, 3)`` are parallel, and in words how they lie."""
     if np.abs(np.cross(one, other)).max() < SAME_SCREW:
         return True, "parallel, but apart"
     cosines = np.abs(np.sum(one * other, axis=-1))
@@ -152,8 +152,8 @@ def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, st
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
-    """The rows whose a and α lead from the axis of joint ``i`` to that of joint ``j``."""
-    # A row holds a and α behind its joint in a standard table, before it in a modified one.
+    """Return in words the rows whose a and α lead from the axis of joint ``i`` to that of ``j``."""
+    # In a standard row, a and α come after its joint; in a modified one, before it.
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
     return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"

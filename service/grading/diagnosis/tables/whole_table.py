@@ -1,7 +1,7 @@
-"""Slips that run through a whole table.
+"""Slips in a whole table.
 
-A misconception undone gives another table; where that table describes the robot, the misconception
-explains the answer.
+Each misconception is undone, which gives another table. If that table describes the robot, the
+misconception explains the answer.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -36,7 +36,8 @@ _OF_LINK = slice(A, ALPHA + 1)
 class WrongTable:
     """A wrong table at all samples, and at a subset that is enough to compare it.
 
-    ``valid`` tells which tables ``(T, rows, 4, samples)``, at the subset, describe the robot.
+    ``valid`` returns a mask of the tables ``(T, rows, 4, samples)``, at the subset, that describe
+    the robot.
     """
 
     written: WrittenTable
@@ -44,7 +45,10 @@ class WrongTable:
     valid: Callable[[Table, Convention], NDArray[np.bool_]]
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Those hypotheses, at the subset, that change the table to a valid one; all at once."""
+        """Return the hypotheses that change the table to a valid one, all compared at once.
+
+        The hypotheses must be tables at the subset.
+        """
         tried = list(hypotheses)
         explains = np.zeros(len(tried), dtype=np.bool_)
         for convention in Convention:
@@ -62,14 +66,15 @@ class WrongTable:
     of=WrittenTable,
     rank=50,
     code="link_columns_shifted",
-    means="a and α, or one of them, stand one row too early or too late",
+    means="the columns a and α, or one of them, are one row too early or too late",
     example=("three-link-cylindrical", "table", {"1/alpha": "-90deg", "2/alpha": "0"}),
     unlike={"2/a": "d3", "3/d": "0"},
 )
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The link's own columns, a and α or one of them, stand one row too early or too late.
+    """The columns a and α, or one of them, are one row too early or too late.
 
-    The row that the shift leaves open holds what was shifted out at the other end, or nothing.
+    The shift leaves the first or last row open. It gets the cells from the other end, or those of
+    the reference if the student's cells there are 0.
     """
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
@@ -83,14 +88,14 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
             yield Repaired(table.changed(constants), finding)
             is_open = np.abs(table.values[-1 - end, columns]).max() < INTENDED_CELL
             if table.reference is not None and is_open:
-                # The row that fell off the end is not in the student's table.
+                # The cells that belong at the open end are not in the student's table.
                 completed = constants.copy()
                 completed[end, columns] = table.reference[end, columns]
                 yield Repaired(table.changed(completed), finding)
 
 
 def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
-    """``other`` is the convention in which they stand there, if it is so in one."""
+    """Return the finding; ``other`` is the convention in which the columns are there, or None."""
     in_other = f" In the {other} convention they stand there." if other else ""
     return says(
         f"{named} stand one row too {'late' if late else 'early'}: check which link each of them "
@@ -108,7 +113,7 @@ def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
 )
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
-    """One kind of parameter was measured in the wrong sense throughout."""
+    """One kind of parameter has the wrong sign in all rows."""
     for column in range(len(COLUMNS)):
         if table.constants[:, column].any():
             constants = table.constants.copy()
@@ -133,9 +138,9 @@ def _turned_sign(column: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
-    """A parameter on x was taken for the one on z: a for d, or α for θ.
+    """A parameter on x was exchanged with the same kind on z: a with d, or α with θ.
 
-    In the whole table or in one row; the joint variables may have gone along or not.
+    The exchange is in all rows or in one, with or without the joint variables.
     """
     for one, other in ((A, D), (ALPHA, THETA)):
         still = np.abs(table.constants[:, one] - table.constants[:, other]).max(axis=-1) > 0
@@ -158,7 +163,7 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
 
 
 def exchanged_columns(one: int, other: int) -> Finding:
-    """The finding that two columns stand in each other's places, throughout or in a row."""
+    """Return the finding that two columns are in each other's places, throughout or in a row."""
     names = SYMBOLS[one], SYMBOLS[other]
     return Finding(
         "columns_swapped",
@@ -172,7 +177,7 @@ def exchanged_columns(one: int, other: int) -> Finding:
     of=WrittenTable,
     rank=80,
     code="row_order",
-    means="two rows stand in each other's places, or all rows in the opposite order",
+    means="two rows are exchanged, or all rows are in reverse order",
     example=(
         "planar-rr",
         "table",
@@ -181,7 +186,7 @@ def exchanged_columns(one: int, other: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two rows, or all of them, stand in the wrong order."""
+    """Two rows, or all of them, are in the wrong order."""
     rows = range(len(table.constants))
     exchanges = [{i: j, j: i} for i, j in combinations(rows, 2)]
     orders = [[exchange.get(row, row) for row in rows] for exchange in exchanges]
@@ -202,12 +207,12 @@ def _reordered(order: list[int]) -> Finding:
     of=WrittenTable,
     rank=40,
     code="lengths_exchanged",
-    means="two lengths stand in each other's places, as a1 for a2 and a2 for a1",
+    means="two lengths are exchanged: a1 for a2, and a2 for a1",
     example=("spatial-rrr", "table", {"1/a": "L2", "3/a": "R"}),
     unlike={"3/a": "0", "3/d": "L2"},
 )
 def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two lengths were taken for each other."""
+    """Two lengths were exchanged."""
     for one, other, change in table.exchanges:
         finding = partial(_exchanged_lengths, one, other)
         yield Repaired(table.changed(table.constants + change), finding)
@@ -223,7 +228,7 @@ def _exchanged_lengths(one: str, other: str) -> Finding:
 def _with_another(
     basic: Record, others: Sequence[Record], table: WrittenTable
 ) -> Iterator[Explained]:
-    """A basic misconception and another one were held at once."""
+    """Yield the hypotheses of a basic misconception together with another one."""
     for first in each_hypothesis((basic,), table):
         for second in each_hypothesis(others, first.answer):
             yield Repaired(second.answer, partial(_both, first, second), record=second.record)
@@ -234,7 +239,7 @@ def _both(first: Explained, second: Explained) -> tuple[Finding, ...]:
 
 
 def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
-    """All hypotheses that explain the whole table; else the first pair, if ``combine`` allows."""
+    """Return all hypotheses that explain the whole table, or else one pair if ``combine``."""
     records = records_of(WrittenTable)
     found = list(_explaining(case, [partial(each_hypothesis, (each,)) for each in records]))
     if found or not combine:
@@ -249,13 +254,13 @@ def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
 def _explaining(
     case: WrongTable, ways: Sequence[Callable[[WrittenTable], Iterator[Explained]]]
 ) -> Iterator[Explained]:
-    """The hypotheses that explain the table at the subset, built again at all samples."""
+    """Yield the hypotheses that explain the table at the subset, built again at all samples."""
     tried = [(build, list(build(case.subset))) for build in ways]
     every = chain.from_iterable(hypotheses for _, hypotheses in tried)
     explains = set(map(id, case.explained_by(every)))
     for build, hypotheses in tried:
         if not explains.isdisjoint(map(id, hypotheses)):
-            # At all samples a misconception may yield nothing where a value jumps in between.
+            # At all samples a misconception may yield fewer, if a value jumps between samples.
             for at_subset, complete in zip(hypotheses, build(case.written), strict=False):
                 if id(at_subset) in explains:
                     yield complete

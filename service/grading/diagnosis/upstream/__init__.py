@@ -1,1 +1,1 @@
-"""The slips in the robot's table, or in its joints, that spoil a later answer."""
+"""Slips in the robot's table or in its joints that lead to a wrong later answer."""

@@ -1,4 +1,4 @@
-"""Slips that run through all link transforms of an answer: a column of the table, or two rows."""
+"""Slips that change all link transforms of an answer: in a column of the table, or in two rows."""
 
 from collections.abc import Sequence
 
@@ -25,9 +25,9 @@ from service.grading.reading.matrices.matrix import StudentMatrix
 from service.kinematics.chain import Table, links
 from service.kinematics.transforms import Matrices, Numbers
 
-# So many samples of each half tell whole answers apart.
+# Samples of each half that are enough to tell whole answers apart.
 SUBSET = 4
-# The work of all that may explain all links, as the budget counts it.
+# The work of explaining all link transforms, as the budget counts it.
 LINKS_WORK = 6.0
 
 
@@ -39,10 +39,10 @@ def explain_links(
     part: LinkTransformsSpec,
     grading: Grading,
 ) -> Finding | None:
-    """What explains all wrong link transforms at once.
+    """Return the finding that explains all wrong link transforms at once, or None.
 
     ``written``, the numbers of the ``matrices``, and ``right`` are ``(rows, SAMPLES, 4, 4)``,
-    ``scale`` is ``(4, 4)``. None where the right ones follow from the student's own answer.
+    ``scale`` is ``(4, 4)``. None also if the right ones follow from the student's own answer.
     """
     wrong = _wrong(written, right, scale)
     if grading.following or not wrong.any() or not grading.affords(LINKS_WORK):
@@ -50,10 +50,10 @@ def explain_links(
     found = _explained(matrices, written, right, scale, part, grading)
     is_of_one = wrong.any(axis=(1, 2)).sum() == 1
     if is_of_one:
-        # No other slip of one link transform runs through all.
+        # With one wrong link transform, only this slip can be one of all.
         return found if found and found.code == "other_convention" else None
     if found is None and part.frames == "free" and grading.affords(LINKS_WORK):
-        # A slip that runs through all may bring other frames nearer than those it was made in.
+        # After such a slip, frames other than the student's may fit best: try the reference's.
         reference = _reference(part, grading)
         found = _explained(matrices, written, reference, scale, part, grading)
     return found
@@ -67,7 +67,7 @@ def _explained(
     part: LinkTransformsSpec,
     grading: Grading,
 ) -> Finding | None:
-    """The finding on the slips that lead from these ``right`` link transforms to the answer."""
+    """Return the finding on the slips that turn these ``right`` link transforms into the answer."""
     entries = [entry for matrix in matrices for row in matrix.entries for entry in row]
     wrong = _wrong(written, right, scale)
     search = SlipSearch(
@@ -85,25 +85,25 @@ def _explained(
 
 
 def _wrong(written: Matrices, right: Matrices, scale: Numbers) -> Mask:
-    """The entries ``(rows, 4, 4)`` that were read and are wrong."""
+    """Return a mask ``(rows, 4, 4)`` of the entries that were read and are wrong."""
     actual, expected = _at_subset(written), _at_subset(right)
     is_read = np.isfinite(actual).all(axis=-1)
     return np.asarray(is_read & ~nearly_equal(actual, expected, scale, False))
 
 
 def _at_subset(transforms: Matrices) -> Numbers:
-    """The entries ``(rows, 4, 4, L)`` of ``(rows, SAMPLES, 4, 4)`` at some samples."""
+    """Return the entries ``(rows, 4, 4, L)`` of ``(rows, SAMPLES, 4, 4)`` at some samples."""
     return Samples.subset_of(np.moveaxis(transforms, 1, -1), SUBSET)
 
 
 def _reference(part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """The link transforms of the exercise's own table, ``(rows, SAMPLES, 4, 4)``."""
+    """Return the link transforms ``(rows, SAMPLES, 4, 4)`` of the exercise's own table."""
     table = grading.exercise.robot.tables[part.convention]
     return links(table.values(grading.samples.values, SAMPLES), table.convention)
 
 
 def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> SlippedAnswers:
-    """The link transforms ``(K, rows, 4, 4, samples)``."""
+    """Return the link transforms ``(K, rows, 4, 4, samples)`` that slips lead to."""
     table, samples = grading.exercise.robot.tables[part.convention], grading.samples
     constants, motion = constants_and_motion(right, table.convention, table.joints, samples)
     slips = list(

@@ -1,4 +1,4 @@
-"""Slips in the joint variables and the lengths of a robot, however the robot is described."""
+"""Slips in the joints and lengths of a robot that is given by a table or by screws."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
@@ -27,29 +27,29 @@ from service.grading.numerics.tolerances import SAME_MOTION
 from service.kinematics.transforms import Numbers
 
 Axis = Callable[[Joint], str]
-# The longest robots have a handful of lengths; the pairs of more are not tried.
+# Robots have a handful of lengths. With more, pairs are not tried.
 MAX_LENGTHS = 12
 
 
 def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> Iterator[Slip]:
-    """The slips in the variables of the ``moved`` among all ``joints``.
+    """Yield the slips in the variables of the ``moved`` joints.
 
-    ``axis`` says how the axis of a joint points.
+    ``joints`` are all joints. ``axis`` returns advice on the direction of a joint's axis.
     """
     for joint in moved:
-        yield counts_the_wrong_way(joint, axis)
-        yield stands_still(joint)
-        kin = [each for each in joints if each.prismatic == joint.prismatic and each != joint]
-        # The nearest first: it is the likeliest to be taken.
-        for other in sorted(kin, key=lambda each: abs(each.index - joint.index)):
-            yield _moves_by_another(joint, other)
-        yield _moves_twice(joint)
+        yield joint_variable_sign(joint, axis)
+        yield joint_variable_missing(joint)
+        similar = [each for each in joints if each.prismatic == joint.prismatic and each != joint]
+        # The nearest joint first: its variable is the likeliest to be taken.
+        for other in sorted(similar, key=lambda each: abs(each.index - joint.index)):
+            yield _joint_variable_index(joint, other)
+        yield _joint_variable_doubled(joint)
         if not joint.prismatic:
-            yield from _starts_elsewhere(joint)
+            yield from _zero_position(joint)
 
 
-def counts_the_wrong_way(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
-    """The joint was taken to move in the negative sense of its axis."""
+def joint_variable_sign(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
+    """Return the slip: the joint moves in the negative sense of its axis."""
     verb = "slides" if joint.prismatic else "counts"
     return Slip(
         JOINT_VARIABLE_SIGN,
@@ -61,8 +61,8 @@ def counts_the_wrong_way(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
     )
 
 
-def stands_still(joint: Joint, *cells: CellChange) -> Slip:
-    """The joint's variable was left out, as if the joint could not move."""
+def joint_variable_missing(joint: Joint, *cells: CellChange) -> Slip:
+    """Return the slip: the joint's variable is left out, as if the joint could not move."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
         JOINT_VARIABLE_MISSING,
@@ -74,8 +74,8 @@ def stands_still(joint: Joint, *cells: CellChange) -> Slip:
     )
 
 
-def _moves_by_another(joint: Joint, other: Joint) -> Slip:
-    """The variable of another joint was taken."""
+def _joint_variable_index(joint: Joint, other: Joint) -> Slip:
+    """Return the slip: the joint moves by the variable of another joint."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
         JOINT_VARIABLE_INDEX,
@@ -86,8 +86,8 @@ def _moves_by_another(joint: Joint, other: Joint) -> Slip:
     )
 
 
-def _moves_twice(joint: Joint) -> Slip:
-    """The joint variable was counted twice."""
+def _joint_variable_doubled(joint: Joint) -> Slip:
+    """Return the slip: the joint variable is counted twice."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
         JOINT_VARIABLE_DOUBLED,
@@ -98,8 +98,8 @@ def _moves_twice(joint: Joint) -> Slip:
     )
 
 
-def _starts_elsewhere(joint: Joint) -> Iterator[Slip]:
-    """The joint's angle was measured from another zero position."""
+def _zero_position(joint: Joint) -> Iterator[Slip]:
+    """Yield the slips: the joint's angle is measured from another zero position."""
     yield _turned_joint(joint, QUARTER_TURN, np.pi / 2, "a quarter turn (90°)")
     yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2, "a quarter turn (90°)")
     yield _turned_joint(joint, HALF_TURN, np.pi, "half a turn (180°)")
@@ -116,7 +116,7 @@ def _turned_joint(joint: Joint, kind: Record, turn: float, error: str) -> Slip:
 
 
 def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
-    """The answer was worked out for the home position."""
+    """Yield the slip of an answer for the home position."""
     if len(joints) > 1:
         yield Slip(
             HOME_POSITION,
@@ -127,7 +127,10 @@ def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
 
 
 def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
-    """The slips in lengths by their names; those ``alone`` in a cell are tried with the cell."""
+    """Yield the slips in these lengths.
+
+    If a length is ``alone`` in its cell, its sign and its omission are slips of the cell.
+    """
     in_cells = set(alone)
     for length in lengths:
         if length not in in_cells:
@@ -180,7 +183,7 @@ def _other_length(right: str, written: str) -> Slip:
 
 
 def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
-    """How the axis of a joint points at home, as advice; worked out when it is first asked for."""
+    """Return a function that says how a joint's axis points at home; it computes on demand."""
 
     @cache
     def screws() -> Numbers:

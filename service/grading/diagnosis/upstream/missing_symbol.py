@@ -1,4 +1,4 @@
-"""What an entry lacks or has too much: a joint variable, a length, the quantity asked for."""
+"""Symbols that an entry lacks or has too much: a joint variable, or a length."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.samples import Samples
 from service.kinematics.transforms import Numbers
 
-# A change that no entry of a robot is blind to: no whole turn, no factor of any length.
+# A change that has an effect on every entry: not a whole turn, and not a multiple of a length.
 PROBE = 0.37
 TWICE = 2.0
 NOT_ZERO = "This must not be 0: check which lengths have a part here."
@@ -27,10 +27,11 @@ NOT_ZERO = "This must not be 0: check which lengths have a part here."
 
 @dataclass(frozen=True, slots=True)
 class Required:
-    """What the right entry depends on, and whether it grows with all ``lengths`` alike.
+    """The symbols that the right entry depends on, and how it grows when all ``lengths`` double.
 
-    ``grows`` is 1 for a length, 0 for what no length changes, None for anything else. ``lengths``
-    includes the variables of sliding joints, ``joints`` those of all joints.
+    ``grows`` is 1 if the entry doubles like a length, 0 if it stays, None for anything else.
+    ``lengths`` includes the variables of sliding joints. ``joints`` are the variables of all
+    joints.
     """
 
     symbols: frozenset[str]
@@ -41,7 +42,7 @@ class Required:
 
 @dataclass(frozen=True)
 class Requirements:
-    """What the entries of the right answer depend on, found by changing one symbol after another.
+    """The symbols that each right entry depends on, found by changing one symbol after another.
 
     ``expected`` is ``(..., SAMPLES)``, ``scale`` broadcasts to ``(...)``.
     """
@@ -53,15 +54,15 @@ class Requirements:
     scale: Numbers
 
     def of(self, *place: int) -> Required | None:
-        """Those of one entry; None where the answers do not follow all symbols."""
+        """Return the required symbols of one entry, or None if they are unknown."""
         if not self.answers.by_symbols:
             return None
         names = self.samples.values.keys()
-        depends, grows = self._found
+        depends, grows = self._dependences
         alike = [k for k in (0, 1) if grows[(k, *place)]]
         return Required(
             frozenset(name for k, name in enumerate(names) if depends[(k, *place)]),
-            # A zero is as much a length as it is a number.
+            # Zero passes both tests, so it is not known to be a length or a number.
             alike[0] if len(alike) == 1 else None,
             self._lengths,
             tuple(joint.variable for joint in self.exercise.joints),
@@ -72,8 +73,8 @@ class Requirements:
         return frozenset(each.name for each in self.exercise.variables if each.kind == "length")
 
     @cached_property
-    def _found(self) -> tuple[Mask, Mask]:
-        """Which symbols entries depend on ``(symbols, ...)``, and how they grow ``(2, ...)``."""
+    def _dependences(self) -> tuple[Mask, Mask]:
+        """Masks of what entries depend on ``(symbols, ...)`` and how they grow ``(2, ...)``."""
         probes = [
             Change(symbols=(SymbolChange(name, name, 1.0, PROBE),)) for name in self.samples.values
         ]
@@ -88,7 +89,7 @@ class Requirements:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A wrong entry, and what the right one depends on; None where that is not known."""
+    """A wrong entry and the symbols that the right one depends on; None if they are unknown."""
 
     case: WrongEntry
     required: Required | None
@@ -100,7 +101,7 @@ class Dependence:
 
     @property
     def joints(self) -> list[str]:
-        """The variables of the joints that move the right entry, and not the student's."""
+        """The joint variables that the right entry depends on and the student did not write."""
         known = self.required
         return (
             [name for name in known.joints if name in known.symbols - self.written] if known else []
@@ -115,12 +116,12 @@ def _is_formula(entry: Dependence) -> bool:
     of=Dependence,
     rank=10,
     code="independent_of",
-    means="a joint variable or a length that the entry must change with does not stand in it",
+    means="the entry does not contain a joint variable or a length that it must depend on",
     example=("planar-rpr-poe", "position", "[0, 0]"),
     unlike={"1/1": "theta1"},
 )
 def constant(entry: Dependence) -> Finding | None:
-    """A number was written for what moves with a joint."""
+    """A number was written for a quantity that changes with a joint."""
     if entry.written or not entry.joints:
         return None
     return finding_on(entry.case, "This is a constant, but it must change with the joints.")
@@ -130,7 +131,7 @@ def constant(entry: Dependence) -> Finding | None:
     of=Dependence,
     rank=20,
     code=UNEXPLAINED,
-    means="wrong, and none of the above",
+    means="the value is wrong, and no other code explains it",
     example=("rigid-motion-chain", "point", "[0, 0, 0]"),
     unlike={"3/1": "h"},
 )
@@ -147,12 +148,12 @@ def zero(entry: Dependence) -> Finding | None:
     rank=30,
     code="quantity",
     when=_is_formula,
-    means="no length where a length is asked for, or a length where a plain number is",
+    means="the entry must be a length and is not, or must be a plain number and contains a length",
     example=("planar-rr", "pose", {"1/4": "c1 + c12"}),
     unlike={"1/4": "a1 c1"},
 )
 def quantity(entry: Dependence) -> Finding | None:
-    """A length without a length in it, or a number with one."""
+    """A length is expected but the formula has none, or the other way round."""
     case, required = entry.case, entry.required
     if required is None or required.grows is None or not required.lengths:
         return None
@@ -178,12 +179,12 @@ def quantity(entry: Dependence) -> Finding | None:
     rank=40,
     code="independent_of",
     when=_is_formula,
-    means="a joint variable or a length that the entry must change with does not stand in it",
+    means="the entry does not contain a joint variable or a length that it must depend on",
     example=("planar-rr", "pose", {"1/4": "a1 c1"}),
     unlike={"1/4": "c1 + c12"},
 )
 def missing_joints(entry: Dependence) -> Finding | None:
-    """The variables of joints that move the entry do not stand in it."""
+    """The entry does not contain the variables of joints that change it."""
     case, names = entry.case, entry.joints
     if not names or any(_is_whole(case, name) for name in names):
         return None
@@ -196,13 +197,12 @@ def missing_joints(entry: Dependence) -> Finding | None:
     rank=50,
     code="joint_variable_extra",
     when=_is_formula,
-    means="a joint angle too many in such a sum, or a joint variable where nothing may change "
-    "with it",
+    means="the entry contains a joint variable too many, alone or in a sum of joint angles",
     example=("planar-rrr-drawn", "links", {"A3.1/3": "c12"}),
     unlike={"A2.3/4": "1"},
 )
 def extra_joints(entry: Dependence) -> Finding | None:
-    """Joint variables in an entry that their joints do not change."""
+    """The entry contains variables of joints that must not change it."""
     case, required = entry.case, entry.required
     assert required is not None
     few = case.samples.subset(1)
@@ -224,12 +224,12 @@ def extra_joints(entry: Dependence) -> Finding | None:
     rank=60,
     code="independent_of",
     when=_is_formula,
-    means="a joint variable or a length that the entry must change with does not stand in it",
+    means="the entry does not contain a joint variable or a length that it must depend on",
     example=("rigid-motion-chain", "point", {"3/1": "h"}),
     unlike={"3/1": "-pi/2"},
 )
 def missing_length(entry: Dependence) -> Finding | None:
-    """A length has no part in the entry. Its name is not told: it may be all that is missing."""
+    """A length is missing in the entry. The hint does not name it: it may be the whole answer."""
     required = entry.required
     assert required is not None
     if not required.symbols & required.lengths - entry.written - set(required.joints):
@@ -242,7 +242,7 @@ def missing_length(entry: Dependence) -> Finding | None:
     of=Dependence,
     rank=90,
     code=UNEXPLAINED,
-    means="wrong, and none of the above",
+    means="the value is wrong, and no other code explains it",
     example=("planar-rr", "pose", {"1/4": "a1 c1 + 2 a2 c12"}),
     unlike={"1/2": "s12"},
 )
@@ -253,7 +253,7 @@ def unexplained(entry: Dependence) -> Finding:
 
 
 def _is_whole(case: WrongEntry, name: str) -> bool:
-    """Whether a symbol is the whole of the right entry, so that its name would give it away."""
+    """True if the right entry is this symbol alone, so that its name would give the entry away."""
     return _same(case, np.abs(case.expected), np.abs(case.samples.values[name]))
 
 

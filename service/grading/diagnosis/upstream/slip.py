@@ -1,8 +1,8 @@
-"""A slip that is made before an answer is written down: in the robot's table, joints or lengths.
+"""A slip made before the answer is computed: in the robot's table, joints or lengths.
 
-Unlike the other misconceptions it is no formula for the wrong answer: it changes what the answer is
-worked out from. So many slips are tried at once, by working the right answer out from the numbers
-that each of them leaves.
+Other misconceptions are formulas for the wrong answer. A slip changes the input of the right answer
+instead. So many slips can be tried at once: the right answer is computed from the changed numbers
+of all of them.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True, slots=True)
 class SymbolChange:
-    """A symbol that is taken to be ``factor · source + offset``; ``source`` is a symbol too."""
+    """A symbol that takes the value ``factor · source + offset``; ``source`` is a symbol too."""
 
     symbol: str
     source: str
@@ -28,10 +28,10 @@ class SymbolChange:
 
 @dataclass(frozen=True, slots=True)
 class CellChange:
-    """A cell whose constant part becomes ``factor`` times that of another cell, plus ``offset``.
+    """A cell whose constant part becomes ``factor`` times that of a source cell, plus ``offset``.
 
-    ``source`` is the other cell's row and column; without it, it is the cell itself. With
-    ``moving`` the joint variables in the cells change along with their constants.
+    ``source`` is the row and column of the source cell; without it, the cell is its own source.
+    With ``moving``, the joint variables in the cells change along with their constants.
     """
 
     row: int
@@ -44,9 +44,9 @@ class CellChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """What the right answer is worked out again with: other symbols, other cells.
+    """A change to the input of the right answer: to symbols, or to cells of the table.
 
-    With ``misread`` the table is multiplied out with the link transform of the other convention.
+    With ``misread``, the table is multiplied out with the link transform of the other convention.
     """
 
     symbols: tuple[SymbolChange, ...] = ()
@@ -56,12 +56,12 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Slip(Change):
-    """A slip of some kind (``slip_kinds``), with what it changes.
+    """A slip of some kind (``slip_kinds``), with the change that it makes.
 
-    ``clause`` says what is wrong, as a clause that can stand in a list of several, and ``advice``
-    what to look at; the ``correction`` is told apart. Symbols stand in braces in them, since the
-    student may have other names, with the words for one that would give an entry away: "nothing
-    moves with {d3:its variable}".
+    ``clause`` says in a clause what is wrong, so that several slips can be listed. ``advice`` says
+    what to check. ``correction`` is a field of its own in reports. In these texts a symbol is in
+    braces, because the student may have another name for it. The words after the colon replace a
+    name that would give an entry away: "nothing moves with {d3:its variable}".
     """
 
     kind: Record
@@ -71,12 +71,15 @@ class Slip(Change):
 
     @property
     def code(self) -> str:
-        """The code of its kind, or the name of a kind that is told beside others only."""
+        """The code of its kind, or the name of a kind that is only listed with others."""
         return self.kind.name
 
 
 def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
-    """The values ``(K · samples,)`` that K changes leave each symbol, those of one in a row."""
+    """Return the values ``(K · samples,)`` of each symbol under K changes.
+
+    The samples of one change are consecutive.
+    """
     names = list(values)
     if not names:
         return {}
@@ -100,10 +103,10 @@ def change_cells(
     constants: Table,
     first_row: int = 0,
 ) -> None:
-    """Change the cells of ``tables`` ``(rows, 4, K, count)``, some for each change, in place.
+    """Apply K changes to ``tables`` ``(rows, 4, K, count)``, in place.
 
-    ``right`` ``(rows, 4, count)`` is the right table, ``constants`` the same with all joint
-    variables 0. All may begin with another than the table's ``first_row``.
+    ``right`` ``(rows, 4, count)`` is the right table, ``constants`` the same table with all joint
+    variables 0. All three begin with row ``first_row`` of the whole table.
     """
     cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]
     if not cells:

@@ -1,4 +1,4 @@
-"""The kinds of slips that are made before an answer is written down, likeliest first."""
+"""The kinds of slips in the robot's table, joints or lengths, likeliest first."""
 
 from service.grading.diagnosis.upstream.slip import Slip
 from service.grading.misconception import register
@@ -7,7 +7,7 @@ JOINT_VARIABLE_SIGN = register(
     of=Slip,
     rank=10,
     code="joint_variable_sign",
-    means="a joint counts the wrong way round or along its axis",
+    means="a joint moves in the wrong direction about or along its axis",
     example=("planar-rr", "position", "[a1 c1 + a2 cos(q1 - q2), a1 s1 + a2 sin(q1 - q2)]"),
     unlike="[a1 c1 - a2 c12, a1 s1 - a2 s12]",
 )
@@ -15,7 +15,7 @@ HOME_POSITION = register(
     of=Slip,
     rank=20,
     code="home_position",
-    means="all joints stand still",
+    means="the answer holds only for the home position",
     example=("planar-rr", "position", "[a1 + a2, 0]"),
     unlike={"2/1": "0"},
 )
@@ -23,7 +23,7 @@ JOINT_VARIABLE_MISSING = register(
     of=Slip,
     rank=30,
     code="joint_variable_missing",
-    means="a joint stands still: its variable is left out",
+    means="the variable of a joint is left out, so the joint does not move",
     example=("planar-rr", "position", "[(a1 + a2) c1, (a1 + a2) s1]"),
     unlike="[a1 c1, a1 s1]",
 )
@@ -31,7 +31,7 @@ SIGN = register(
     of=Slip,
     rank=40,
     code="sign",
-    means="the wrong sign of a length or an angle of the table",
+    means="a length or an angle of the table has the wrong sign",
     example=("planar-rr", "position", "[a1 c1 - a2 c12, a1 s1 - a2 s12]"),
     unlike="[a1 c1, a1 s1]",
 )
@@ -71,7 +71,7 @@ OTHER_CONVENTION = register(
     of=Slip,
     rank=90,
     code="other_convention",
-    means="a table of one convention was multiplied with the link transform of the other",
+    means="the table is multiplied out with the link transform of the other convention",
     example=(
         "spatial-rrr",
         "links",
@@ -86,7 +86,7 @@ LENGTHS_EXCHANGED = register(
     of=Slip,
     rank=100,
     code="lengths_exchanged",
-    means="two lengths stand in each other's places",
+    means="two lengths of the table are exchanged",
     example=("planar-rr", "position", "[a2 c1 + a1 c12, a2 s1 + a1 s12]"),
     unlike={"1/1": "a1*c1 - a2*c12"},
 )
@@ -94,7 +94,7 @@ OTHER_LENGTH = register(
     of=Slip,
     rank=110,
     code="other_length",
-    means="one length stands in the place of another, too",
+    means="one length is used in place of another",
     example=("planar-rr", "position", "[a1 c1 + a1 c12, a1 s1 + a1 s12]"),
     unlike={"1/1": "a1*c1 - a2*c12"},
 )
@@ -130,7 +130,7 @@ JOINT_VARIABLE_DOUBLED = register(
     of=Slip,
     rank=150,
     code="joint_variable_doubled",
-    means="a joint moves twice as far as its variable",
+    means="a joint variable counts twice",
     example=("planar-rr", "position", "[a1 c1 + a2 cos(q1 + 2 q2), a1 s1 + a2 sin(q1 + 2 q2)]"),
     unlike="[a1 c1 + a2 cos(2 q1), a1 s1 + a2 sin(2 q1)]",
 )
@@ -142,5 +142,5 @@ ROW_ORDER = register(
     example=("turret", "position", "[a3 c1 c3, a3 s1 c3, a3 s3]"),
     unlike="[a3 c1 c2, a3 s1 c2, a3 s2]",
 )
-# It is told beside rows in another order only; by itself as such a product (``link_products``).
+# Listed only together with exchanged rows. Otherwise ``link_products`` names the missing link.
 MISSING_LINK = register(of=Slip, rank=170, name="missing_link")

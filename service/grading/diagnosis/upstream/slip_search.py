@@ -1,4 +1,4 @@
-"""The search for the slips of which a wrong answer follows, and the finding on them."""
+"""The search for slips that lead to a wrong answer, and the finding on them."""
 
 from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
@@ -17,29 +17,28 @@ from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.samples import HALF, Samples
 from service.kinematics.transforms import Numbers
 
-# An axis that is turned moves several entries, and so do wrong signs throughout a table; of one
-# entry alone, the sign is wrong or a term.
+# These slips change several entries. If only one is wrong, its sign or a term is the cause.
 OF_SEVERAL_ENTRIES = {"quarter_turn", "half_turn", "parameter_sign"}
-# Slips that are far-fetched where signs explain the answer itself: it is reversed, or a column is.
-BEHIND_SIGNS = {"half_turn", "parameter_sign"}
-# A slip of rows or columns, and those that are a part of it: they are all that is sure.
+# Far-fetched slips if signs of the answer explain it: of the whole vector, or of a column.
+AFTER_SIGNS = {"half_turn", "parameter_sign"}
+# A slip of rows or columns, and the slips that it includes: only these are certain.
 PARTS_OF = {
     "columns_swapped": {"distance_left_out"},
     "parameter_sign": {"sign"},
     "row_order": {"lengths_exchanged"},
 }
-# More slips that lead to the same answer are not told one by one.
-MOST_TOLD = 4
+# If more slips lead to the same answer, the message does not list them.
+MAX_LISTED = 4
 
 
 @dataclass(frozen=True)
 class SlipSearch:
-    """A wrong answer, held against the answers that slips lead to.
+    """A wrong answer and the answers that slips lead to.
 
     ``actual`` and ``expected`` are ``(..., L)`` at the first samples of each half of ``samples``,
-    NaN where nothing could be read; ``wrong`` ``(...)`` marks the wrong entries. ``scale``
-    broadcasts to ``(...)``, ``angle`` to ``(..., 1)``. ``name`` gives the student's name of a
-    symbol; ``unwritten`` are the constants that the student did not write.
+    NaN if unreadable; ``wrong`` ``(...)`` marks the wrong entries. ``scale`` broadcasts to
+    ``(...)``, ``angle`` to ``(..., 1)``. ``name`` returns the student's name of a symbol;
+    ``unwritten`` are the constants that the student did not write.
     """
 
     answers: SlippedAnswers
@@ -53,16 +52,16 @@ class SlipSearch:
     unwritten: Set[str] = frozenset()
 
     def explanation(self, entries: Mask) -> Explained | None:
-        """What the slips say that explain these entries; None where none does."""
+        """Return the finding on the slips that explain these entries, or None."""
         slips = self.explaining(entries)
         finding = _finding(slips, self.name, self._gives_away)
         return None if finding is None else Hypothesis(None, finding, entries, record=slips[0].kind)
 
     def _gives_away(self, symbol: str) -> bool:
-        """Whether to name a symbol would answer what is asked.
+        """True if the name of the symbol would give the answer away.
 
-        It is a constant that the student did not write, or the whole of a wrong entry; or the
-        answer stands still, and any variable moves it.
+        The symbol may be a constant that the student did not write, or the whole of a wrong entry.
+        If the answer is constant, the name of any joint variable gives away what is missing.
         """
         if symbol in self.unwritten:
             return True
@@ -73,11 +72,11 @@ class SlipSearch:
         return bool(whole or nearly_equal(before, after)[self.wrong].all())
 
     def explaining(self, entries: Mask) -> list[Slip]:
-        """The slips that explain all of these entries ``(...)`` that were read, likeliest first."""
+        """Return the slips that explain all readable ``entries``, likeliest first."""
         if not self.answers.slips:
             return []
         read = entries & np.isfinite(self.actual).all(axis=-1)
-        fits, changes = self._at_first
+        fits, changes = self._at_two_samples
         found = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))
         slips = [self.answers.slips[k] for k in found]
         if (self.wrong & read).sum() == 1:
@@ -87,17 +86,17 @@ class SlipSearch:
         fits, changes = self._compared(slips, self.actual.shape[-1] // 2)
         sure = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))
         found_slips = sorted((slips[k] for k in sure), key=lambda slip: slip.kind.rank)
-        # Where all joints stand still, no single one of them is to blame.
+        # If all joints stand still, no single joint is to blame.
         at_home = [slip for slip in found_slips if slip.kind is HOME_POSITION]
-        return at_home or _sure(found_slips)
+        return at_home or _certain(found_slips)
 
     @cached_property
-    def _at_first(self) -> tuple[Mask, Mask]:
-        """All slips at two samples, which few but the right ones pass."""
+    def _at_two_samples(self) -> tuple[Mask, Mask]:
+        """Masks of all slips at two samples, which few wrong slips pass."""
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
-        """Which entries ``(K, ...)`` K slips explain and which they change, at some samples."""
+        """Return masks ``(K, ...)``: the entries that K slips explain, and those they change."""
         samples = self.samples if count == HALF else self.samples.subset(count)
         half = self.actual.shape[-1] // 2
         some = [*range(count), *range(half, half + count)]
@@ -107,11 +106,11 @@ class SlipSearch:
         return fits, ~same
 
 
-def _sure(slips: list[Slip]) -> list[Slip]:
-    """The slips without those of which another is a part.
+def _certain(slips: list[Slip]) -> list[Slip]:
+    """Return the slips except those that include another one of them.
 
-    A link that is missing in the product is told here only beside rows in another order. By itself
-    it is told as such a product (``link_products``).
+    A missing link is listed only together with exchanged rows. Otherwise ``link_products`` names
+    it.
     """
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}
@@ -123,9 +122,9 @@ def _sure(slips: list[Slip]) -> list[Slip]:
 def _finding(
     slips: Sequence[Slip], name: Callable[[str], str], gives_away: Callable[[str], bool]
 ) -> Finding | None:
-    """The finding on slips that lead to the same answer: one, or those of which it is one."""
+    """Return the finding on slips that all lead to the same answer."""
     clauses = list(dict.fromkeys(slip.clause for slip in slips))
-    if not clauses or len(clauses) > MOST_TOLD:
+    if not clauses or len(clauses) > MAX_LISTED:
         return None
     likeliest, correction = slips[0], ""
     hint = f"One of these slips explains it: {'; '.join(clauses[:-1])}; or {clauses[-1]}. "
@@ -138,7 +137,7 @@ def _finding(
 
 
 class _Names(dict[str, "_Name"]):
-    """The names of symbols, each looked up when it is asked for."""
+    """The names of symbols, each looked up on demand."""
 
     def __init__(self, name: Callable[[str], str], gives_away: Callable[[str], bool]) -> None:
         self._name, self._gives_away = name, gives_away
@@ -149,7 +148,7 @@ class _Names(dict[str, "_Name"]):
 
 @dataclass(frozen=True, slots=True)
 class _Name:
-    """A symbol's name, with other words in its place where it would give too much away."""
+    """A symbol's name, formatted as other words if it would give an entry away."""
 
     name: str
     gives_away: bool

@@ -1,4 +1,4 @@
-"""The answers that slips lead to: worked out again from a changed table, or changed symbols."""
+"""The answers that slips lead to, computed from a changed table or changed symbols."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,10 +28,10 @@ AnswersAt = Callable[[Sequence[Change], Samples], Numbers]
 
 @dataclass(frozen=True)
 class SlippedAnswers:
-    """What the right answer becomes by each of the ``slips``.
+    """The wrong answers that ``slips`` lead to.
 
-    ``at`` gives the answers ``(K, ..., samples)`` that K changes lead to.
-    ``by_symbols`` says that they follow each symbol, and not the joint variables alone.
+    ``at`` returns the answers ``(K, ..., samples)`` under K changes. ``by_symbols`` is True if the
+    answers follow changes of every symbol, False if only of joint variables.
     """
 
     slips: tuple[Slip, ...]
@@ -39,16 +39,16 @@ class SlippedAnswers:
     by_symbols: bool = True
 
     def of(self, entries: Callable[[Numbers], Numbers]) -> "SlippedAnswers":
-        """Those of some of the entries only: of a position, where these are poses."""
+        """Return these answers reduced to some entries, for example poses to positions."""
         return SlippedAnswers(
             self.slips, lambda changes, samples: entries(self.at(changes, samples))
         )
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
-    """The answers to a part; None where neither a robot nor formulas give it.
+    """Return the answers to a part, or None if neither a robot nor formulas give it.
 
-    They are poses ``(K, 4, 4, samples)``, or ``(K, rows, columns, samples)`` where the part has
+    They are poses ``(K, 4, 4, samples)``, or ``(K, rows, columns, samples)`` if the part has
     formulas of its own.
     """
     exercise = grading.exercise
@@ -63,7 +63,7 @@ def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
 
 
 def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
-    """The poses ``(K, 4, 4, samples)`` of a robot with a table."""
+    """Return the poses ``(K, 4, 4, samples)`` of a robot with a table."""
     robot = exercise.robot
     table = robot.tables[robot.convention]
     start, to, last = *map(robot.frame_number, (part.start, part.to)), len(table.rows)
@@ -88,7 +88,7 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 def slipped_tables(
     table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """The tables ``(rows, 4, K, count)`` that K changes lead to, with as many rows as they need."""
+    """Return the tables ``(rows, 4, K, count)`` under K changes, with rows added as needed."""
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
     right = table.values(values, count)
@@ -104,7 +104,7 @@ def slipped_tables(
 
 
 def _of_screws(part: PosePartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
-    """The poses ``(K, 4, 4, samples)`` of a robot that is given by its screws."""
+    """Return the poses ``(K, 4, 4, samples)`` of a robot that is given by its screws."""
     robot = exercise.reference
     assert isinstance(robot, ScrewRobot)
 
@@ -118,14 +118,14 @@ def _of_screws(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slip
 
 
 def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
-    """The values ``(K, rows, columns, samples)`` of a part that the exercise gives in formulas."""
+    """Return the values ``(K, rows, columns, samples)`` of a part that is given in formulas."""
     grid = exercise.formulas[part.id]
     at = _stacked(lambda values, count: grid_values(grid, values, count))
     return SlippedAnswers(_general_slips(exercise, samples), at)
 
 
 def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
-    """``answer`` at the values that slips leave, all of them worked out at once."""
+    """Return a function that computes ``answer`` at the changed values of all slips at once."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         values = changed_values(changes, samples.values)
@@ -137,7 +137,7 @@ def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
 
 
 def _general_slips(exercise: Exercise, samples: Samples) -> tuple[Slip, ...]:
-    """The slips in the joints and lengths of a robot, however it is described; else none."""
+    """Return the slips in joints and lengths, or none if the exercise has no joints."""
     joints = exercise.joints
     if not joints:
         return ()

@@ -1,4 +1,4 @@
-"""The link transforms that slips in their own row lead to, in whatever frames the row is right."""
+"""The link transforms that slips in their own row lead to, in any frames."""
 
 from collections.abc import Sequence
 
@@ -33,9 +33,10 @@ from service.kinematics.transforms import Matrices, Numbers
 def slipped_link(
     row: int, right: Matrices, convention: Convention, grading: Grading
 ) -> SlippedAnswers | None:
-    """The transforms ``(K, 4, 4, samples)`` of one row; ``right`` is ``(SAMPLES, 4, 4)``.
+    """Return the transforms ``(K, 4, 4, samples)`` that slips in one row lead to.
 
-    None where the right one follows from the student's own answer.
+    ``right`` is the right transform ``(SAMPLES, 4, 4)``. None if it follows from the student's own
+    answer.
     """
     if grading.following:
         return None
@@ -50,19 +51,19 @@ def slipped_link(
         home = table.values(at_home(table.joints, few.values, few.count), few.count)[row]
         of_row = row_slips(table, row, home[:, 0].tolist(), axis)
         of_lengths = length_slips(*lengths_of(table))
-        # In one row alone a length stands in the place of another, and is not exchanged.
+        # A single row can hold another length in place of its own, but no exchange of two.
         single = (slip for slip in of_lengths if len(slip.symbols) == 1)
-        return SlippedAnswers((*of_joint, *of_row, *single), _of_reference(table, row))
+        return SlippedAnswers((*of_joint, *of_row, *single), _in_reference_frames(table, row))
     joint = table.joints[row] if row < len(table.joints) else None
     senses = _senses(cells, joint, samples)
     constants = cells - _motion(senses, joint, samples.values)
     of_row = row_slips(table, row, constants[:, 0].tolist(), axis, own_frames=True)
-    at = _of_own_row(row, constants, senses, joint, convention)
+    at = _in_own_frames(row, constants, senses, joint, convention)
     return SlippedAnswers((*of_joint, *of_row), at, by_symbols=False)
 
 
-def _of_reference(table: ReferenceTable, row: int) -> AnswersAt:
-    """The link transforms of a row of the reference."""
+def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
+    """Return a function for the link transform of a row of the reference."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         tables = slipped_tables(table, changes, samples.values, samples.count)
@@ -71,10 +72,10 @@ def _of_reference(table: ReferenceTable, row: int) -> AnswersAt:
     return at
 
 
-def _of_own_row(
+def _in_own_frames(
     row: int, constants: Numbers, senses: Numbers, joint: Joint | None, convention: Convention
 ) -> AnswersAt:
-    """Those of a row in other frames, of which the ``constants`` ``(4, SAMPLES)`` are known."""
+    """Return a function for the link transform of a row with ``constants`` ``(4, SAMPLES)``."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         count = samples.count
@@ -92,9 +93,10 @@ def _of_own_row(
 def constants_and_motion(
     right: Matrices, convention: Convention, joints: Sequence[Joint], samples: Samples
 ) -> tuple[Table, Table]:
-    """The table ``(rows, 4, SAMPLES)`` of right link transforms ``(rows, SAMPLES, 4, 4)``.
+    """Return the constants and the motion of right link transforms ``(rows, SAMPLES, 4, 4)``.
 
-    Its constants, and by how much the joints move each cell.
+    Both are tables ``(rows, 4, SAMPLES)``. The motion is the part of each cell that the joints
+    change.
     """
     constants, motions = np.empty((2, len(right), len(COLUMNS), samples.count))
     for i, link in enumerate(right):
@@ -105,12 +107,12 @@ def constants_and_motion(
 
 
 def _motion(senses: Numbers, joint: Joint | None, values: SymbolValues) -> Numbers:
-    """By how much the joint moves each cell, ``(4, ...)``."""
+    """Return the part ``(4, ...)`` of each cell that the joint changes."""
     return np.multiply.outer(senses, values[joint.variable] if joint else np.zeros(1))
 
 
 def _senses(cells: Numbers, joint: Joint | None, samples: Samples) -> Numbers:
-    """How often each cell ``(4, SAMPLES)`` contains the joint's variable: 0, 1 or −1."""
+    """Return the count of the joint's variable in each cell ``(4, SAMPLES)``: 0, 1 or −1."""
     senses = np.zeros(len(cells))
     if joint is not None:
         column = variable_column(joint)

@@ -1,6 +1,6 @@
-"""Slips in the cells of the robot's table, of which a wrong pose follows.
+"""Slips in the cells of the robot's table that lead to a wrong pose.
 
-Codes are those of the same slips in a table that is handed in (``table_cell``).
+They have the codes of the same slips in a submitted table (``table_cell``).
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,11 +16,11 @@ from service.grading.diagnosis.tables.rows_and_columns import (
 )
 from service.grading.diagnosis.upstream.joint_slips import (
     Axis,
-    counts_the_wrong_way,
     home_slip,
     joint_slips,
+    joint_variable_missing,
+    joint_variable_sign,
     length_slips,
-    stands_still,
 )
 from service.grading.diagnosis.upstream.slip import CellChange, Slip
 from service.grading.diagnosis.upstream.slip_kinds import (
@@ -43,9 +43,9 @@ NOUNS = ("length", "twist", "offset", "angle")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell of a table: where it is, what it measures in words, and the right formula in words.
+    """A cell of a table: its place, and in words its parameter, its link and the right formula.
 
-    ``axes`` are the two that an angle lies between.
+    ``axes`` are the two axes that an angle lies between.
     """
 
     row: int
@@ -64,10 +64,10 @@ def table_slips(
     home: bool = False,
     whole: bool = True,
 ) -> Iterator[Slip]:
-    """All single slips; ``constants`` ``(rows, 4, samples)`` is the table at home.
+    """Yield all single slips; ``constants`` ``(rows, 4, samples)`` is the table at home.
 
-    An answer ``home`` has no joint variables: all slips are in constants. The rows and columns of
-    the table are tried where the answer follows from the ``whole`` of it.
+    If the answer is for the ``home`` position, only constants can be wrong. Slips of whole rows and
+    columns are tried only if the answer follows from the ``whole`` table.
     """
     if not home:
         yield from joint_slips(table.joints, table.joints, axis)
@@ -81,7 +81,7 @@ def table_slips(
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """The lengths of the table in order, and those that stand in one cell, alone."""
+    """Return the lengths of the table in order, and those that are alone in their only cell."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
     once = [name for name in names if sum(name in cell for cell in cells) == 1]
@@ -97,9 +97,9 @@ def row_slips(
     own_frames: bool = False,
     home: bool = False,
 ) -> Iterator[Slip]:
-    """The slips in the ``constants`` of one row, which are its cells at home at one sample.
+    """Yield the slips in the ``constants`` of one row: its cells at home, at one sample.
 
-    In ``own_frames`` the cells are not those of the table. At ``home`` no joint moves.
+    With ``own_frames``, the cells are not those of the table. At ``home`` no joint moves.
     """
     joint = table.joints[row] if row < len(table.joints) and not home else None
     for column in (A, ALPHA, D, THETA):
@@ -111,8 +111,8 @@ def row_slips(
             yield _sign(cell)
             yield _left_out(cell, DISTANCE_LEFT_OUT)
         if moves and joint is not None and abs(constant) > CONSTANT:
-            yield counts_the_wrong_way(joint, axis, CellChange(row, column, -1.0))
-            yield stands_still(joint, CellChange(row, column, 0.0))
+            yield joint_variable_sign(joint, axis, CellChange(row, column, -1.0))
+            yield joint_variable_missing(joint, CellChange(row, column, 0.0))
     slides = joint is not None and joint.prismatic
     yield from exchanged_in_row(row, table.labels[row], constants, slides=slides)
 
@@ -125,7 +125,7 @@ def _angle_slips(cell: Cell, constant: float, *, moves: bool) -> Iterator[Slip]:
         yield _sign(cell)
     if not is_multiple:
         yield _left_out(cell, ANGLE_LEFT_OUT)
-    # Those of a joint's angle are slips of the joint.
+    # For a joint's angle, ``joint_slips`` has these slips.
     if not moves:
         yield _turned(cell, QUARTER_TURN, QUARTER, "a quarter turn (90°)")
         yield _turned(cell, QUARTER_TURN, -QUARTER, "a quarter turn (90°)")
@@ -175,7 +175,7 @@ def _cell(table: ReferenceTable, row: int, column: int, *, own_frames: bool) -> 
 
 
 def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:
-    """The letters of a cell but for the joint variable."""
+    """Return the symbols of a cell except the joint variable."""
     variables = {joint.variable for joint in table.joints}
     return table.rows[row][column].symbols - variables
 
@@ -185,7 +185,7 @@ def _place(table: ReferenceTable, row: int, column: int) -> str:
     along = MEASURED[column].split()[0]
     if column in (D, THETA) and row < len(joints):
         return f"{along} the axis of joint {joints[row]}"
-    # How many joints come before the x axis along which a and α are measured.
+    # The number of joints before the x axis along which a and α are measured.
     before = row + (table.convention is Convention.STANDARD)
     if column in (D, THETA) or before > len(joints):
         return f"{MEASURED[column]} in row {table.labels[row]}"

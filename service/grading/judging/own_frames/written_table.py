@@ -1,4 +1,4 @@
-"""The student's table taken apart, and the misconceptions that make most of its cells wrong."""
+"""A student's table split into constants and motion, and the slips that make most cells wrong."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from service.kinematics.dh import Convention
 
 
 class Rereadable:
-    """A table that may be meant otherwise as a whole: by the rules or the unit of the other kind.
+    """A table that may have been written in the other convention or in the other angle unit.
 
     A student may hold one of these misconceptions and make another slip, or hold two at once.
     """
@@ -25,9 +25,9 @@ class Rereadable:
 class WrittenTable(Rereadable):
     """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
 
-    Its values are the sum of ``constants`` and ``motion``, the part of the joint variables.
-    ``reference`` is the reference's table where it has as many rows. ``exchanges`` are pairs of
-    lengths, each with the change of the table where the two are exchanged.
+    Each value is the sum of ``constants`` and ``motion``, the part that depends on the joint
+    variables. ``reference`` is the reference's table if it has as many rows. Each of the
+    ``exchanges`` names two lengths and holds the change of the table when they are exchanged.
     """
 
     constants: Table
@@ -42,7 +42,7 @@ class WrittenTable(Rereadable):
         return self.constants + self.motion
 
     def subset(self, count: int) -> "WrittenTable":
-        """The same table at the first ``count`` samples of each half."""
+        """Return the table at the first ``count`` samples of each half."""
         constants, motion = (
             Samples.subset_of(cells, count) for cells in (self.constants, self.motion)
         )
@@ -53,8 +53,8 @@ class WrittenTable(Rereadable):
         return WrittenTable(constants, motion, self.convention, reference, exchanges)
 
     def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
-        """The same table with other constants, or with other joint variables too."""
-        # Hypotheses are made by the dozen, and ``replace`` takes three times as long.
+        """Return the table with these constants, and with this motion if it is given."""
+        # ``replace`` takes three times as long, and one diagnosis builds dozens of hypotheses.
         moves = self.motion if motion is None else motion
         return WrittenTable(constants, moves, self.convention, self.reference, self.exchanges)
 
@@ -69,7 +69,7 @@ def written_table(
     joints: tuple[Joint, ...],
     samples: Samples,
 ) -> WrittenTable:
-    """The table with the part of the joint variables in each cell found out."""
+    """Return the table, split into constants and the motion by its joint variables."""
     cells = values.reshape(-1, values.shape[-1])
     counts, _ = joint_counts(cells, joints, samples, np.tile(IS_ANGLE, len(values)))
     motion = counts @ np.array([samples.values[joint.variable] for joint in joints])
@@ -82,12 +82,13 @@ def written_table(
     of=Rereadable,
     rank=10,
     code="other_convention",
-    means="the table is right in the other convention, standard for modified or the other way",
+    means="the table follows the other convention: standard instead of modified, or modified "
+    "instead of standard",
     example=("three-link-cartesian", "table", {"1/alpha": "0", "3/alpha": "-90deg"}, "degrees"),
     unlike={"3/d": "0", "3/theta": "d3"},
 )
 def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The table was set up by the rules of the other convention."""
+    """The table follows the rules of the other convention."""
     names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
     used, asked = names[table.convention.other], names[table.convention]
     finding = says(
@@ -102,7 +103,7 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     of=Rereadable,
     rank=20,
     code="degrees_as_radians",
-    means="all angles are in degrees, and radians were read",
+    means="all angles are numbers of degrees, but were read in radians",
     example=(
         "stanford-arm",
         "table",
@@ -115,7 +116,7 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     "theta5 ↵ 0, 0, d6, theta6",
 )
 def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
-    """All angles were written in degrees, where radians are read."""
+    """All angles were written in degrees, but are read in radians."""
     finding = says(
         "The angles were read in radians, but they fit in degrees: write the unit behind each (deg "
         "or °), or hand the table in with the angle unit degrees.",
@@ -128,7 +129,7 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     of=Rereadable,
     rank=30,
     code="radians_as_degrees",
-    means="all angles are in radians, and degrees were read",
+    means="all angles are numbers of radians, but were read in degrees",
     example=(
         "stanford-arm",
         "table",
@@ -141,7 +142,7 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     unlike={"3/theta": "d6", "6/d": "0"},
 )
 def radians_as_degrees(table: WrittenTable) -> Iterator[RepairedTable]:
-    """All angles were written in radians, where degrees are read."""
+    """All angles were written in radians, but are read in degrees."""
     finding = says(
         "The angles were read in degrees, but they fit in radians: write the unit behind each "
         "(rad), or hand the table in with the angle unit radians.",

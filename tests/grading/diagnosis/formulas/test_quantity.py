@@ -31,5 +31,5 @@ WORDS = Vocabulary([joint_variable(1), joint_variable(2), Symbol("l1", "length")
         ("+".join(["l1"] * 80), None),
     ],
 )
-def test_quantity(text: str, quantity: str | None) -> None:
+def test_the_quantity_of_a_formula(text: str, quantity: str | None) -> None:
     assert quantity_of(read(text, WORDS).tree) == quantity

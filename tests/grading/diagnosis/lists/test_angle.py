@@ -8,7 +8,7 @@ from service.grading.diagnosis.lists.angle import diagnose_angle
 from service.grading.diagnosis.wrong_value import WrongValue, undefined
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.report import Correction
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(8)
 VALUES = {"q1": RNG.uniform(-3, 3, SAMPLES), "q2": RNG.uniform(-3, 3, SAMPLES)}
@@ -16,7 +16,7 @@ WORDS = Vocabulary([Symbol("q1", "angle"), Symbol("q2", "angle")])
 
 
 def wrong(text: str, expected: str) -> WrongValue:
-    """The written angle and the right one."""
+    """Return the wrong angle ``text``; the right one is ``expected``."""
     expression = read(text, WORDS, quantity="angle")
     right = read(expected, WORDS, quantity="angle")
     zeros = np.zeros(SAMPLES)
@@ -50,17 +50,17 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-def test_what_no_misconception_explains() -> None:
+def test_an_unexplained_angle_gets_a_counterexample() -> None:
     finding = diagnose_angle(wrong("q1 + 0.5", "q1"))
     assert finding.code == "value"
     assert finding.values is not None
 
 
-def test_asin_tells_half_the_directions_apart() -> None:
+def test_asin_loses_the_quadrant() -> None:
     finding = diagnose_angle(wrong("asin(sin(q1))", "q1"))
     assert finding.code == "lost_quadrant"
     assert "asin" in finding.hint

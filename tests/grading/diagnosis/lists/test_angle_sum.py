@@ -14,7 +14,7 @@ from service.grading.diagnosis.lists.angle import diagnose_angle
 from service.grading.diagnosis.lists.angle_sum import WrongSum
 from service.grading.diagnosis.wrong_value import WrongValue
 from service.grading.numerics.samples import SAMPLES, Samples
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import HEAD, Make, all_codes
 from tests.grading.support.submitting import handed_in, part
 
@@ -26,7 +26,7 @@ RIGHT = "q1 + q2 + q3 - pi/2"
 
 
 def wrong(text: str, expected: str = RIGHT) -> WrongValue:
-    """The written angle and the right one."""
+    """Return the wrong angle ``text``; the right one is ``expected``."""
     expression, right = (read(each, WORDS, quantity="angle") for each in (text, expected))
     zeros = np.zeros(SAMPLES)
     return WrongValue(
@@ -76,18 +76,18 @@ PAIRS = [pair._replace(source=WrongSum.of) for pair in PAIRS]
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-def test_what_is_missing_is_named_and_what_is_not_known_to_be_in_it_is_not() -> None:
+def test_a_missing_angle_is_named_unless_it_is_the_answer() -> None:
     assert diagnose_angle(wrong("q3 - pi/2")).hint.startswith("q1 and q2 are missing")
     assert diagnose_angle(wrong("q2+q3 - pi/2")).hint.startswith("q1 is missing")
-    # Of an angle that is one joint's alone, its name would be the answer.
+    # If the angle is that of a single joint, its name would be the answer.
     assert "q1" not in diagnose_angle(wrong("0", "q1")).hint
 
 
-def test_an_angle_that_is_no_sum_is_left_alone() -> None:
+def test_an_angle_that_is_no_sum_has_no_addends() -> None:
     assert angle_sum.addends(wrong("q1", "q1*q2")) == {}
     assert angle_sum.addends(wrong("q1", "2.5q1")) == {}
     assert angle_sum.addends(replace(wrong("q1", "-2q1 + 1"))) == {"q1": -2}

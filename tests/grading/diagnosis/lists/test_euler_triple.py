@@ -10,7 +10,7 @@ from service.grading.diagnosis.lists import euler_triple
 from service.grading.diagnosis.lists.euler_triple import WrongTriple, explain_triple
 from service.grading.numerics.samples import SAMPLES
 from service.kinematics.transforms import Numbers
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 Q1, Q2 = np.random.default_rng(8).uniform(-3, 3, (2, SAMPLES))
 
@@ -24,12 +24,12 @@ ROTATION = Rotation.from_euler("ZYX", RIGHT.T)
 
 
 def case(*angles: Numbers | float) -> WrongTriple:
-    """These angles where q1, 0.4, q2 would be right, about moving axes."""
+    """Return these wrong angles; the right ones are q1, 0.4, q2 about moving axes."""
     return WrongTriple(triple(*angles), ROTATION.as_matrix(), "ZYX", fixed=False)
 
 
 def in_sequence(name: Any, rotation: Rotation = ROTATION) -> Numbers:
-    """The right rotation in one of SciPy's sequences."""
+    """Return the angles of a rotation in one of SciPy's sequences."""
     return np.asarray(rotation.as_euler(name).T)
 
 
@@ -51,8 +51,8 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,9 @@ def test_a_misconception(pair: Pair) -> None:
         (case(np.pi / 2 - Q1, 0.4, np.pi / 2 - Q2), "swapped_atan2", [True, False, True]),
     ],
 )
-def test_the_angles_with_the_slip(written: WrongTriple, code: str, slipped: list[bool]) -> None:
+def test_only_the_angles_with_the_slip_are_named(
+    written: WrongTriple, code: str, slipped: list[bool]
+) -> None:
     found = explain_triple(written)
     assert found is not None
     assert [finding.code for finding in found.findings] == [code]
@@ -75,5 +77,5 @@ def test_a_constant_is_no_exchanged_arctangent() -> None:
     assert explain_triple(case(Q1, np.pi / 2 - 0.4, Q2)) is None
 
 
-def test_right_angles_are_left_alone() -> None:
+def test_right_angles_get_no_finding() -> None:
     assert explain_triple(case(Q1, 0.4, Q2)) is None

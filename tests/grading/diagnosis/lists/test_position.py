@@ -9,7 +9,7 @@ from service.grading.misconception import diagnosed
 from service.grading.numerics.samples import SAMPLES
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(11)
 ONE, TWO = RNG.uniform(-3, 3, (2, SAMPLES))
@@ -37,9 +37,9 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-def test_a_right_position_is_left_alone() -> None:
+def test_a_right_position_gets_no_finding() -> None:
     assert diagnosed(case(TIP)) is None

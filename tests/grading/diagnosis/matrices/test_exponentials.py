@@ -10,7 +10,7 @@ from service.grading.diagnosis.matrices.exponentials import Exponentials
 from service.grading.diagnosis.matrices.matrix_case import MatrixCase
 from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import COUNT, wrong_matrix
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(13)
 AMOUNTS = RNG.uniform(0.3, 1.2, (3, COUNT))
@@ -22,7 +22,7 @@ SPACE = np.repeat(np.array(AXES, dtype=float)[:, None], COUNT, axis=1)
 
 
 def twist(axis: Numbers) -> Numbers:
-    """The 4×4 matrix of a screw axis (ω; v)."""
+    """Return the 4×4 matrix of a screw axis (ω; v)."""
     x, y, z, *velocity = axis
     matrix = np.zeros((4, 4))
     matrix[:3, :3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
@@ -31,7 +31,7 @@ def twist(axis: Numbers) -> Numbers:
 
 
 def exponential(axes: Numbers, amounts: Numbers) -> Numbers:
-    """The exponential of each axis ``(COUNT, 6)`` times its amount, ``(COUNT, 4, 4)``."""
+    """Return the exponential ``(COUNT, 4, 4)`` of each axis ``(COUNT, 6)`` times its amount."""
     pairs = zip(axes, amounts, strict=True)
     return np.array([expm(twist(axis) * amount) for axis, amount in pairs])
 
@@ -41,7 +41,7 @@ TURNED_MOMENT = [exponential(SPACE[i] * [1, 1, 1, -1, -1, -1], AMOUNTS[i]) for i
 
 
 def body() -> Numbers:
-    """The same axes seen from the tool at home."""
+    """Return the axes in the tool frame at home."""
     back = np.linalg.inv(HOME)
     matrices = np.array([[twist(axis) for axis in axes] for axes in SPACE])
     seen = back @ matrices @ HOME
@@ -54,7 +54,7 @@ def product(_case: MatrixCase) -> Exponentials:
 
 
 def wrong(*factors: Numbers) -> MatrixCase:
-    """The product of the factors where e1 e2 e3 M would be right."""
+    """Return the wrong product of the factors; the right one is e1 e2 e3 M."""
     return wrong_matrix(reduce(np.matmul, factors), E1 @ E2 @ E3 @ HOME)
 
 
@@ -83,5 +83,5 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)

@@ -11,7 +11,7 @@ from service.grading.diagnosis.matrices import inverse_slips
 from service.grading.diagnosis.matrices.matrix_case import MatrixCase
 from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import POSE, wrong_matrix
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import Make, all_codes, one_part
 from tests.grading.support.submitting import handed_in, part
 
@@ -22,7 +22,7 @@ RIGHT: Numbers = np.asarray(np.linalg.inv(POSE), dtype=np.float64)
 
 
 def case(rotation: Numbers, position: Numbers) -> MatrixCase:
-    """A wrong inverse of ``POSE``, ``(COUNT, 3, 3)`` and ``(COUNT, 3)``."""
+    """Return a wrong inverse of ``POSE``, from ``(COUNT, 3, 3)`` and ``(COUNT, 3)``."""
     matrix = RIGHT.copy()
     matrix[:, :3, :3], matrix[:, :3, 3] = rotation, position
     return wrong_matrix(matrix, RIGHT)
@@ -50,12 +50,12 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-# The inverse of Rot_x(phi) Trans(a, 0, b), which nobody ships: [Rᵀ, −(a, 0, b)]; and of a transform
-# in numbers, Rot_z(90°) with p = (3, 1, 2): −Rᵀp = (−1, 3, −2).
+# The inverse of Rot_x(phi) Trans(a, 0, b), which no exercise has: [Rᵀ, −(a, 0, b)]; and of a
+# transform in numbers, Rot_z(90°) with p = (3, 1, 2): −Rᵀp = (−1, 3, −2).
 SYMBOLS = """
 [symbols]
 phi = { kind = "angle", description = "a turn" }
@@ -104,7 +104,7 @@ def graded(exercise: Exercise, answer: object) -> PartReport:
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_slip_in_an_inverse_is_told_once(name: str, make_exercise: Make) -> None:
+def test_a_slip_in_an_inverse_gets_one_message(name: str, make_exercise: Make) -> None:
     text, rotation, position, code = WRONG[name]
     upper = [[*row, number] for row, number in zip(rotation, position, strict=True)]
     answer = [*upper, ["0", "0", "0", "1"]]
@@ -114,13 +114,13 @@ def test_a_slip_in_an_inverse_is_told_once(name: str, make_exercise: Make) -> No
         assert all_codes(graded(bare, answer)) == {code}
 
 
-def test_the_transpose_is_told_once(make_exercise: Make) -> None:
+def test_the_transpose_gets_one_message(make_exercise: Make) -> None:
     upper = [[*row, "0"] for row in X_BACK]
     report = graded(make_exercise(ABOUT_X), [*upper, ["px", "py", "pz", "1"]])
     assert all_codes(report) == {"transposed_for_inverse"}
 
 
-def test_the_lectures_inverse_with_the_position_only_negated(
+def test_an_inverse_with_the_position_only_negated_is_named(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     rotation = [["cφ", "sφ", "0"], ["-sφ", "cφ", "0"], ["0", "0", "1"]]

@@ -1,4 +1,4 @@
-"""Slips in one of several link transforms: the joints before it stand in it, too."""
+"""Slips in a link transform: angles or factors of earlier links are in it."""
 
 import re
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from service.grading.diagnosis.matrices.link_slips import LinkAmongOthers
 from service.kinematics.dh import Convention
 from tests.frame_choice.kinematics import screw_x, screw_z
 from tests.grading.diagnosis.example_chain import A1, A2, A3, COUNT, TABLE, wrong_matrix
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import Make, all_codes
 from tests.grading.support.scara import A1 as SCARA_A1
 from tests.grading.support.scara import A2 as SCARA_A2
@@ -26,10 +26,10 @@ ANGLES = [np.linspace(0.2, 0.9, COUNT), np.linspace(1.1, -0.4, COUNT)]
 ZERO = np.zeros(COUNT)
 LINKS = np.array([A1, A2, A3])
 STANDARD = LinkAmongOthers(LINKS, ANGLES, Convention.STANDARD)
-# The third row of a modified table: about and along x first.
+# The third row in the modified convention: first about and along x, then about and along z.
 THIRD = screw_x(*TABLE[2, :2]) @ screw_z(*TABLE[2, 2:])
 MODIFIED = LinkAmongOthers(np.array([A1, A2, THIRD]), ANGLES, Convention.MODIFIED)
-# The rotation of a link with its length and offset beside it, as they stand in the table.
+# The rotation of a link, with a and d of the table as its position.
 BESIDE = A3.copy()
 BESIDE[:, :3, 3] = np.stack([TABLE[2, 0], ZERO, TABLE[2, 2]], axis=-1)
 PAIRS = [
@@ -61,12 +61,12 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
 def matrix(angle: str, length: str, of_length: str) -> list[list[Any]]:
-    """A link of a planar arm."""
+    """Return a link of a planar arm."""
     return [
         [f"c{angle}", f"-s{angle}", 0, f"{length} c{of_length}"],
         [f"s{angle}", f"c{angle}", 0, f"{length} s{of_length}"],
@@ -80,7 +80,7 @@ def matrix(angle: str, length: str, of_length: str) -> list[list[Any]]:
     [(matrix("12", "a2", "12"), 6), (matrix("12", "a2", "2"), 4), (matrix("2", "a2", "12"), 2)],
     ids=["whole", "rotation", "position"],
 )
-def test_the_second_link_with_both_angles(
+def test_a_second_link_with_both_angles_is_named(
     second: list[list[Any]], wrong: int, catalogue: Mapping[str, Exercise]
 ) -> None:
     answer = [matrix("1", "a1", "1"), second]
@@ -90,7 +90,7 @@ def test_the_second_link_with_both_angles(
     assert all_codes(report) == {"absolute_angle"}
 
 
-def test_the_pose_for_the_second_link(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_pose_for_the_second_link_is_named(catalogue: Mapping[str, Exercise]) -> None:
     pose = matrix("12", "a2", "12")
     pose[0][3], pose[1][3] = "a1 c1 + a2 c12", "a1 s1 + a2 s12"
     answer = [matrix("1", "a1", "1"), pose]
@@ -98,8 +98,8 @@ def test_the_pose_for_the_second_link(catalogue: Mapping[str, Exercise]) -> None
     assert all_codes(report) == {"pose_for_link"}
 
 
-def test_two_links_with_the_same_slip_are_told_once(make_exercise: Make) -> None:
-    """SCARA: A2 turned by θ1 as well, A4 by θ1 + θ2."""
+def test_two_links_with_the_same_slip_get_one_message(make_exercise: Make) -> None:
+    """A2 of a SCARA arm is also turned by θ1, A4 by θ1 + θ2."""
     second = [[re.sub(r"([cs])2", r"\g<1>12", text) for text in row] for row in SCARA_A2]
     turn = "theta1 + theta2 + theta4"
     last = [

@@ -13,7 +13,7 @@ from service.grading.diagnosis.wrong_value import undefined
 from service.grading.misconception import Hypothesis, records_of
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.report import Correction
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair, explained
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair, explained
 from tests.together import together
 
 Misconception = Callable[[WrongEntry], Iterator[Hypothesis[Any]]]
@@ -29,7 +29,7 @@ SAMPLE = Samples(
 
 
 def wrong(written: str, expected: str, unit: AngleUnit = "radians") -> WrongEntry:
-    """The written entry and the right one."""
+    """Return the wrong entry ``written``; the right one is ``expected``."""
     expression = read(written, WORDS, angle_unit=unit)
     actual, right = (
         np.array(np.broadcast_to(text.evaluate(SAMPLE.values), SAMPLES))
@@ -76,8 +76,8 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
 EXPLAINED: list[tuple[Misconception, str, str, str]] = [
@@ -163,7 +163,7 @@ LEFT_ALONE: list[tuple[Misconception, str, str]] = [
 
 
 @pytest.mark.parametrize(("misconception", "written", "expected"), LEFT_ALONE)
-def test_a_misconception_leaves_other_entries_alone(
+def test_a_misconception_does_not_explain_other_entries(
     misconception: Misconception, written: str, expected: str
 ) -> None:
     assert explained(wrong(written, expected), misconception) is None
@@ -176,7 +176,7 @@ def test_a_misconception_leaves_other_entries_alone(
 def test_a_misconception_that_changes_nothing_explains_nothing(
     misconception: Misconception,
 ) -> None:
-    """An answer within rounding of the right one, but not allowed to be."""
+    """The answer is right within rounding, but is treated as wrong."""
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
     assert explained(case, misconception) is None
 
@@ -185,11 +185,11 @@ def test_a_misconception_that_changes_nothing_explains_nothing(
     "written",
     ["1/(q1 - q1) + c1 + c2", "sqrt(-1)*s1", "sqrt(-abs(q1)) + c1*c2", "10^400*c1", "asin(2 + c1)"],
 )
-def test_an_entry_without_a_value_is_not_taken_apart(written: str) -> None:
+def test_an_entry_without_a_value_is_undefined(written: str) -> None:
     assert matrix_entry.diagnose(wrong(written, "c12")).code == "undefined"
 
 
-def test_a_repair_that_has_no_value_is_none() -> None:
+def test_a_repair_without_a_value_explains_nothing() -> None:
     assert matrix_entry.diagnose(wrong("c1/(s2 + l1) + c2/c1", "c12")).code == "value"
 
 

@@ -1,4 +1,4 @@
-"""Misconceptions about a rotation that is made of turns."""
+"""Misconceptions about a rotation that is composed of turns."""
 
 from functools import reduce
 
@@ -12,23 +12,23 @@ from service.grading.diagnosis.matrices.rotation_steps import Step
 from service.grading.misconception import explanation
 from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import COUNT, wrong_matrix
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 ANGLES = np.random.default_rng(12).uniform(0.2, 1.4, (3, COUNT))
 
 
 def turn(axis: str, angles: Numbers) -> Numbers:
-    """The turns by ``angles`` about "x", "y" or "z", ``(COUNT, 3, 3)``."""
+    """Return the turns ``(COUNT, 3, 3)`` by ``angles`` about "x", "y" or "z"."""
     return np.asarray(Rotation.from_euler(axis, angles[:, None]).as_matrix())
 
 
 X, Y, Z = (turn(axis, angles) for axis, angles in zip("xyz", ANGLES, strict=True))
-# About the fixed x axis, the fixed y axis and the moving z axis: Y X Z.
+# Turns about the fixed x axis, the fixed y axis and the moving z axis: Y X Z.
 STEPS = [Step("X", X, fixed=True), Step("Y", Y, fixed=True), Step("Z", Z, fixed=False)]
 
 
 def wrong(*factors: Numbers) -> MatrixCase:
-    """The product of the factors where Y X Z would be right."""
+    """Return the wrong product of the factors; the right one is Y X Z."""
     return wrong_matrix(reduce(np.matmul, factors), Y @ X @ Z)
 
 
@@ -71,8 +71,8 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_a_misconception(pair: Pair) -> None:
         ((Y, turn("x", ANGLES[2]), turn("z", ANGLES[0])), "The angles of turns 1 and 3"),
     ],
 )
-def test_several_turns(factors: tuple[Numbers, ...], said: str) -> None:
+def test_several_wrong_turns_are_named(factors: tuple[Numbers, ...], said: str) -> None:
     found = explanation(wrong(*factors), STEPS, Step)
     assert found is not None
     assert found.findings[0].hint.startswith(said)

@@ -12,20 +12,20 @@ from service.grading.diagnosis.motions.link_products import Chain
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers, inverse
 from tests.grading.diagnosis.example_chain import A1, A2, POSE, product, wrong_matrix, wrong_pose
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 R, P = POSE[:, :3, :3], POSE[:, :3, 3]
 
 
 def with_rotation(rotation: Numbers) -> MatrixCase:
-    """The right pose with another rotation ``(COUNT, 3, 3)``."""
+    """Return the right pose with another rotation ``(COUNT, 3, 3)``."""
     matrix = POSE.copy()
     matrix[:, :3, :3] = rotation
     return wrong_pose(matrix)
 
 
 def with_position(position: Numbers) -> MatrixCase:
-    """The right pose with another position ``(COUNT, 3)``."""
+    """Return the right pose with another position ``(COUNT, 3)``."""
     matrix = POSE.copy()
     matrix[:, :3, 3] = position
     return wrong_pose(matrix)
@@ -84,8 +84,8 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception_or_check(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_or_check_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_a_misconception_or_check(pair: Pair) -> None:
     ],
 )
 def test_an_alternative_that_is_right_explains_nothing(rows: list[list[float]]) -> None:
-    """Links that may be left out, exchanged or transposed, and an answer a little off."""
+    """Links can be left out, exchanged or transposed here without effect."""
     lengths = np.linspace(1.0, 2.0, 8)
     table = np.array(rows)[..., None] * np.array([lengths, 0 * lengths + 1] * 2)
     chain = Chain(table, Convention.STANDARD, tuple("0123"[: len(rows) + 1]))

@@ -11,12 +11,12 @@ from service.grading.feedback import Finding
 from service.grading.misconception import Written
 from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import A1, A2, A3, A4, CHAIN, POSE, X, Z, product
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 
 @dataclass(frozen=True)
 class WrongPose:
-    """A pose ``(COUNT, 4, 4)`` where ``POSE`` would be right."""
+    """A wrong pose ``(COUNT, 4, 4)``; the right one is ``POSE``."""
 
     actual: Numbers
 
@@ -30,8 +30,8 @@ def chain(_case: WrongPose) -> Chain:
 
 MODIFIED = [x @ z for z, x in zip(Z, X, strict=True)]
 PAIRS = [
-    Pair(function, WrongPose(explained), WrongPose(left_alone), source=chain)
-    for function, explained, left_alone in (
+    Pair(function, WrongPose(explained), WrongPose(unexplained), source=chain)
+    for function, explained, unexplained in (
         (link_products.reversed_product, product(A4, A3, A2, A1), product(A4, A3, A1, A2)),
         (link_products.other_convention, product(*MODIFIED), product(A1, *MODIFIED[1:])),
         (link_products.wrong_frame, product(A1, A2), A2),
@@ -44,17 +44,17 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
     assert not np.allclose(pair.explained.actual, POSE)
-    assert_explains_one_case_alone(pair)
+    assert_explains_only_the_first(pair)
 
 
-def test_all_links_multiplied_from_the_left() -> None:
+def test_all_links_multiplied_from_the_left_are_explained() -> None:
     poses = [pose.answer for pose in link_products.premultiplied(CHAIN)]
     assert np.allclose(poses[-1], product(*MODIFIED[::-1]))
 
 
-def test_the_subject_of_the_first_sentence_is_put_in_front() -> None:
+def test_the_subject_is_added_to_the_first_sentence() -> None:
     pose = Written(POSE, Finding("wrong_frame", "the pose of frame {2}."))
     [other, finding] = named(pose, "This matrix is", Finding("sign", "Wrong."))()
     assert (other.hint, finding.hint) == ("Wrong.", "This matrix is the pose of frame {2}.")

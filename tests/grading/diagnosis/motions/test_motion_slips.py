@@ -1,4 +1,4 @@
-"""Slips in a motion made of several, which the exercise gives in formulas."""
+"""Slips in a motion composed of several, whose result the exercise gives in formulas."""
 
 from collections.abc import Mapping
 
@@ -13,7 +13,7 @@ from service.grading.diagnosis.motions.given_motion import GivenMotion
 from service.grading.diagnosis.wrong_value import WrongNumbers
 from service.kinematics.rotations import about
 from service.kinematics.transforms import Matrices, Numbers
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import Make, all_codes, one_part
 from tests.grading.support.submitting import full_marks, handed_in, part
 
@@ -24,7 +24,7 @@ WORDS = Vocabulary([Symbol(name, "angle" if len(name) > 1 else "length") for nam
 
 
 def step(displacement: tuple[str, str, str], axis: str, angle: str) -> Matrices:
-    """The motion by a displacement, then a turn."""
+    """Return the motion by a displacement and then a turn."""
     motion = np.tile(np.eye(4), (COUNT, 1, 1))
     motion[:, :3, :3] = about(axis, VALUES[angle]) if angle else np.eye(3)
     motion[:, :3, 3] = np.transpose(
@@ -33,7 +33,7 @@ def step(displacement: tuple[str, str, str], axis: str, angle: str) -> Matrices:
     return motion
 
 
-# Along x and z, a turn about z; along y, a turn about x; along z. The first two are a lecture's.
+# Along x and z, a turn about z; along y, a turn about x; along z. H1 and H2 are from a lecture.
 H1, H2, H3 = (
     step(("a", "", "b"), "Z", "phi"),
     step(("", "l", ""), "X", "psi"),
@@ -56,7 +56,7 @@ MOTION = GivenMotion(
 
 
 def wrong(actual: Numbers, right: Numbers) -> WrongNumbers:
-    """Matrices or vectors ``(COUNT, ...)``."""
+    """Return wrong matrices or vectors ``(COUNT, ...)``; the right ones are ``right``."""
     actual, right = np.moveaxis(actual, 0, -1), np.moveaxis(right, 0, -1)
     return WrongNumbers(actual, right, np.ones(right.shape[:-1]))
 
@@ -111,11 +111,11 @@ PAIRS = [pair._replace(source=lambda _: MOTION) for pair in PAIRS]
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-def test_what_the_formulas_say_that_the_motion_is_made_of() -> None:
+def test_the_motion_is_found_in_the_formulas() -> None:
     assert MOTION.order == ("phi", "psi")
     assert [(each.lengths, each.angles) for each in MOTION.displacements] == [
         (("a", "b"), ()),
@@ -140,7 +140,7 @@ AS_TRANSFORM = one_part("transform", f"expected = {TRANSFORM}", SYMBOLS)
 AS_POSITION = one_part("position", f"expected = {[row[3] for row in TRANSFORM[:3]]}", SYMBOLS)
 NUMBERS = ["0.5 - 0.3 sφ", "0.3 cφ", "0.2"]
 WITH_NUMBERS = one_part("position", f"expected = {NUMBERS}", SYMBOLS)
-# The position, the code, and what the message must say of it.
+# The position, the code, and words of the message.
 POSITIONS: dict[str, tuple[list[str], str, str]] = {
     "d1 + d2 + d3": (["a", "l", "b + k"], "displacement_not_turned", "l is not turned by phi"),
     "d1 + R1 d2 + d3": (
@@ -166,7 +166,7 @@ def graded(exercise: Exercise, answer: object) -> PartReport:
 
 @pytest.mark.parametrize("name", POSITIONS)
 @pytest.mark.parametrize("text", [AS_TRANSFORM, AS_POSITION], ids=["transform", "position"])
-def test_a_slip_in_three_motions(text: str, name: str, make_exercise: Make) -> None:
+def test_a_slip_in_three_motions_is_named(text: str, name: str, make_exercise: Make) -> None:
     answer, code, said = POSITIONS[name]
     rows: object = answer
     if text is AS_TRANSFORM:
@@ -179,8 +179,8 @@ def test_a_slip_in_three_motions(text: str, name: str, make_exercise: Make) -> N
     assert all_codes(report) == {code}
 
 
-def test_the_motions_in_reverse(make_exercise: Make) -> None:
-    """H3 H2 H1, multiplied out by hand."""
+def test_motions_in_reverse_order_are_named(make_exercise: Make) -> None:
+    """H3 H2 H1 is multiplied out by hand."""
     answer = [
         ["cφ", "-sφ", 0, "a"],
         ["cψ sφ", "cψ cφ", "-sψ", "l - b sψ"],
@@ -192,17 +192,17 @@ def test_the_motions_in_reverse(make_exercise: Make) -> None:
     assert full_marks(graded(exercise, TRANSFORM))
 
 
-def test_displacements_in_numbers(make_exercise: Make) -> None:
+def test_displacements_in_numbers_are_named(make_exercise: Make) -> None:
     exercise = make_exercise(WITH_NUMBERS)
     assert full_marks(graded(exercise, NUMBERS))
     report = graded(exercise, ["0.5", "0.3", "0.2"])
     assert all_codes(report) == {"displacement_not_turned"}
     assert "the displacement is not turned by phi" in report.feedback[0].message
-    # Zeros show nothing.
+    # A position of zeros does not show which displacements it contains.
     assert "displacement_not_turned" not in all_codes(graded(exercise, ["0", "0", "0"]))
 
 
-def test_the_lectures_displacements_added_up(catalogue: Mapping[str, Exercise]) -> None:
+def test_displacements_that_are_only_added_are_named(catalogue: Mapping[str, Exercise]) -> None:
     exercise = catalogue["rigid-motion-chain"]
     report = part(handed_in(exercise, {"origin": ["l1", "l2", "h"]}), "origin")
     [message] = report.feedback
@@ -225,8 +225,8 @@ CONSTANT = one_part(
 )
 
 
-def test_a_rotation_alone_and_a_shift_alone(make_exercise: Make) -> None:
-    """Neither a position nor a turn is looked for where there is none."""
+def test_a_rotation_and_a_shift_have_only_their_own_slips(make_exercise: Make) -> None:
+    """A rotation has no displacements, and a shift has no turns."""
     exercise = make_exercise(AS_ROTATION)
     turned = [["cφ", "-sφ", "0"], ["sφ", "cφ", "0"], ["0", "0", "1"]]
     assert all_codes(graded(exercise, turned)) == {"missing_turn"}

@@ -1,4 +1,4 @@
-"""Slips that run through all screw axes, and joint variables in what is taken at home."""
+"""Slips in all screw axes, and joint variables in answers for the home position."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,7 +11,7 @@ from service.grading import FeedbackLevel, PartReport, Verdict
 from service.grading.diagnosis.screws import all_screws
 from service.grading.diagnosis.screws.all_screws import WrongScrews, explain_screws
 from service.kinematics.transforms import Numbers
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.diagnosis.screws.test_screw_axis import LENGTH, PITCH, axis
 from tests.grading.support.exercise_texts import HEAD, Make, all_codes
 from tests.grading.support.submitting import handed_in, part
@@ -38,7 +38,7 @@ def case(actual: Numbers) -> WrongScrews:
 
 
 def with_velocities(factor: Numbers) -> Numbers:
-    """The axes with the parts of v multiplied."""
+    """Return the axes with v multiplied by ``factor``."""
     changed = SPACE.copy()
     changed[:, 3:] *= factor[..., None]
     return changed
@@ -63,11 +63,11 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-def test_one_wrong_axis_does_not_show_what_runs_through_all() -> None:
+def test_one_wrong_axis_shows_no_slip_of_all_axes() -> None:
     assert explain_screws(case(np.array([*SPACE[:2], -SPACE[2]]))) is None
     assert explain_screws(case(SPACE * np.nan)) is None
 
@@ -116,7 +116,7 @@ points = 6
 OF_SPACE: Screws = [
     [0, 0, 1, 0, 0, 0], [0, 0, 1, 0, "-a", 0], [0, 0, 0, 0, 0, -1], [0, 0, -1, 0, "a + b", 0],
 ]  # fmt: skip
-# Seen from the tool, whose y and z point opposite to those of the base, a + b away.
+# In the tool frame: y and z are opposite to those of the base, at a distance of a + b.
 OF_BODY: Screws = [
     [0, 0, -1, 0, "-a - b", 0], [0, 0, -1, 0, "-b", 0], [0, 0, 0, 0, 0, 1], [0, 0, 1, 0, 0, 0],
 ]  # fmt: skip
@@ -155,7 +155,7 @@ def graded(exercise: Exercise, part_id: str, answer: object) -> PartReport:
 
 
 @pytest.mark.parametrize("name", THROUGHOUT)
-def test_a_slip_throughout_is_told_once_and_charged_once(name: str, make_exercise: Make) -> None:
+def test_a_slip_in_all_axes_gets_one_message_and_costs_once(name: str, make_exercise: Make) -> None:
     part_id, answer, code, share = THROUGHOUT[name]
     report = graded(make_exercise(SCARA), part_id, answer)
     assert [message.code for message in report.feedback] == [code]
@@ -170,20 +170,20 @@ def test_a_slip_throughout_is_told_once_and_charged_once(name: str, make_exercis
     assert report.points == pytest.approx(6 * share, abs=0.01)
 
 
-def test_right_axes_draw_nothing(make_exercise: Make) -> None:
+def test_right_axes_get_no_message(make_exercise: Make) -> None:
     for part_id, answer in (("space", OF_SPACE), ("body", OF_BODY)):
         report = graded(make_exercise(SCARA), part_id, answer)
         assert (report.points, all_codes(report)) == (6, set())
 
 
-def test_junk_with_joint_variables_is_not_charged_once(make_exercise: Make) -> None:
-    """Only what is right with 0 for each of them is one slip."""
+def test_wrong_axes_with_joint_variables_earn_nothing(make_exercise: Make) -> None:
+    """It is one slip only if the answer is right with all joint variables set to 0."""
     report = graded(make_exercise(SCARA), "space", [["q1"] * 6] * 4)
     assert all_codes(report) == {"not_at_home"}
     assert report.points == 0
 
 
-def test_a_home_pose_holds_no_joint_variable(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_joint_variable_in_a_home_pose_is_named(catalogue: Mapping[str, Exercise]) -> None:
     turned = [["c13", "-s13"], ["s13", "c13"]]
     end = ["(L1 + theta2) c1 + L2 c13", "(L1 + theta2) s1 + L2 s13"]
     moved = [[*row, 0, x] for row, x in zip(turned, end, strict=True)]

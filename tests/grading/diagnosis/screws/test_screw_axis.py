@@ -7,7 +7,7 @@ from service.grading.diagnosis.screws import screw_axis
 from service.grading.diagnosis.screws.screw_axis import WrongScrew, explain_screw
 from service.grading.numerics.samples import SAMPLES
 from service.kinematics.transforms import Numbers
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(9)
 LENGTH = RNG.uniform(0.3, 0.9, SAMPLES)
@@ -18,7 +18,7 @@ def axis(*numbers: Numbers | float) -> Numbers:
     return np.array([np.zeros(SAMPLES) + number for number in numbers])
 
 
-# The axis along z through (l, 0, 0), from the base; the tool lies at (2l, 0, 0).
+# The axis along z through (l, 0, 0) in the base frame; the tool is at (2l, 0, 0).
 TURN = axis(0, 0, 1, 0, -LENGTH, 0)
 TURN_SEEN_FROM_TOOL = axis(0, 0, 1, 0, LENGTH * 2 - LENGTH, 0)
 SCREW = axis(0, 0, 1, 0, -LENGTH, PITCH)
@@ -30,7 +30,7 @@ def case(actual: Numbers, expected: Numbers = TURN, elsewhere: Numbers | None = 
     return WrongScrew(actual, expected, scale, elsewhere, "space")
 
 
-# Seen from a third place, so that the other frame differs from another sign of the moment.
+# In a third frame, so that it differs from the axis with the other sign of v.
 ELSEWHERE = axis(0, 0, 1, 0.2, LENGTH, 0)
 PAIRS = [
     Pair(
@@ -96,7 +96,7 @@ PAIRS = [
 
 
 @pytest.mark.parametrize("direction", [(0, 0, 1), (0.6, 0, 0.8)])
-def test_a_slide_along_another_line(direction: tuple[float, float, float]) -> None:
+def test_a_slide_along_another_line_is_explained(direction: tuple[float, float, float]) -> None:
     finding = explain_screw(case(axis(0, 0, 0, *direction), SLIDE))
     assert finding is not None
     assert finding.code == "other_direction"
@@ -104,14 +104,14 @@ def test_a_slide_along_another_line(direction: tuple[float, float, float]) -> No
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
 @pytest.mark.parametrize("right", [TURN, SCREW, SLIDE])
-def test_a_right_axis_is_left_alone(right: Numbers) -> None:
+def test_a_right_axis_gets_no_finding(right: Numbers) -> None:
     assert explain_screw(case(right, right, TURN_SEEN_FROM_TOOL)) is None
 
 
-def test_an_axis_without_values_is_left_alone() -> None:
+def test_an_axis_without_values_gets_no_finding() -> None:
     assert explain_screw(case(TURN * np.nan)) is None

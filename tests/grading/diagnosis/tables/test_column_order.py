@@ -17,7 +17,7 @@ SCARA = [
     ("0", "0", "d3", "0"),
     ("0", "0", "d4", "theta4"),
 ]
-# In the other columns too little stands to tell them apart.
+# Its columns can be told apart only by joint variables and angles.
 RRRP = [
     ("l2", "0", "l1", "q1"),
     ("l3", "180deg", "0", "q2"),
@@ -45,7 +45,7 @@ def graded(exercise: Exercise, answer: object) -> PartReport:
     return part(handed_in(exercise, {"table": answer}), "table")
 
 
-def told(report: PartReport) -> list[str]:
+def error_codes(report: PartReport) -> list[str]:
     return [message.code for message, _, _ in messages_of(report) if message.severity == "error"]
 
 
@@ -53,7 +53,7 @@ def told(report: PartReport) -> list[str]:
 @pytest.mark.parametrize(
     ("name", "rows"), [("scara", SCARA), ("rrrp", RRRP), ("baxter-left-arm", BAXTER)]
 )
-def test_the_orders_of_other_books(
+def test_the_column_orders_of_other_books_are_named(
     catalogue: Mapping[str, Exercise],
     name: str,
     rows: Sequence[Sequence[str]],
@@ -68,39 +68,39 @@ def test_the_orders_of_other_books(
         [[i + 1, *r] for i, r in enumerate(written)],
     ):
         report = graded(catalogue[name], answer)
-        assert told(report) == ["columns_permuted"]
+        assert error_codes(report) == ["columns_permuted"]
         assert report.points == 0.75 * report.max_points
         [message] = [each for each in report.feedback if each.code == "columns_permuted"]
         assert f"the order {', '.join(SYMBOLS[column] for column in order)}." in message.message
-        # The note that they were read as a, α, d, θ would contradict it.
+        # The note that the columns were read as a, α, d, θ would contradict the message.
         assert [each.code for each in report.feedback].count("column_order") == 0
 
 
 @pytest.mark.parametrize("order", [order for order in permutations(range(4)) if order[3] != 3])
-def test_every_order_that_moves_the_angles_is_told(
+def test_every_order_with_moved_angles_is_named(
     catalogue: Mapping[str, Exercise], order: tuple[int, ...]
 ) -> None:
     report = graded(catalogue["rrrp"], in_order(RRRP, order))
-    assert told(report) in (["columns_permuted"], ["columns_swapped"])
+    assert error_codes(report) in (["columns_permuted"], ["columns_swapped"])
     assert report.points == 0.75 * report.max_points
 
 
-def test_one_more_slip_is_told_in_its_own_column(catalogue: Mapping[str, Exercise]) -> None:
+def test_another_slip_is_named_in_its_own_column(catalogue: Mapping[str, Exercise]) -> None:
     rows = [list(row) for row in BAXTER]
     rows[2][1] = "90deg"
     report = graded(catalogue["baxter-left-arm"], in_order(rows, TOOLBOX))
-    assert sorted(told(report)) == ["columns_permuted", "sign"]
+    assert sorted(error_codes(report)) == ["columns_permuted", "sign"]
     assert report.points < 0.75 * report.max_points
 
 
 @pytest.mark.parametrize("order", [TOOLBOX, CRAIG, (0, 1, 3, 2), (3, 0, 1, 2), (0, 3, 1, 2)])
-def test_cells_typed_under_other_headers_are_told_once(
+def test_cells_under_wrong_headers_get_one_message(
     catalogue: Mapping[str, Exercise], order: Sequence[int]
 ) -> None:
     names = ("a", "alpha", "d", "theta")
     rows = [dict(zip(names, row, strict=True)) for row in in_order(SCARA, order)]
     report = graded(catalogue["scara"], {"rows": rows})
-    assert told(report) == ["columns_permuted"]
+    assert error_codes(report) == ["columns_permuted"]
     assert report.points == 0.75 * report.max_points
     [message] = report.feedback
     written = ", ".join(SYMBOLS[column] for column in order)
@@ -110,20 +110,20 @@ def test_cells_typed_under_other_headers_are_told_once(
     )
 
 
-def test_a_right_table_and_one_wrong_cell_are_left_alone(catalogue: Mapping[str, Exercise]) -> None:
-    assert told(graded(catalogue["scara"], in_order(SCARA, range(4)))) == []
+def test_one_wrong_cell_is_no_other_column_order(catalogue: Mapping[str, Exercise]) -> None:
+    assert error_codes(graded(catalogue["scara"], in_order(SCARA, range(4)))) == []
     rows = [list(row) for row in SCARA]
     rows[1][1] = "0"
-    assert "columns_permuted" not in told(graded(catalogue["scara"], rows))
+    assert "columns_permuted" not in error_codes(graded(catalogue["scara"], rows))
     names = ("a", "alpha", "d", "theta")
     typed = [dict(zip(names, row, strict=True)) for row in rows]
-    assert told(graded(catalogue["scara"], {"rows": typed})) == ["half_turn"]
+    assert error_codes(graded(catalogue["scara"], {"rows": typed})) == ["half_turn"]
 
 
-def test_the_links_follow_from_the_table_as_it_was_meant(
+def test_the_links_follow_from_the_intended_table(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    # The last link has L1 for L2: a slip of its own, which the links repeat.
+    # The last link has L1 for L2: another slip, which is repeated in the links.
     rows = in_order(
         [("R", "90deg", "0", "theta1"), *(("L1", "0", "0", f"theta{i}") for i in (2, 3))], TOOLBOX
     )
@@ -135,7 +135,7 @@ def test_the_links_follow_from_the_table_as_it_was_meant(
         ),
     ]
     report = handed_in(catalogue["spatial-rrr"], {"table": rows, "links": links})
-    assert "columns_permuted" in told(part(report, "table"))
+    assert "columns_permuted" in error_codes(part(report, "table"))
     follows = part(report, "links")
     assert follows.follow_through
     assert follows.points == follows.max_points

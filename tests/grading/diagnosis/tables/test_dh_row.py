@@ -1,4 +1,4 @@
-"""Misconceptions about the DH row of a transform, and the conditions that it has one."""
+"""Misconceptions about the DH row of a transform, and the conditions for a row."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from service.grading.numerics.samples import SAMPLES
 from service.kinematics.dh import Convention, link_transforms
 from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.kinematics.constructions import trans
 
 RNG = np.random.default_rng(10)
@@ -31,9 +31,9 @@ def case(
 
 
 FULL = link(STANDARD, *ROW)
-# Without a twist and an offset both conventions have a row, and so has the inverse.
+# Without twist and offset, both conventions have a row, and the inverse has one, too.
 FLAT = link(STANDARD, A, ZERO, ZERO, THETA)
-# After half a turn both conventions have a row, each its own.
+# After half a turn, both conventions have a row, but the rows differ.
 HALF_TURN = np.full(SAMPLES, np.pi)
 TURNED = link(STANDARD, A, ALPHA, ZERO, HALF_TURN)
 SCREW_ALONG_Z = link(STANDARD, ZERO, ZERO, D, THETA)
@@ -59,11 +59,11 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    assert_explains_only_the_first(pair)
 
 
-def test_a_right_row_is_left_alone() -> None:
+def test_a_right_row_gets_no_finding() -> None:
     assert diagnosed(case(list(ROW), FULL)) is None
 
 
@@ -76,14 +76,14 @@ def test_a_right_row_is_left_alone() -> None:
         (trans(0.5, 0.4, 0.2) @ rot_y(0.3), ["dh_not_perpendicular", "dh_not_intersecting"]),
     ],
 )
-def test_which_condition_is_broken(transform: Matrices, codes: list[str]) -> None:
+def test_violated_conditions_are_named(transform: Matrices, codes: list[str]) -> None:
     batch = np.broadcast_to(transform, (SAMPLES, 4, 4))
     findings = violated(batch, STANDARD, 0.7)
     assert [finding.code for finding in findings] == codes
     assert all("x1" in finding.hint and "z0" in finding.hint for finding in findings)
 
 
-def test_the_modified_convention_speaks_of_its_own_axes() -> None:
+def test_the_modified_convention_names_its_own_axes() -> None:
     [finding] = violated(np.broadcast_to(rot_y(0.3), (SAMPLES, 4, 4)), MODIFIED, 0.7)
     assert "x0" in finding.hint
     assert "z1" in finding.hint

@@ -1,4 +1,4 @@
-"""a and d exchanged in one row, beside another slip."""
+"""Tables with a and d exchanged in one row, and with another slip."""
 
 from collections.abc import Mapping
 
@@ -29,14 +29,14 @@ COLUMNS = ("a", "alpha", "d", "theta")
 @pytest.mark.parametrize(
     ("name", "table", "row", "other", "code"),
     [
-        # Row 2 of the Stanford arm is before its sliding joint.
+        # Row 2 of the Stanford arm comes before its sliding joint.
         ("stanford-arm", STANFORD, 2, (1, 1, "90deg"), "sign"),
         ("stanford-arm", STANFORD, 2, (4, 1, "90deg"), "sign"),
         ("stanford-arm", STANFORD, 6, (2, 3, "theta1"), "joint_variable_index"),
         ("rrrp", RRRP, 1, (4, 2, "-q4"), "joint_variable_sign"),
     ],
 )
-def test_it_is_named_beside_another_slip(
+def test_an_exchange_is_named_beside_another_slip(
     catalogue: Mapping[str, Exercise],
     name: str,
     table: list[tuple[str, ...]],
@@ -49,15 +49,15 @@ def test_it_is_named_beside_another_slip(
     i, column, text = other
     rows[i - 1][column] = text
     report = graded_table(catalogue[name], rows)
-    told = [message.code for message, _, _ in messages_of(report) if message.severity == "error"]
-    assert sorted(told) == sorted(["columns_swapped", code])
+    codes = [message.code for message, _, _ in messages_of(report) if message.severity == "error"]
+    assert sorted(codes) == sorted(["columns_swapped", code])
     wrong = {(str(row), "a"), (str(row), "d"), (str(i), COLUMNS[column])}
     assert not_correct(report) == dict.fromkeys(wrong, Verdict.INCORRECT)
 
 
-def test_an_offset_that_is_left_out_is_no_exchange(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_missing_offset_is_no_exchange(catalogue: Mapping[str, Exercise]) -> None:
     rows = [list(row) for row in STANFORD]
     rows[1][2], rows[0][1] = "0", "90deg"
     report = graded_table(catalogue["stanford-arm"], rows)
-    told = {message.code for message, _, _ in messages_of(report)}
-    assert "columns_swapped" not in told
+    codes = {message.code for message, _, _ in messages_of(report)}
+    assert "columns_swapped" not in codes

@@ -1,4 +1,4 @@
-"""Joints numbered from another number, or turning and sliding ones separately."""
+"""Joint numbers that start at another number, or are separate for turning and sliding joints."""
 
 from collections.abc import Mapping, Sequence
 
@@ -74,36 +74,40 @@ CASES: dict[str, tuple[str, Sequence[Sequence[str]], str, set[tuple[str, str]]]]
 }  # fmt: skip
 
 
-def told(report: PartReport) -> list[str]:
+def error_codes(report: PartReport) -> list[str]:
     return [message.code for message, _, _ in messages_of(report) if message.severity == "error"]
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_one_message_with_its_places(catalogue: Mapping[str, Exercise], case: str) -> None:
+def test_another_numbering_gets_one_message_with_its_places(
+    catalogue: Mapping[str, Exercise], case: str
+) -> None:
     exercise, rows, code, cells = CASES[case]
     report = graded_table(catalogue[exercise], rows)
-    assert told(report) == [code]
+    assert error_codes(report) == [code]
     assert not_correct(report) == dict.fromkeys(cells, Verdict.INCORRECT)
     [message] = [message for message in report.feedback if message.code == code]
     assert {(place.row, place.cell) for place in message.places or ()} == cells
 
 
-def test_it_costs_a_quarter(catalogue: Mapping[str, Exercise]) -> None:
+def test_another_numbering_costs_a_quarter(catalogue: Mapping[str, Exercise]) -> None:
     exercise, rows, *_ = CASES["from 0"]
     report = graded_table(catalogue[exercise], rows)
     assert report.points == 0.75 * report.max_points
 
 
-def test_another_slip_is_charged_and_told_besides(catalogue: Mapping[str, Exercise]) -> None:
+def test_another_slip_costs_points_and_is_named(catalogue: Mapping[str, Exercise]) -> None:
     rows = stanford("theta1", "theta2", "0", "theta3", "theta4", "theta5")
     alone = graded_table(catalogue["stanford-arm"], rows)
     rows[3] = ("0", "90deg", "0", "theta3")
     both = graded_table(catalogue["stanford-arm"], rows)
-    assert sorted(told(both)) == ["joint_numbering_by_kind", "sign"]
+    assert sorted(error_codes(both)) == ["joint_numbering_by_kind", "sign"]
     assert both.points < alone.points
 
 
-def test_the_first_joint_is_named_as_the_student_would(catalogue: Mapping[str, Exercise]) -> None:
+def test_the_first_joint_has_the_name_that_the_student_uses(
+    catalogue: Mapping[str, Exercise],
+) -> None:
     rows = [("R", "90°", "0", "q0"), ("L1", "0", "0", "q1"), ("L2", "0", "0", "q2")]
     [message] = graded_table(catalogue["spatial-rrr"], rows).feedback
     assert "from 0" in message.message
@@ -125,11 +129,11 @@ def test_other_wrong_variables_are_no_numbering(
     report = graded_table(
         catalogue["spatial-rrr"], [(*row, angle) for row, angle in zip(rows, angles, strict=True)]
     )
-    assert "joint_numbering" not in told(report)
+    assert "joint_numbering" not in error_codes(report)
     assert report.points < report.max_points
 
 
-def test_a_lazy_table_gains_nothing_by_it(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_lazy_table_gains_nothing_by_another_numbering(catalogue: Mapping[str, Exercise]) -> None:
     lazy = [("0", "0", "0", f"theta{i}") for i in range(3)]
     usual = [("0", "0", "0", f"theta{i + 1}") for i in range(3)]
     exercise = catalogue["spatial-rrr"]

@@ -1,4 +1,4 @@
-"""Slips in whole rows and columns of a table, of which a wrong pose follows."""
+"""Slips in whole rows and columns of a table that lead to a wrong pose."""
 
 import pytest
 
@@ -17,7 +17,7 @@ EXERCISE = exercise_of(ARM)
 
 
 def said(table: Table, kind: str = "transform", arm: Arm = ARM) -> tuple[tuple[str, str], ...]:
-    """What is said of the product of this table, multiplied in the convention of the arm."""
+    """Return the messages on the product of this table in the arm's convention."""
     slip = ArmSlip("", frozenset(), table, arm.convention, tuple(range(len(table))))
     exercise = EXERCISE if arm is ARM else exercise_of(arm)
     return said_of(exercise, kind, answer_to(kind, slip))
@@ -82,11 +82,11 @@ def said(table: Table, kind: str = "transform", arm: Arm = ARM) -> tuple[tuple[s
         ),
     ],
 )
-def test_what_is_said(table: Table, code: str, words: str) -> None:
+def test_the_slip_is_named(table: Table, code: str, words: str) -> None:
     assert said(table) == ((code, words),)
 
 
-def test_a_standard_table_in_the_modified_product() -> None:
+def test_a_standard_table_in_a_modified_product_is_named() -> None:
     first = (NONE, NONE, *ROW1[2:])
     last = ({"a3": 1.0}, NONE, NONE, NONE)
     rows = (first, (NONE, DOWN, *ROW2[2:]), (*ROW2[:2], *ROW3[2:]), last)
@@ -96,8 +96,8 @@ def test_a_standard_table_in_the_modified_product() -> None:
     assert words.startswith("A table of the standard convention is multiplied with the link")
 
 
-def test_rows_that_are_exchanged_are_not_told_as_a_missing_link() -> None:
-    """Without its last length the position is the same where rows 3 and 4 are exchanged or not."""
+def test_exchanged_rows_are_no_missing_link() -> None:
+    """The last length is 0, so the position does not show an exchange of rows 3 and 4."""
     wrist = (ROW1, ROW2, (NONE, UP, {"d3": 1.0}, {"q3": 1.0}), (NONE, NONE, NONE, {"q4": 1.0}))
     arm = Arm(wrist, "RRRR", STANDARD)
     [(code, words)] = said((wrist[0], wrist[2], wrist[1], wrist[3]), "position", arm)
@@ -105,7 +105,7 @@ def test_rows_that_are_exchanged_are_not_told_as_a_missing_link() -> None:
     assert "Rows 2 and 3, or their link transforms, are exchanged" in words
 
 
-def test_a_link_that_is_missing_is_told_as_such() -> None:
+def test_a_missing_link_is_named() -> None:
     [(code, words)] = said((ROW1, ROW2, ROW4))
     assert (code, words) == (
         "missing_link",
@@ -116,8 +116,8 @@ def test_a_link_that_is_missing_is_told_as_such() -> None:
     )
 
 
-def test_where_rows_exchanged_and_a_missing_link_fit_both_are_told() -> None:
-    """A link that only turns moves no position behind which nothing comes."""
+def test_exchanged_rows_and_a_missing_link_are_both_named_if_both_fit() -> None:
+    """A link that only turns does not move the end if nothing comes after it."""
     rows = (ROW1, ROW2, (NONE, UP, NONE, {"q3": 1.0}), ROW4)
     [(code, words)] = said((*rows[:2], ROW4), "position", Arm(rows, "RRRR", STANDARD))
     assert (code, words) == (
@@ -129,7 +129,7 @@ def test_where_rows_exchanged_and_a_missing_link_fit_both_are_told() -> None:
     )
 
 
-def test_two_lengths_may_be_exchanged_as_well_as_two_columns() -> None:
+def test_exchanged_lengths_and_columns_are_both_named_if_both_fit() -> None:
     [(code, words)] = said((ROW1, (ROW2[2], UP, ROW2[0], ROW2[3]), ROW3, ROW4))
     assert (code, words) == (
         "columns_swapped",

@@ -12,7 +12,7 @@ from service.grading.numerics.joint_motion import coefficients
 from service.grading.numerics.samples import HALF, SAMPLES, Samples
 from service.grading.report import Correction
 from service.kinematics.chain import COLUMNS
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(5)
 JOINTS = (Joint(1, "q1", False), Joint(2, "q2", False), Joint(3, "d3", True))
@@ -20,7 +20,7 @@ LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("a1", "a2"
 VALUES = {joint.variable: RNG.uniform(-3, 3, SAMPLES) for joint in JOINTS} | LETTERS
 SAMPLE = Samples(VALUES)
 KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
-# The robot has no theta3, for its joint 3 slides, and no d1; a table may contain them all the same.
+# The robot has no theta3 (joint 3 slides) and no d1, but a table may contain them.
 WORDS = Vocabulary(
     [Symbol(name, kind) for name, kind in KINDS.items()]  # type: ignore[arg-type]
     + [Symbol("theta3", "angle"), Symbol("d1", "length")]
@@ -29,7 +29,7 @@ TYPED = SAMPLE.with_names({"theta3", "d1"}).values
 
 
 def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
-    """A cell of the row of a joint: its column, the joint's number, the written and right cell."""
+    """Return a wrong cell in the row of joint ``number``."""
     angle = column in ("alpha", "theta")
     quantity = "angle" if angle else "length"
     expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
@@ -56,11 +56,11 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
     )
 
 
-# The codes of those that have another name.
+# The codes that differ from the name of the function.
 CODES = {"cell_in_degrees": "degrees_as_radians"}
 PAIRS = [
-    Pair(function, wrong(*explained), wrong(*left_alone), CODES.get(function.__name__, ""))
-    for function, explained, left_alone in (
+    Pair(function, wrong(*explained), wrong(*unexplained), CODES.get(function.__name__, ""))
+    for function, explained, unexplained in (
         (
             cell_variables.joint_variable_absent,
             ("theta", 3, "theta3", "0"),
@@ -123,17 +123,17 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    finding = assert_explains_one_case_alone(pair)
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    finding = assert_explains_only_the_first(pair)
     assert finding.correction == pair.explained.correction
 
 
 @each_pair(PAIRS)
-def test_it_is_the_first_that_explains_its_cell(pair: Pair) -> None:
+def test_a_misconception_is_the_first_that_explains_its_cell(pair: Pair) -> None:
     assert diagnose(pair.explained).code == (pair.code or pair.function.__name__)
 
 
-def test_what_no_misconception_explains_shows_a_counterexample() -> None:
+def test_an_unexplained_cell_gets_a_counterexample() -> None:
     finding = diagnose(wrong("a", 1, "a1 + 0.3", "a1"))
     assert finding.code == "value"
     assert finding.values is not None
@@ -141,7 +141,7 @@ def test_what_no_misconception_explains_shows_a_counterexample() -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "written", "right", "is_told"),
+    ("column", "written", "right", "is_advised"),
     [
         ("a", "0.4", "a1", True),
         ("d", "d3 + 0.4", "d3 + a1", False),
@@ -150,16 +150,16 @@ def test_what_no_misconception_explains_shows_a_counterexample() -> None:
         ("alpha", "0.4", "pi/2", False),
     ],
 )
-def test_a_number_for_a_length_is_asked_for_in_symbols(
-    column: str, written: str, right: str, is_told: bool
+def test_a_number_for_a_length_gets_advice_to_use_symbols(
+    column: str, written: str, right: str, is_advised: bool
 ) -> None:
     hint = diagnose(wrong(column, 3, written, right)).hint
-    assert hint.endswith("Give it in the exercise's symbols.") is is_told, hint
+    assert hint.endswith("Give it in the exercise's symbols.") is is_advised, hint
 
 
 @pytest.mark.parametrize("right", ["a1", "0", "d3"])
-def test_a_length_that_the_exercise_does_not_have(right: str) -> None:
-    """Nobody means the variable of joint 1 by d1, for that joint turns."""
+def test_an_unknown_length_is_named(right: str) -> None:
+    """Joint 1 turns, so d1 cannot mean its variable."""
     finding = diagnose(wrong("d", 3 if right == "d3" else 1, "d1", right))
     assert finding.code == "unknown_symbol"
     assert finding.hint == "This exercise has no d1. It has d3."

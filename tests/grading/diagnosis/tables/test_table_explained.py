@@ -1,4 +1,4 @@
-"""The explanation of a whole table, beside the judgement of its cells."""
+"""Explanations of a whole table compared with the judgement of its cells."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -35,10 +35,10 @@ frames = "free"
 """
 
 
-def test_an_explanation_of_more_rows_than_were_judged(
+def test_an_explanation_may_have_more_rows_than_the_judgement(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
-    # Reversed and with a row too many: mostly wrong, so judged by the reference's three rows.
+    # In reverse order and with an extra row: judged by the reference's three rows.
     rows = [
         ("l3", "pi/2", "0", "0"),
         ("l1", "pi/3", "q2", "pi/6"),
@@ -59,13 +59,13 @@ def errors(report: PartReport) -> list[str]:
 @pytest.mark.parametrize(
     ("first", "second"),
     [
-        # The link of joint 2 has fallen off the end.
+        # The link of joint 2 is missing at the end.
         (("0", "0"), ("a1", "0")),
-        # It stands at the other end.
+        # The link of joint 2 is at the other end.
         (("a2", "0"), ("a1", "0")),
     ],
 )
-def test_links_one_row_too_late(
+def test_links_one_row_too_late_are_named(
     catalogue: Mapping[str, Exercise], first: tuple[str, str], second: tuple[str, str]
 ) -> None:
     rows = [(*first, *PLANAR[0][2:]), (*second, *PLANAR[1][2:])]
@@ -75,8 +75,8 @@ def test_links_one_row_too_late(
     assert report.points == 3
 
 
-def test_an_arm_of_two_joints_in_the_other_convention(catalogue: Mapping[str, Exercise]) -> None:
-    """Both wrong cells could be slips of their own; but the whole table is a modified one."""
+def test_the_other_convention_is_named_for_two_joints(catalogue: Mapping[str, Exercise]) -> None:
+    """Both wrong cells could be separate slips, but the whole table is a modified one."""
     modified = [("0", "0", "0", "theta1"), ("a1", "0", "0", "theta2"), ("a2", "0", "0", "0")]
     report = graded_table(catalogue["planar-rr"], modified)
     assert errors(report) == ["other_convention"]
@@ -104,7 +104,7 @@ def test_an_arm_of_two_joints_in_the_other_convention(catalogue: Mapping[str, Ex
         ),
     ],
 )
-def test_a_shift_explains_no_invented_link(
+def test_a_shift_does_not_explain_an_invented_link(
     catalogue: Mapping[str, Exercise], name: str, rows: Sequence[Sequence[str]]
 ) -> None:
     report = graded_table(catalogue[name], rows)
@@ -112,7 +112,7 @@ def test_a_shift_explains_no_invented_link(
     assert report.points < report.max_points / 2
 
 
-def test_freedom_lost_by_an_angle_about_z_is_no_matter_of_the_links(
+def test_freedom_lost_by_a_wrong_theta_gets_no_message_of_its_own(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     # Only θ of row 2 is wrong: it should be -90deg.

@@ -1,4 +1,4 @@
-"""Tables that have lost a degree of freedom, and tables that only look so."""
+"""Tables that have lost a degree of freedom, and tables that only look like it."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -28,7 +28,7 @@ def samples_of(exercise: Exercise) -> Samples:
 
 
 def written(rows: Sequence[Sequence[Cell]], samples: Samples) -> Table:
-    """A table of numbers and of letters' names."""
+    """Return a table with the values of numbers and of symbols."""
     return np.array(
         [
             [
@@ -60,8 +60,8 @@ PRINTED: list[list[Cell]] = [
 ]
 
 
-def test_the_printed_stanford_table(stanford: Exercise) -> None:
-    """The worked example of robots.md, "Errata"."""
+def test_the_printed_stanford_table_has_lost_freedom(stanford: Exercise) -> None:
+    """This is the worked example of robots.md, "Errata"."""
     [finding] = found(stanford, written(PRINTED, samples_of(stanford)))
     assert finding.code == "lost_freedom"
     assert finding.hint == (
@@ -80,7 +80,7 @@ REFERENCES = [
 
 
 @together(("exercise_id", "convention"), REFERENCES)
-def test_a_reference_has_lost_nothing(
+def test_a_reference_has_not_lost_freedom(
     exercise_id: str, convention: Convention, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]
@@ -93,7 +93,7 @@ def test_a_reference_has_lost_nothing(
 @pytest.mark.parametrize(
     ("convention", "row"), [(Convention.STANDARD, 0), (Convention.MODIFIED, 1)]
 )
-def test_parallel_axes_that_fall_together(
+def test_parallel_axes_that_coincide_are_named(
     convention: Convention, row: int, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue["scara"]
@@ -105,7 +105,7 @@ def test_parallel_axes_that_fall_together(
     assert finding.correction == "The axes of these joints are parallel, but apart."
 
 
-def test_joints_that_are_not_neighbours(stanford: Exercise) -> None:
+def test_joints_that_share_an_axis_need_not_be_neighbours(stanford: Exercise) -> None:
     table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[1, ALPHA] = 0.0
     [finding] = found(stanford, table)
@@ -113,8 +113,8 @@ def test_joints_that_are_not_neighbours(stanford: Exercise) -> None:
     assert finding.hint.endswith("check α of rows 2 and 3.")
 
 
-def test_four_joints_in_the_place_of_three(catalogue: Mapping[str, Exercise]) -> None:
-    """With α3 = 90° the last joint slides in the plane that the other three move in."""
+def test_four_dependent_joints_are_named(catalogue: Mapping[str, Exercise]) -> None:
+    """With α3 = 90° the last joint slides in the plane of motion of the other three."""
     exercise = catalogue["rrrp"]
     table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     table[2, ALPHA] = H
@@ -148,7 +148,7 @@ convention = "standard"
 """
 
 
-def test_two_joints_that_slide_along_one_direction(
+def test_two_joints_that_slide_along_one_direction_are_named(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
     exercise = make_exercise(CARTESIAN)
@@ -192,7 +192,7 @@ convention = "standard"
 """
 
 
-def test_what_the_robot_itself_lacks_is_no_loss(make_exercise: Callable[[str], Exercise]) -> None:
+def test_freedom_that_the_robot_lacks_is_not_lost(make_exercise: Callable[[str], Exercise]) -> None:
     exercise = make_exercise(REDUNDANT)
     table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     assert found(exercise, table) == ()
@@ -201,8 +201,8 @@ def test_what_the_robot_itself_lacks_is_no_loss(make_exercise: Callable[[str], E
     assert finding.hint.startswith("Joints 1 and 2 turn")
 
 
-def test_nothing_is_told_where_a_joint_stands_still(stanford: Exercise) -> None:
-    # The axes of joints 4 and 6 are one line only because joint 5 does not turn.
+def test_a_joint_without_its_variable_gets_no_finding(stanford: Exercise) -> None:
+    # Joints 4 and 6 share an axis only because joint 5 does not turn.
     table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[4, THETA] = 0.0
     assert not found(stanford, table)
@@ -216,13 +216,13 @@ def test_a_joint_without_a_row_is_left_out(stanford: Exercise) -> None:
     assert finding.hint.startswith("Joints 5 and 6 turn")
 
 
-def test_an_unreadable_cell_says_nothing(stanford: Exercise) -> None:
+def test_a_table_with_an_unreadable_cell_gets_no_finding(stanford: Exercise) -> None:
     table = written(PRINTED, samples_of(stanford))
     table[0, A] = np.nan
     assert found(stanford, table) == ()
 
 
-def test_a_wrong_table_may_be_free_all_the_same(stanford: Exercise) -> None:
+def test_a_wrong_table_need_not_have_lost_freedom(stanford: Exercise) -> None:
     table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[1, D] *= -1
     table[4, ALPHA] *= -1
@@ -232,7 +232,7 @@ def test_a_wrong_table_may_be_free_all_the_same(stanford: Exercise) -> None:
 
 @together("length", [1e5, 1e7, 1e9])
 @together(("exercise_id", "convention"), REFERENCES)
-def test_a_length_beyond_all_others_takes_no_freedom(
+def test_an_extremely_large_length_gets_no_finding(
     exercise_id: str, convention: Convention, length: float, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]

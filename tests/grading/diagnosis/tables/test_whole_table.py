@@ -1,8 +1,7 @@
 """Misconceptions about a whole table.
 
-They are tried on the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1
-and a2 added so that every column holds something. A table is right if its pose is, multiplied out
-here.
+The tables are those of the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1 and a2 added
+so that no column is 0. A table is right if it gives the right pose.
 """
 
 from dataclasses import replace
@@ -20,7 +19,7 @@ from service.grading.numerics.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
 from tests.frame_choice.kinematics import screw_x, screw_z
-from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(6)
 JOINTS = tuple(Joint(i + 1, f"q{i + 1}", i == 2) for i in range(6))
@@ -53,19 +52,19 @@ def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np
 
 
 def wrong(table: Table) -> WrongTable:
-    """The table where ``right()`` would be right."""
+    """Return this wrong table; the right one is ``right()``."""
     written = written_table.written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
     return WrongTable(written, written, valid)
 
 
 def in_modified_rows(table: Table) -> Table:
-    """Row i with the link before joint i: the last link has no row, here it is none."""
+    """Return the table with a and α one row later; the last link gets no row."""
     table[:, :2] = np.concatenate([np.zeros((1, 2, SAMPLES)), table[:-1, :2]])
     return table
 
 
 def twists_too_late(table: Table) -> Table:
-    """Only the twists: with the lengths it would be the other convention."""
+    """Return the table with its twists one row later; the lengths stay."""
     table[:, ALPHA] = np.roll(table[:, ALPHA], 1, axis=0)
     return table
 
@@ -100,7 +99,7 @@ def with_cell(table: Table, row: int, column: int, value: float) -> Table:
 
 
 def with_lengths_exchanged() -> WrongTable:
-    """d1 where d2 belongs, and the other way."""
+    """Return a wrong table with d1 and d2 exchanged."""
     table = right()
     table[0, D], table[1, D] = LENGTHS["d2"], LENGTHS["d1"]
     written = replace(wrong(table).written, exchanges=(("d1", "d2", right() - table),))
@@ -111,10 +110,10 @@ PAIRS = [
     Pair(
         function,
         explained if isinstance(explained, WrongTable) else wrong(explained),
-        wrong(left_alone),
+        wrong(unexplained),
         source=lambda case: case.written,
     )
-    for function, explained, left_alone in (
+    for function, explained, unexplained in (
         (
             written_table.other_convention,
             in_modified_rows(right()),
@@ -160,24 +159,24 @@ PAIRS = [
 
 
 @each_pair(PAIRS)
-def test_a_misconception(pair: Pair) -> None:
-    for case in (pair.explained, pair.left_alone):
+def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
+    for case in (pair.explained, pair.unexplained):
         assert not valid(case.written.values[None], Convention.STANDARD)[0]
-    assert_explains_one_case_alone(pair)
+    assert_explains_only_the_first(pair)
 
 
 @each_pair(PAIRS)
-def test_its_finding_is_told(pair: Pair) -> None:
+def test_the_code_of_a_misconception_is_found(pair: Pair) -> None:
     assert pair.function.__name__ in codes(pair.explained, combine=True)
 
 
-def test_the_order_of_the_misconceptions() -> None:
+def test_the_pairs_are_in_the_order_of_ranks() -> None:
     assert [pair.function for pair in PAIRS] == [
         record.function for record in records_of(WrittenTable)
     ]
 
 
-def test_two_misconceptions_at_once() -> None:
+def test_two_misconceptions_are_found_together() -> None:
     both = wrong(in_modified_rows(with_angles(right(), 180 / np.pi)))
     assert codes(both, combine=True) == ["other_convention", "degrees_as_radians"]
     assert codes(both, combine=False) == []
@@ -190,6 +189,6 @@ def codes(case: WrongTable, *, combine: bool) -> list[str]:
     return [finding.code for repaired in found for finding in repaired.findings]
 
 
-def test_a_table_of_one_row() -> None:
+def test_hypotheses_keep_the_size_of_a_table_of_one_row() -> None:
     one = WrittenTable(right()[:1], 0 * right()[:1], Convention.STANDARD, right()[:1])
     assert all(each.answer.values.shape == (1, 4, SAMPLES) for each in hypotheses_of(one))

@@ -1,4 +1,4 @@
-"""Slips that run through all link transforms of an answer."""
+"""Slips that change all link transforms of an answer."""
 
 import pytest
 
@@ -48,7 +48,9 @@ def said(table: Table, convention: str = STANDARD) -> tuple[tuple[str, str], ...
         ),
     ],
 )
-def test_it_is_told_once(table: Table, convention: str, code: str, words: str) -> None:
+def test_a_slip_in_all_links_gets_one_message(
+    table: Table, convention: str, code: str, words: str
+) -> None:
     [(found, message)] = said(table, convention)
     assert found == code
     assert message.startswith(words)
@@ -60,8 +62,8 @@ def test_one_wrong_link_has_the_slip_of_its_row() -> None:
     assert message.startswith("The twist α between the axes of joints 2 and 3 has the wrong sign")
 
 
-def test_a_slip_made_in_the_frames_of_the_exercise_is_told_where_frames_are_free() -> None:
-    """Other frames may come nearer to such matrices; the student did not think of them."""
+def test_a_slip_in_the_frames_of_the_exercise_is_named_if_frames_are_free() -> None:
+    """Other frames may fit these matrices better, but the student used the exercise's."""
     free = ARM.text.replace('id = "links"\n', 'id = "links"\nframes = "free"\n')
     slip = ArmSlip("", frozenset(), (ROWS[1], ROWS[0], ROWS[2]), STANDARD, (0, 1, 2))
     [(code, _)] = said_of(loaded(free), "links", answer_to("links", slip))
