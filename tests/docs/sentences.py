@@ -1,8 +1,8 @@
-"""The page of all sentences that a student can meet, each with an example: docs/sentences.md.
+"""Write the page of all sentences of messages, each with an example: docs/sentences.md.
 
-``python -m tests.docs.sentences > docs/sentences.md`` writes it anew. Examples are those of
-docs/messages.md and of ``sentence_examples.toml``, the answers tried in the exercise files, and the
-corpus of formulas. Each is handed in; a sentence goes on the page with the first that draws it.
+``python -m tests.docs.sentences > docs/sentences.md`` writes it. The examples come from
+docs/messages.md, ``sentence_examples.toml``, the checks in the exercise files, and the corpus of
+formulas. Each is graded; a sentence is listed with the first example that causes it.
 """
 
 import sys
@@ -31,8 +31,7 @@ from tests.shipped import shipped_exercises
 ROOT: Final = Path(__file__).parents[2]
 EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
 _READING: Final = ("expressions/", "grids/", "grading/")
-# Strings of two words that are no part of a message, and the words for programs that read formulas
-# by themselves.
+# Strings of two words that are not part of a message, or only of one for programmers.
 _NO_SENTENCES: Final = frozenset(
     {
         "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
@@ -50,7 +49,7 @@ _LONGEST: Final = 240
 
 @dataclass(frozen=True)
 class Said:
-    """A message that an example draws: its code and sentence, the correction, what is answered."""
+    """A message that an example causes: its code, sentence and correction, and the answer."""
 
     code: str
     sentence: str
@@ -72,7 +71,7 @@ class Example:
 
 
 def formulas() -> Iterator[str]:
-    """Formulas for the robot of docs/expressions.md."""
+    """Yield formulas for the robot of docs/expressions.md."""
     for line in messages_page.LINES:
         if line.section in (messages_page.UNREAD, messages_page.NOTED) and line.example:
             yield line.example[0]
@@ -83,7 +82,7 @@ def formulas() -> Iterator[str]:
 
 
 def pasted_texts() -> Iterator[str]:
-    """Tables and matrices pasted for the planar RR arm."""
+    """Yield pasted tables and matrices for the planar RR arm."""
     sections = (messages_page.PASTED_UNREAD, messages_page.PASTED_NOTED)
     for line in messages_page.LINES:
         if line.section in sections and line.example:
@@ -93,7 +92,7 @@ def pasted_texts() -> Iterator[str]:
 
 
 def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
-    """Answers to parts of exercises."""
+    """Yield answers to parts of exercises."""
     for line in messages_page.LINES:
         if line.example and (found := _of_the_page(line)):
             yield found
@@ -103,17 +102,17 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     for exercise in catalogue.values():
         for check in exercise.checks:
             yield Example(exercise.id, check.answers, check.angle_unit)
-    # More than may be read of one submission.
+    # An answer that is too long to be read completely.
     yield Example("planar-rr", {"position": ["+" * LIMITS.characters] * 2})
     texts = "1, 2\n" * (GRID_LIMITS.characters // 5)
     yield Example("planar-rr", {"table": texts, "pose": texts})
-    # More than is explained of one.
+    # An answer with too many mistakes to explain them all.
     wrong = [["c1 c4", "c1 s4", "c4 s1", "s1 s4"]] * 4
     yield Example("stanford-arm", {"table": wrong[:1] * 6, "links": [wrong] * 6, "pose": wrong})
 
 
 def _of_the_page(line: messages_page.Line) -> Example | None:
-    """The example of a line of docs/messages.md as an answer."""
+    """Return the example of a line of docs/messages.md as an answer."""
     match line.section, line.example:
         case messages_page.IN_CELLS, (place, _, written):
             row, column = place.removeprefix("row ").split(", ")
@@ -139,7 +138,7 @@ def _of_the_page(line: messages_page.Line) -> Example | None:
 
 
 def _made() -> dict[str, Exercise]:
-    """The exercises that are made for some of the examples."""
+    """Return the exercises that are written only for some of the examples."""
     with TemporaryDirectory() as folder:
         for name, text in _written()["made"].items():
             head = f'title = "{name}"\nsource = "made"\nstatement = "Made for this page."\n'
@@ -152,11 +151,11 @@ def _written() -> dict[str, Any]:
     return written
 
 
-# --- what they draw
+# --- the messages of the examples
 
 
 def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> Iterator[Said]:
-    """The error or the notes on each formula."""
+    """Yield the error or the notes on each formula."""
     for text in texts:
         try:
             found = [(note.code, note.message, "") for note in read(text, vocabulary).notes]
@@ -167,7 +166,7 @@ def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> It
 
 
 def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
-    """The error or the notes on each pasted text, in the preview."""
+    """Yield the error or the notes on each pasted text, in the preview."""
     for text in texts:
         for part in ("table", "links", "pose"):
             preview = preview_pasted(text, exercise, part)
@@ -181,7 +180,7 @@ def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
 def said_of_answers(
     examples: Iterable[Example], catalogue: Mapping[str, Exercise]
 ) -> Iterator[Said]:
-    """The messages on each answer."""
+    """Yield the messages on each answer."""
     for example in examples:
         submission = Submission(example.answers, example.angle_unit, FeedbackLevel.FULL)
         unit = ", in degrees" if example.angle_unit == "degrees" else ""
@@ -209,7 +208,7 @@ def _place(places: tuple[Place, ...]) -> str:
 
 
 def shown(answer: Any) -> str:
-    """An answer as short text: rows with semicolons, values with commas."""
+    """Return an answer as short text: rows with semicolons, values with commas."""
     match answer:
         case {"rows": [*rows], **rest}:
             head = "".join(f"{name}: {value}; " for name, value in rest.items())
@@ -228,14 +227,14 @@ def shown(answer: Any) -> str:
     return str(answer)
 
 
-# --- which go on the page
+# --- the choice of messages for the page
 
-# A template, and the codes that its file tells; none where the file has words for others.
+# A template, and the codes of its file; none if the file only has words for others.
 Known = tuple[Template, frozenset[str]]
 
 
 def known_templates() -> list[Known]:
-    """The templates of the files that read, judge and explain."""
+    """Return the templates of the files that read, judge and explain."""
     codes: dict[str, set[str]] = {}
     for use in messages_page.program():
         codes.setdefault(use.file, set()).add(use.code)
@@ -249,10 +248,10 @@ def known_templates() -> list[Known]:
 
 
 def all_said() -> Iterator[Said]:
-    """All that the examples draw."""
+    """Yield all messages of the examples."""
     catalogue = {**shipped_exercises(), **_made()}
     yield from said_of_formulas(formulas())
-    # A preview for no exercise reads in the names of books.
+    # A preview without an exercise uses the names of textbooks.
     yield from said_of_formulas(["g0"], GENERIC)
     yield from said_of_pasted(pasted_texts(), catalogue["planar-rr"])
     yield from said_of_answers(answers(catalogue), catalogue)
@@ -267,10 +266,10 @@ class Row:
 
 
 def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
-    """The first message with each template, and the templates that none has.
+    """Return the first message with each template, and the templates without a message.
 
-    A short template may stand in many sentences; unless it begins one, it is met only by a message
-    of its own file.
+    Many sentences may contain a short template. So it counts only at the beginning of a sentence,
+    or in a message of its own file.
     """
     unmet = list(known)
     rows: list[Row] = []
@@ -320,7 +319,7 @@ These sentences have no example yet; … means a value that the program inserts.
 
 
 def page() -> str:
-    """The whole page, in Markdown."""
+    """Return the whole page, in Markdown."""
     rows, unmet = chosen(all_said(), known_templates())
     sections = [sections[0] for sections, _ in messages_page.PLACES]
     blocks = [_HEAD]
@@ -348,7 +347,7 @@ def _cell(text: str) -> str:
 
 
 def _code(text: str) -> str:
-    """A text as code, whatever it holds; a long one without its middle."""
+    """Return a text as inline code; a long text loses its middle."""
     text = text.replace("\n", END)
     if len(text) > _LONGEST:
         text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 4 :]}"

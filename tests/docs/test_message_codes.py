@@ -1,4 +1,4 @@
-"""docs/messages.md lists every code that the program gives, in its place, and no other."""
+"""docs/messages.md lists every code of the program in its section, and no other."""
 
 import json
 import re
@@ -35,7 +35,7 @@ IN_CELLS = "Slips in table cells"
 SINGLE = "Single entries"
 DIAGNOSIS = "grading/diagnosis/"
 VALUES = f"{DIAGNOSIS}wrong_value.py"
-# The sections, and the files that tell what they list; a folder stands for all that is in it.
+# Sections of the page, and the files whose codes they list; a folder means all files in it.
 PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ((UNREAD,), ("expressions/repairs/",)),
     ((NOTED,), ("expressions/parsing/",)),
@@ -133,7 +133,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
 
 
 class Line(NamedTuple):
-    """A line of a table of codes; ``example`` is what stands behind the meaning, if anything."""
+    """A line of a table of codes; ``example`` is the columns after the meaning."""
 
     section: str
     code: str
@@ -141,7 +141,7 @@ class Line(NamedTuple):
 
 
 def lines(page: str) -> list[Line]:
-    """The lines of all tables whose first column is the code."""
+    """Return the lines of all tables whose first column is the code."""
     found: list[Line] = []
     section, heads = "", ""
     for line in page.split("\n"):
@@ -163,7 +163,7 @@ LINES = lines(PAGE)
 
 @cache
 def program() -> Sequence[CodeUse]:
-    """Every code in the program; found on first use, for it takes a second.
+    """Return every use of a code in the program, found once because it takes a second.
 
     Attempts only count the codes of reports.
     """
@@ -179,17 +179,17 @@ def test_every_code_of_the_program_is_on_the_page() -> None:
     assert {use.code for use in program()} - {line.code for line in LINES} == set()
 
 
-def test_every_code_on_the_page_is_one_of_the_programs() -> None:
+def test_every_code_on_the_page_exists() -> None:
     assert {line.code for line in LINES} - {use.code for use in program()} == set()
 
 
-def test_every_file_that_tells_codes_has_its_section() -> None:
+def test_every_file_with_codes_has_a_section() -> None:
     files = tuple(file for _, files in PLACES for file in files)
     assert {use.file for use in program() if not use.file.startswith(files)} == set()
 
 
 @pytest.mark.parametrize(("sections", "files"), PLACES, ids=lambda names: names[0])
-def test_a_section_lists_what_its_files_tell(
+def test_a_section_lists_the_codes_of_its_files(
     sections: tuple[str, ...], files: tuple[str, ...]
 ) -> None:
     listed = {line.code for line in LINES if line.section in sections}
@@ -210,7 +210,7 @@ def test_a_line_of_the_page_without_its_example() -> None:
 
 
 def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str], set[str]]:
-    """The codes that an answer draws, at the level full and at the level score."""
+    """Return the codes of the messages on an answer, at the levels full and score."""
     full, hints, verdicts, score = (
         all_codes(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
         for level in FeedbackLevel
@@ -221,7 +221,7 @@ def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str]
 
 
 def examples(*sections: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Tries each line of these sections that has an example."""
+    """Run a test with each line of these sections that has an example."""
     chosen = [line for line in LINES if line.section in sections and line.example]
     return together("line", chosen)
 
@@ -239,7 +239,7 @@ def test_a_formula_is_read_with_a_note(line: Line) -> None:
 
 
 @examples(PASTED_UNREAD, PASTED_NOTED)
-def test_a_pasted_text_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_pasted_text_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, text = catalogue["planar-rr"], line.example[0].replace(" ↵ ", "\n")
     found: set[str] = set()
     for part_id in ("table", "links", "pose"):
@@ -258,7 +258,7 @@ def test_a_text_that_is_no_grid_has_another_code_in_a_report(
 
 
 @examples(IN_CELLS)
-def test_a_table_cell_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_table_cell_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     place, right, written = line.example
     row, column = place.removeprefix("row ").split(", ")
     rows = [list(cells) for cells in EXACT.rows(STANFORD)]
@@ -268,7 +268,7 @@ def test_a_table_cell_draws_its_code(line: Line, catalogue: Mapping[str, Exercis
 
 
 @examples(SINGLE)
-def test_an_entry_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_an_entry_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     right, written = line.example
     matrix = [["c12", "-s12", "0", "a1 c1 + a2 c12"], ["s12", "c12", "0", "a1 s1 + a2 s12"]]
     matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
@@ -276,25 +276,25 @@ def test_an_entry_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) 
     matrix[0][matrix[0].index(right)] = written
     full, score = codes_of(catalogue["planar-rr"], "pose", matrix)
     assert full - {"rotation_not_orthonormal"} == {line.code}
-    # How a bare number was read is told at every level.
+    # The note on a number without a unit appears at every level.
     assert score <= {"bare_radians"}
 
 
 @examples("Slips behind a pose", "Positions")
-def test_a_position_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_position_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, [answer] = catalogue["planar-rr"], line.example
     assert codes_of(exercise, "position", answer) == ({line.code}, set())
 
 
 @examples("Angles")
-def test_angles_draw_their_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_angles_have_their_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     full, score = codes_of(catalogue["spherical-wrist"], "zyz", line.example[0])
     assert line.code in full
     assert line.code not in score
 
 
 @examples("Screws")
-def test_a_screw_axis_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_screw_axis_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     body = line.code == "space_for_body"
     axes = [["0", "0", "1", "0", "L1 + L2" if body else "0", "0"], ["0", "0", "0", "1", "0", "0"]]
     answer = [*axes, line.example[0].strip("[]").split(", ")]
@@ -306,7 +306,7 @@ def test_most_codes_have_an_example() -> None:
     assert len({line.code for line in LINES if line.example}) > 120
 
 
-# --- what else the page says
+# --- other statements of the page
 
 
 def test_the_message_on_the_page_is_in_the_report(catalogue: Mapping[str, Exercise]) -> None:
@@ -337,7 +337,7 @@ def test_the_limits_of_the_page() -> None:
         assert limit in PAGE
 
 
-def test_links_within_the_page_lead_somewhere() -> None:
+def test_links_within_the_page_have_targets() -> None:
     headings = re.findall(r"^##+ (.+)$", PAGE, re.MULTILINE)
     anchors = {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
     links = set(re.findall(r"\]\(#([\w-]+)\)", PAGE))
