@@ -113,7 +113,7 @@ def _imported(nodes: Iterable[ast.AST]) -> set[str]:
 
 
 def _given(nodes: Iterable[ast.AST]) -> Given:
-    """Return the names and values of assignments, and of parameters with defaults."""
+    """Return the names and values of all assignments among these nodes."""
     given: Given = []
     for node in nodes:
         if isinstance(node, ast.Assign):
