@@ -81,10 +81,10 @@ def standing_still() -> list[list[str]]:
 
 
 def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
-    """Return the matrix with a different zero added to each text, so that no cache knows it.
+    """Return the matrix with 0 times a number added to each text, so that no cache knows it.
 
-    The zero is 0 times a decimal; with an empty ``point`` it is 0 times a whole number, so that no
-    wrong entry looks rounded.
+    The numbers are decimals, or integers if ``point`` is empty. With integers, a wrong entry is
+    never taken for a rounded one.
     """
     return [
         [f"{text} + 0*{abs(i) + 2}{point}{j}{k}" for k, text in enumerate(row)]

@@ -84,7 +84,7 @@ def test_a_seven_joint_arm_follows_its_sliders(
 
 @pytest.mark.campaign
 def test_an_own_table_is_written_and_shared(visit: Opening, service: str) -> None:
-    """Two joints that turn about one line."""
+    """The table has two joints that turn about one line."""
     page = visit(permissions=["clipboard-read", "clipboard-write"], viewport=SMALL).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Planar arm, RR")

@@ -1,13 +1,11 @@
 """Generate valid tables: the same mechanism with other frames, as a student might choose them.
 
-From the base on, at each joint the student's frame is put somewhere on the joint's
-axis (z either way, either x along the common normal, any origin and x direction where the axes are
-parallel or one line; the axis of a sliding joint anywhere). The row is the common normal between
-one z axis and the next, at K values of the lengths at once; in the end the numbers are recognised
-as formulas.
+The generator starts at the base. At each joint it puts the student's frame on the joint's axis. The
+directions of z and x are random. If the next axis is parallel, the origin and x are random as well;
+the axis of a prismatic joint may be anywhere. Each row is computed from the common normal between
+two z axes, at K values of the lengths at once. In the end the numbers are written as formulas.
 
-``pose`` is always the student's frame seen from the reference's frame at the same joint,
-``(K, 4, 4)``.
+``pose`` is always the student's frame in the reference's frame at the same joint, ``(K, 4, 4)``.
 """
 
 from dataclasses import dataclass, replace

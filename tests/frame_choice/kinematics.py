@@ -86,9 +86,9 @@ def _screw(axis: int, shift: ArrayLike, angle: ArrayLike) -> Numbers:
 
 
 def factors(table: Numbers, convention: str) -> Numbers:
-    """Return the alternating factors of a table ``(rows, 4, ...)``, ``(2 rows, ..., 4, 4)``.
+    """Return the factors Z X Z X … (standard) or X Z X Z … (modified) of a table.
 
-    Standard: Z X Z X …; modified: X Z X Z ….
+    The table has the shape ``(rows, 4, ...)``, the factors ``(2 rows, ..., 4, 4)``.
     """
     x = screw_x(table[:, 0], table[:, 1])
     z = screw_z(table[:, 2], table[:, 3])

@@ -284,7 +284,7 @@ def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
 
 
 def _is_unshared(table: Table, edit: Edit) -> bool:
-    """True if the slip alone could be repaired only in its own cell."""
+    """True if no other single cell than that of the slip could repair the table."""
     wrong = table.edited(edit.row, edit.column, edit.cell)
     return len(repairing_cells(table.robot, wrong.texts, table.convention)) == 1
 

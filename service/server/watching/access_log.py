@@ -1,10 +1,10 @@
-"""Remove query strings, and on request client addresses, from the access log."""
+"""Remove query strings, and optionally client addresses, from the access log."""
 
 import logging
 
 
 class _AccessLogFilter(logging.Filter):
-    """Removes the query string, and on request the address, from uvicorn's lines."""
+    """Removes the query string, and optionally the client's address, from uvicorn's lines."""
 
     def __init__(self, *, addresses: bool) -> None:
         super().__init__()
