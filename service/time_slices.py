@@ -30,7 +30,7 @@ class _Sliced(greenlet):  # type: ignore[misc]
 
 
 def checkpoint() -> None:
-    """Suspend this work until its next turn if its slice is over."""
+    """Suspend the current work until its next turn if its slice is over."""
     if perf_counter() < _end:
         return
     current = getcurrent()

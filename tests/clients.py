@@ -1,6 +1,6 @@
-"""Lints the OpenAPI document, generates clients from it, and uses them: ``make clients``.
+"""Lint the OpenAPI document, generate clients from it, and use them: ``make clients``.
 
-Needs node's npx, and the registries of npm and PyPI; all that is installed is gone at the end.
+This needs node's npx, and the registries of npm and PyPI. It installs into a temporary folder.
 """
 
 import json
@@ -69,7 +69,7 @@ assert isinstance(exercise.parts[0].shape, DhTableShape), exercise
 
 
 def run(folder: Path, *command: str) -> str:
-    """What a command prints; its failure ends the program."""
+    """Run a command and return its output; exit if it fails."""
     sys.stdout.write(f"$ {' '.join(command)}\n")
     sys.stdout.flush()
     result = subprocess.run(
@@ -82,12 +82,12 @@ def run(folder: Path, *command: str) -> str:
 
 
 def npx(folder: Path, package: str, *command: str) -> str:
-    """The same with a program of an npm package."""
+    """Run a program of an npm package; return its output."""
     return run(folder, "npx", "--yes", f"--package={package}", *command)
 
 
 def lint(folder: Path) -> None:
-    """Hold the document to the rules that redocly recommends; a warning is a failure, too."""
+    """Check the document by the recommended rules of redocly; a warning is also a failure."""
     found = json.loads(
         npx(folder, "@redocly/cli@2", "redocly", "lint", "--format=json", "openapi.json")
     )
@@ -96,7 +96,7 @@ def lint(folder: Path) -> None:
 
 
 def typescript(folder: Path) -> None:
-    """Generate types for TypeScript, and have a program checked that uses them."""
+    """Generate types for TypeScript, and type-check a program that uses them."""
     npx(folder, "openapi-typescript@7", "openapi-typescript", "openapi.json", "-o", "schema.d.ts")
     (folder / "client.ts").write_text(_TYPESCRIPT, encoding="utf-8")
     npx(folder, "typescript@5", "tsc", "--strict", "--target", "es2022", "--noEmit", "client.ts")
@@ -119,7 +119,7 @@ def python(folder: Path) -> None:
 
 
 def main() -> None:
-    """Try everything."""
+    """Lint the document and try both clients."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "openapi.json").write_text(json.dumps(app.openapi()), encoding="utf-8")

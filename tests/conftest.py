@@ -37,7 +37,7 @@ FIGURE = "figure"
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """One more than the number of cores, because many tests wait for a process or a page."""
+    """Return one more than the number of cores, because many tests only wait."""
     return (os.cpu_count() or 1) + 1
 
 
@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Exclude the tests, which live to the end, from garbage collection."""
+    """Exclude the collected tests from garbage collection, because they live to the end."""
     gc.disable()
     try:
         return (yield)

@@ -1,7 +1,7 @@
 """A long fuzz of texts, grids and whole requests: `python -m tests.fuzz --count 1000000`.
 
-Prints what it found, and exits with 1 where a limit was broken: an exception that is not the
-documented error, a second reading that differs, or a case that costs more than the budget.
+Print the findings, and exit with 1 if there is one: an undocumented exception, a second reading
+that differs, or a case that costs more than the budget.
 """
 
 import argparse
@@ -16,7 +16,7 @@ from multiprocessing import get_context
 from tests.attack.hostile import Found, Reading, cases, group, groups, measured
 
 GROUP = 500
-# The costliest body that is accepted, as a multiple of the floor of `make bench`.
+# The largest allowed cost of a body, as a multiple of the floor of `make bench`.
 BUDGET = 400.0
 PROGRESS_SECONDS = 20.0
 
@@ -24,7 +24,7 @@ _reading = Reading()
 
 
 def _group(count: int, seed: str) -> Found:
-    # A warning would fill the log of whoever serves.
+    # A warning counts as an error, because it would fill the log of a service.
     warnings.simplefilter("error")
     return group(list(cases(count, seed)), _reading)
 
@@ -34,7 +34,7 @@ def _numbered_group(each: tuple[int, str]) -> Found:
 
 
 def fuzz(count: int, seed: str, cores: int, minutes: float) -> Found:
-    """Read so many cases on so many cores, and say how far it is; fewer if time is over."""
+    """Read ``count`` cases on some cores, fewer if the time ends, and print the progress."""
     total = Found()
     began = told = time.monotonic()
     for found in _each(count, seed, cores):
@@ -55,7 +55,7 @@ def _each(count: int, seed: str, cores: int) -> Iterator[Found]:
     if cores == 1:
         yield from (_group(*each) for each in sizes)
         return
-    # A process that lives for long would hide what a fresh one does: each has its share and ends.
+    # A long-lived process could hide errors of a new one, so each reads only some groups.
     # (An executor of concurrent.futures waits for ever here: CPython's issue 115634.)
     with get_context("spawn").Pool(cores, maxtasksperchild=200) as pool:
         yield from pool.imap_unordered(_numbered_group, sizes)
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", default="0")
     parser.add_argument("--cores", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--minutes", type=float, default=math.inf, help="stop after so long")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="stop after this time")
     options = parser.parse_args(arguments)
     began = time.monotonic()
     found = fuzz(options.count, options.seed, options.cores, options.minutes)

@@ -9,5 +9,5 @@ from service.catalogue import Exercise, load_catalogue, shipped_folder
 
 @cache
 def shipped_exercises() -> Mapping[str, Exercise]:
-    """The shipped exercises by id."""
+    """Return the shipped exercises by id."""
     return MappingProxyType(load_catalogue(shipped_folder()))

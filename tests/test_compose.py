@@ -1,7 +1,7 @@
-"""compose.yaml: what it sets exists, and no container of it may do more than it must.
+"""compose.yaml uses existing settings, and its containers have no more rights than needed.
 
-Where an engine with `compose` is, it reads the file, too. What the file starts is tried without
-containers in tests/load (two replicas, PostgreSQL, nginx with the very configuration).
+If there is an engine with `compose`, it reads the file as well. tests/load runs the same services
+without containers (two replicas, PostgreSQL, nginx with the same configuration).
 """
 
 import re
@@ -22,7 +22,7 @@ each = pytest.mark.parametrize("name", SERVICES)
 
 
 @each
-def test_a_container_has_no_root_and_nothing_to_write_to_but_what_is_named(name: str) -> None:
+def test_a_container_runs_without_root_and_writes_only_to_named_volumes(name: str) -> None:
     service = SERVICES[name]
     assert service["read_only"] is True
     assert re.fullmatch(r"[1-9]\d*:[1-9]\d*", service["user"])
@@ -34,7 +34,7 @@ def test_a_container_has_no_root_and_nothing_to_write_to_but_what_is_named(name:
 
 
 @each
-def test_a_container_is_watched(name: str) -> None:
+def test_a_container_has_a_health_check(name: str) -> None:
     # The image of the service has a check of its own: tests/test_project.py.
     assert "healthcheck" in SERVICES[name] or SERVICES[name]["image"] == "dh-grader"
     for other, wanted in SERVICES[name].get("depends_on", {}).items():
@@ -42,7 +42,7 @@ def test_a_container_is_watched(name: str) -> None:
         assert wanted == {"condition": "service_healthy"}
 
 
-def test_every_setting_is_one_and_none_of_them_is_secret() -> None:
+def test_every_setting_exists_and_none_of_them_is_secret() -> None:
     assert len(REPLICAS) == 2
     names = [name for replica in REPLICAS for name in SERVICES[replica]["environment"]]
     settings = {f"{PREFIX}{name.upper()}" for name in Settings.model_fields}
@@ -57,7 +57,7 @@ def test_every_setting_is_one_and_none_of_them_is_secret() -> None:
                 if name.endswith("PASSWORD")]  # fmt: skip
 
 
-def test_only_the_proxy_is_reached_from_outside_and_it_knows_every_replica() -> None:
+def test_only_the_proxy_publishes_ports_and_it_knows_every_replica() -> None:
     assert [name for name, service in SERVICES.items() if "ports" in service] == ["proxy"]
     assert COMPOSE["networks"]["inside"] == {"internal": True}
     assert {name for name in SERVICES if "outside" in SERVICES[name]["networks"]} == {"proxy"}
@@ -65,7 +65,7 @@ def test_only_the_proxy_is_reached_from_outside_and_it_knows_every_replica() -> 
     assert re.findall(r"server ([\w-]+):8000;", proxy) == REPLICAS
 
 
-def test_an_engine_reads_it() -> None:
+def test_a_container_engine_accepts_the_file() -> None:
     command = ["docker", "compose", "--file", str(ROOT / "compose.yaml"), "config", "--quiet"]
     try:
         found = subprocess.run(["docker", "compose", "version"], capture_output=True, check=False)

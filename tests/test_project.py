@@ -1,4 +1,4 @@
-"""The project's own set-up: lock files, image, continuous integration and what a wheel carries."""
+"""The set-up of the project: lock files, image, continuous integration, contents of the wheel."""
 
 import importlib.metadata
 import os
@@ -25,7 +25,7 @@ def read(name: str) -> str:
 
 
 def logical_lines(text: str) -> list[str]:
-    """Lines without blanks and comments, those that end in a backslash joined to the next."""
+    """Return the lines without empty ones and comments; continued lines are joined."""
     lines = text.replace("\\\n", " ").splitlines()
     return [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
 
@@ -35,7 +35,7 @@ def pins(lock: str) -> list[Requirement]:
 
 
 def copied_into_image() -> list[str]:
-    """What the Dockerfile copies from the checkout (and not from an earlier stage)."""
+    """Return the paths that the Dockerfile copies from the checkout."""
     copies = [line.split() for line in logical_lines(read("Dockerfile")) if line.startswith("COPY")]
     return [
         source for _, *sources, _ in copies if "--from=builder" not in sources for source in sources
@@ -85,7 +85,7 @@ def test_the_version_is_stated_in_pyproject_only() -> None:
     assert repeats == []
 
 
-def test_a_wheel_carries_the_program_and_the_catalogue(tmp_path: Path) -> None:
+def test_a_wheel_contains_the_program_and_the_catalogue(tmp_path: Path) -> None:
     build = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "-d", str(tmp_path)]
     subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
     [wheel] = tmp_path.glob("*.whl")
@@ -119,7 +119,7 @@ def test_hadolint_finds_nothing_in_a_dockerfile(dockerfile: str) -> None:
     assert (result.returncode, result.stdout) == (0, "")
 
 
-def test_what_the_dockerfile_copies_exists_and_is_not_ignored() -> None:
+def test_files_that_the_dockerfile_copies_exist_and_are_not_ignored() -> None:
     sources = copied_into_image()
     assert {"service", "exercises", "requirements.lock"} <= set(sources)
     assert [source for source in sources if not (ROOT / source).exists()] == []
@@ -130,7 +130,7 @@ def test_what_the_dockerfile_copies_exists_and_is_not_ignored() -> None:
 @pytest.mark.parametrize(
     "file", ["Dockerfile", "service/bundles/templates/prairielearn/Dockerfile", "compose.yaml"]
 )
-def test_every_image_of_others_is_named_by_its_digest(file: str) -> None:
+def test_every_external_image_is_named_by_its_digest(file: str) -> None:
     images = re.findall(r"^ *(?:FROM|image:) (\S+)", read(file), re.MULTILINE)
     of_others = [image for image in images if image != "dh-grader"]
     assert of_others
@@ -147,11 +147,11 @@ def test_every_action_is_named_by_its_commit() -> None:
         assert re.fullmatch(r"[\w/-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action), action
 
 
-def test_the_image_runs_as_a_numbered_user_and_is_watched() -> None:
+def test_the_image_runs_as_a_numbered_user_and_has_a_health_check() -> None:
     final_stage = logical_lines(read("Dockerfile").rpartition("\nFROM ")[2])
     [user] = [line for line in final_stage if line.startswith("USER ")]
     assert re.fullmatch(r"USER [1-9]\d*:[1-9]\d*", user)
-    # tests/server/test_alive.py runs what it asks with.
+    # tests/server/test_alive.py runs the command of the health check.
     assert len([line for line in final_stage if line.startswith("HEALTHCHECK ")]) == 1
 
 
@@ -167,7 +167,7 @@ def test_continuous_integration_runs_make_test() -> None:
     [(":", False), ("echo x >> changed; echo x > cache/x", False), ("echo x > left", True)],
     ids=["clean", "ignored", "left"],
 )
-def test_continuous_integration_fails_where_tests_leave_a_file(
+def test_continuous_integration_fails_if_tests_leave_a_file(
     tests: str, fails: bool, tmp_path: Path
 ) -> None:
     """In a clone that has local changes."""

@@ -1,7 +1,6 @@
-"""The structure of the house: who may import whom, how large a file may be, where a test belongs.
+"""The structure of the project: allowed imports, sizes of files and folders, places of tests.
 
-All of it is read from the source with ``ast``; nothing is imported, so nothing can be missed that
-is imported only inside a function or for types only.
+The source is parsed with ``ast``, so that imports inside functions and for types count as well.
 """
 
 import ast
@@ -17,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 SERVICE = ROOT / "service"
 TESTS = ROOT / "tests"
 
-# Each package, or file of service/ itself, may import those that stand before it.
+# Each package or file of service/ may import those listed before it.
 PACKAGES = (
     "version", "time_slices", "expressions", "grids", "kinematics", "catalogue", "grading",
     "solutions", "figures", "authoring", "submissions", "contract", "statistics", "formats",
@@ -25,8 +24,8 @@ PACKAGES = (
     "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 
-# The same inside grading, floor by floor. Rooms of one floor may import each other, as long as no
-# circle arises.
+# The packages of grading, in layers: each may import earlier layers, and packages of its own layer
+# if there is no cycle.
 GRADING_FLOORS = (
     {"feedback", "formula_text", "misconception", "numerics", "report", "work_budget"},
     {"reading"},
@@ -55,7 +54,7 @@ CROWDED = {
     "tests/grading": 20,
 }
 
-# Folders of tests that are about something else than a package of service/.
+# Folders of tests that do not belong to a package of service/.
 SUITES = {
     "docs",
     "installed",
@@ -72,19 +71,19 @@ SUITES = {
 
 
 def module_name(file: Path) -> str:
-    """The dotted name of a file: ``service.grading.part``."""
+    """Return the dotted name of a file, such as ``service.grading.part``."""
     return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
 @cache
 def trees() -> Mapping[str, ast.Module]:
-    """The syntax tree of each module of service/."""
+    """Return the syntax tree of each module of service/."""
     files = sorted(SERVICE.rglob("*.py"))
     return {module_name(file): ast.parse(file.read_text(encoding="utf-8")) for file in files}
 
 
 def imported_names(tree: ast.Module) -> Iterator[str]:
-    """What a module imports, at its top or inside: ``package.module`` or ``package.name``."""
+    """Yield all imports of a module as ``package.module`` or ``package.name``."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -94,7 +93,7 @@ def imported_names(tree: ast.Module) -> Iterator[str]:
 
 @cache
 def imports() -> Mapping[str, frozenset[str]]:
-    """The modules of service/ that each module of service/ imports."""
+    """Return for each module of service/ the modules of service/ that it imports."""
     modules = trees()
     found = {}
     for module, tree in modules.items():
@@ -108,12 +107,12 @@ def imports() -> Mapping[str, frozenset[str]]:
 
 
 def room(module: str, house: str) -> str:
-    """The name of a module, or of the package that holds it, directly below ``house``."""
+    """Return the name of the module or package directly below ``house`` that has a module."""
     return module.removeprefix(f"{house}.").partition(".")[0]
 
 
 def against_the_order(place: Mapping[str, int], house: str) -> list[str]:
-    """The imports below ``house`` from one room of it to another that has a later place."""
+    """Return the imports below ``house`` of a package with a later place."""
     return [
         f"{module} imports {target}"
         for module, targets in imports().items()
@@ -176,7 +175,7 @@ def test_no_folder_is_crowded() -> None:
 
 
 def public_types(tree: ast.Module) -> Iterator[str]:
-    """The classes of a module and the names in CamelCase that it gives to types."""
+    """Yield the public classes of a module, and its type aliases in CamelCase."""
     for node in tree.body:
         match node:
             case ast.ClassDef(name=name):
@@ -198,11 +197,11 @@ def test_no_two_public_types_share_a_name() -> None:
 
 
 def has_home(test: Path) -> bool:
-    """Whether a test file stands where its reader looks for it.
+    """True if a test file is in its place.
 
-    The tests of ``service/x/y/z.py`` are ``tests/x/y/test_z.py``, those of all of ``service/x/y``
-    are ``tests/x/y/test_y.py``, and the tests of a helper stand beside it. At the top of a package
-    a test may instead be about a behaviour of the whole package, which its docstring then names.
+    The tests of ``service/x/y/z.py`` are in ``tests/x/y/test_z.py``, those of the package
+    ``service/x/y`` in ``tests/x/y/test_y.py``, and those of a test helper next to it. At the top of
+    a package, a test may also be about the whole package; its docstring then says what it tests.
     """
     *folders, file = test.relative_to(TESTS).parts
     if not folders or folders[0] in SUITES:

@@ -1,1 +1,1 @@
-"""The server around the application: what a client may send, how fast, and who comes next."""
+"""The server around the application: limits for clients, and fair turns between them."""

@@ -1,6 +1,7 @@
-"""`python -m service.server.alive`: exit code 0 where the service of this machine answers.
+"""`python -m service.server.alive`: the health check of the image.
 
-The image asks it. Without the program itself, so that asking costs nothing.
+Exit with 0 if the service on this machine answers. It imports nothing of the program, so it is
+cheap to run.
 """
 
 import os
@@ -8,10 +9,10 @@ from http.client import HTTPConnection, HTTPException
 
 
 def main() -> int:
-    """Ask /healthz where DH_GRADER_HOST and DH_GRADER_PORT say that the service listens."""
+    """Request /healthz at DH_GRADER_HOST and DH_GRADER_PORT; return the exit code."""
     host = os.environ.get("DH_GRADER_HOST", "127.0.0.1")
     port = int(os.environ.get("DH_GRADER_PORT", "8000"))
-    # http.client rather than urllib: a proxy in the environment must not be asked.
+    # http.client rather than urllib, which would use a proxy that the environment names.
     connection = HTTPConnection(_ANYWHERE.get(host, host), port, timeout=3)
     try:
         connection.request("GET", "/healthz")

@@ -1,4 +1,4 @@
-"""The application of this installation, as its settings want it."""
+"""Build the application of an installation from its settings."""
 
 from typing import TYPE_CHECKING
 
@@ -15,19 +15,20 @@ from service.server.watching.access_log import set_up_access_log
 from service.settings import Settings, SettingsError
 from service.web import Tutoring, web_routes
 
-if TYPE_CHECKING:  # it loads the drivers of databases
+if TYPE_CHECKING:  # it imports the database drivers
     from service.attempts.store import AttemptStore
 
 
 def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
-    """The application, with fair admission; ``host`` is where it listens, if that is known.
+    """Return the application, with fair admission.
 
+    ``host`` is the address on which it listens, or None if the caller has checked it already.
     Raises CatalogueError, SettingsError.
     """
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
     store = None
     if settings.database is not None:
-        # Only here: it loads the drivers of databases.
+        # Imported only here, because it imports the database drivers.
         from service.attempts.store import AttemptStore
 
         try:
@@ -36,10 +37,10 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
             raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
     metrics = None
     if settings.metrics != "off":
-        # Only here: who does not count loads nothing that counts.
+        # Imported only here, because it imports the Prometheus client.
         from service.server.watching.metrics import Metrics
 
-        metrics = Metrics(tells_all=settings.metrics == "all")
+        metrics = Metrics(is_public=settings.metrics == "all")
         if store is not None:
             store.measure = metrics.store
     access = Access(
@@ -62,7 +63,7 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         pages=web_routes(catalogue, tutoring),
         monitor=metrics,
     )
-    # For what is refused before the application has a say.
+    # It also counts the requests that are refused before they reach the application.
     app.state.monitor = metrics
     if metrics is not None:
         app.include_router(metrics.routes())
@@ -71,11 +72,14 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
 
 
 def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) -> Keys | None:
-    """The keys, where there may be any. Raises SettingsError for a service open to strangers."""
+    """Return the API keys, or None without a database.
+
+    Raises SettingsError if other machines could use the service without a key by mistake.
+    """
     secret = settings.known_secret()
     ring = None
     if store is not None:
-        # Only here: it loads the drivers of databases.
+        # Imported only here, because it imports the database drivers.
         from service.access.key_ring import KeyRing
 
         try:
@@ -84,17 +88,17 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
             raise SettingsError("DH_GRADER_DATABASE: does not answer") from error
         if ring.has_keys and secret is None:
             raise SettingsError(
-                "DH_GRADER_SECRET: is needed, for there are keys; set it, or "
-                "DH_GRADER_SECRET_FILE, to the secret that they were made with"
+                "DH_GRADER_SECRET: is needed because API keys exist; set it, or "
+                "DH_GRADER_SECRET_FILE, to the secret with which they were created"
             )
         if not ring.has_their_secret:
             raise SettingsError(f"DH_GRADER_SECRET: {WRONG_SECRET}")
     has_keys = ring is not None and ring.has_keys
     if host is not None and not (_is_here(host) or has_keys or settings.open is not None):
         raise SettingsError(
-            f"DH_GRADER_HOST: {host} lets others than this machine in, and there are no keys. Make "
-            "one with dh-grader keys create, or say that the service is open to whoever reaches it:"
-            " DH_GRADER_OPEN=until-keys"
+            f"DH_GRADER_HOST: other machines can reach {host}, but there are no API keys. Create "
+            "one with dh-grader keys create, or allow everybody to use the service without a key: "
+            "DH_GRADER_OPEN=until-keys"
         )
     return ring
 
@@ -106,7 +110,7 @@ def _is_here(host: str) -> bool:
 def _rates(settings: Settings) -> RequestRates | None:
     if settings.key_rate is None and settings.address_rate is None:
         return None
-    # Only here: few installations count requests.
+    # Imported only here: few installations limit the rate of requests.
     from service.access.rates import Rates, UnusableRatesError, rates_in
 
     for name in ("key_rate", "address_rate"):

@@ -1,4 +1,4 @@
-"""The problems that a client meets before its request reaches a route."""
+"""The problems of requests that are refused before they reach a route."""
 
 from http import HTTPStatus
 from typing import Final
@@ -8,15 +8,15 @@ from starlette.datastructures import Headers
 
 from service.api.http.problems import ProblemError
 from service.api.http.request_context import HEADER, begin_request
-from service.server.limits import HEAD_PATIENCE, MAX_HEADERS, MAX_URL, PATIENCE
+from service.server.limits import HEAD_TIMEOUT, MAX_HEADERS, MAX_URL, TIMEOUT
 
 _CLOSE: Final = {"Connection": "close"}
 
 
-def named(problem: ProblemError, path: str, headers: Headers | None = None) -> Response:
-    """The answer to a request that the application does not see, under an id of its own.
+def refusal_response(problem: ProblemError, path: str, headers: Headers | None = None) -> Response:
+    """Return the answer to a request that does not reach the application, with a request id.
 
-    ``headers`` are those of the request, where they have come.
+    ``headers`` are the request's headers, or None if they have not been read.
     """
     request = begin_request(headers.get(HEADER) if headers else None)
     answer = problem.response(path)
@@ -25,38 +25,38 @@ def named(problem: ProblemError, path: str, headers: Headers | None = None) -> R
 
 
 def malformed(detail: str) -> ProblemError:
-    """The problem of bytes that are no request."""
+    """Return the problem of bytes that are no HTTP request."""
     title = "This is no HTTP request"
     return ProblemError(HTTPStatus.BAD_REQUEST, detail, "malformed-request", title, headers=_CLOSE)
 
 
 def late() -> ProblemError:
-    """The problem of a request that did not come in time."""
+    """Return the problem of a request that did not arrive in time."""
     detail = (
-        f"The head of a request must arrive within {HEAD_PATIENCE:.0f} seconds, and the whole "
-        f"request within {PATIENCE:.0f}."
+        f"The head of a request must arrive within {HEAD_TIMEOUT:.0f} seconds, and the whole "
+        f"request within {TIMEOUT:.0f}."
     )
     return ProblemError(HTTPStatus.REQUEST_TIMEOUT, detail, headers=_CLOSE)
 
 
 def long_address() -> ProblemError:
-    """The problem of an address over the limit."""
+    """Return the problem of a URL that is too long."""
     detail = f"An address may have {MAX_URL} characters; this one has more."
     return ProblemError(HTTPStatus.REQUEST_URI_TOO_LONG, detail, headers=_CLOSE)
 
 
-def many_headers() -> ProblemError:
-    """The problem of headers over their number."""
+def too_many_headers() -> ProblemError:
+    """Return the problem of a request with too many headers."""
     return large_frame(f"A request may have {MAX_HEADERS} headers; this one has more.")
 
 
 def large_frame(detail: str) -> ProblemError:
-    """The problem of a head, of trailers or of sizes of chunks over the limit."""
+    """Return the problem of a request whose head, chunk sizes or trailers are too large."""
     return ProblemError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, detail, headers=_CLOSE)
 
 
 def too_many(seconds: int) -> ProblemError:
-    """The problem of a client that has too many requests waiting."""
+    """Return the problem of a client that has too many requests waiting."""
     return ProblemError(
         HTTPStatus.TOO_MANY_REQUESTS,
         "Too many requests from this address are waiting already. Wait, then send this one again.",
@@ -65,7 +65,7 @@ def too_many(seconds: int) -> ProblemError:
 
 
 def too_busy(seconds: int) -> ProblemError:
-    """The problem of a service that has too much to do."""
+    """Return the problem of a service that has too much to do."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         "The service has too much to do. Wait, then send this request again.",

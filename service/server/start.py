@@ -1,4 +1,4 @@
-"""`dh-grader serve`: the settings put into effect, in one process or several."""
+"""`dh-grader serve`: start the service with its settings, in one process or several."""
 
 import gc
 import logging
@@ -19,18 +19,18 @@ from service.server.processes.process import Server
 from service.server.processes.shared_port import SharedPort
 from service.server.processes.workers import Supervisor
 from service.server.watching.logs import log_config
-from service.server.watching.metrics_folder import counting_together
+from service.server.watching.metrics_folder import shared_metrics_folder
 from service.settings import Settings
 
 _log = logging.getLogger("uvicorn.error")
 
 
 def serve(settings: Settings) -> bool:
-    """Serve until a signal comes; false where the port cannot be had.
+    """Serve until a signal comes; return False if the port is not available.
 
     Raises CatalogueError, SettingsError.
     """
-    with counting_together(settings) as forget:
+    with shared_metrics_folder(settings) as forget:
         app = installed_app(settings, settings.host)
         if settings.workers == 1:
             server = _server(settings, app)
@@ -38,10 +38,9 @@ def serve(settings: Settings) -> bool:
             return server.started
         config = _config(settings, app)
         gc.enable()
-        # The workers read the exercises themselves: here they were read to see that they can be
-        # used.
+        # The workers read the exercises themselves; this process has read them to check them.
         try:
-            with _held_back() as announcement:
+            with _delayed_announcement() as announcement:
                 listener = config.bind_socket()
         except SystemExit:
             return False
@@ -51,10 +50,10 @@ def serve(settings: Settings) -> bool:
 
 
 @contextmanager
-def _held_back() -> Iterator[Callable[[], None]]:
-    """Hold back that the service is running, which uvicorn says when it has the port.
+def _delayed_announcement() -> Iterator[Callable[[], None]]:
+    """Suppress uvicorn's log line that the service is running; yield a function that writes it.
 
-    Nobody listens there until a worker does. Yields what says it.
+    uvicorn writes it as soon as it has the port, but nobody listens until a worker does.
     """
     held: list[logging.LogRecord] = []
 
@@ -93,8 +92,9 @@ def _config(settings: Settings, app: object) -> uvicorn.Config:
 
 
 def _work(settings: Settings, port: SharedPort) -> None:
-    """Serve in one of several processes."""
-    # Until the server has its own handlers, a Ctrl+C of the terminal is the supervisor's affair.
+    """Serve on a shared port, as one of several worker processes."""
+    # Ctrl+C reaches all processes of the terminal. Until the server has its own handlers, only the
+    # supervisor reacts.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         app = installed_app(settings)

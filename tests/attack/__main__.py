@@ -1,8 +1,8 @@
-"""`python -m tests.attack`: attacks on a real process, while honest clients use it.
+"""`python -m tests.attack`: attack a real process while honest clients use it.
 
-Exit code 1 if an honest client gets no answer, if one in a hundred waits beside costly
-requests is more than five times as long as without them, if memory grows by more than
-100 MB, if a question about health takes 0.3 s, or if the process does not end in ten.
+Exit with 1 if an honest client gets no answer, if costly requests make the 99th percentile of the
+waiting times more than five times as long, if the memory grows by more than 100 MB, if a health
+check takes 0.3 s, or if the process does not end within ten seconds.
 """
 
 import argparse
@@ -36,17 +36,17 @@ MEMORY = 100.0
 HEALTH_SECONDS = 0.3
 END_SECONDS = 10.0
 LONGER = 5.0
-# How many requests schemathesis makes up for each operation.
+# The number of requests that schemathesis generates for each operation.
 EXAMPLES = 300
-INTERFACE = "requests made up from the document of the interface"
-# Seconds between an answer and the next submission of a client that does not submit in a row.
+INTERFACE = "requests generated from the OpenAPI document"
+# Seconds between an answer and the next submission of a client that pauses.
 PAUSE = 0.1
 HONEST_ADDRESS = "127.0.0.2"
 
 
 @dataclass(frozen=True)
 class Attack:
-    """What is sent, and how long honest clients pause; whether their waits are compared."""
+    """A flood, the pause of honest clients, and whether it may change their waiting times."""
 
     flood: Flood
     pause: float = 0.0
@@ -54,7 +54,7 @@ class Attack:
 
 
 def attacks(scale: float) -> dict[str, Attack]:
-    """The attacks, as large as is asked."""
+    """Return the attacks by name, with their sizes multiplied by ``scale``."""
     header = b"Cookie: " + b"x" * 50 + b"\r\n"
     floods = {
         "8,000 half heads": half_open(int(8000 * scale)),
@@ -84,15 +84,15 @@ def attacks(scale: float) -> dict[str, Attack]:
     return {name: Attack(flood) for name, flood in floods.items()} | {
         f"costly bodies{how}, {clients}": Attack(flood, pause, compared=True)
         for clients, pause in {
-            "honest ones in a row": 0.0,
-            "honest ones now and then": PAUSE,
+            "honest clients without a pause": 0.0,
+            "honest clients with pauses": PAUSE,
         }.items()
         for how, flood in costly_ones.items()
     }
 
 
 def attack(seconds: float, scale: float, only: str = "") -> list[str]:
-    """Run the attacks one after the other and print their figures; what was not held."""
+    """Run the attacks one after the other and print figures; return the broken promises."""
     broken: list[str] = []
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         running = opened.enter_context(service(Path(folder)))
@@ -104,7 +104,7 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
                 continue
             if each.pause not in quiet:
                 quiet[each.pause] = _without(running, each.pause, seconds)
-                # The program's own caches are full after the first.
+                # The caches of the program are full after the first run.
                 start = start or running.memory()
             with watched(running, each.pause, HONEST_ADDRESS) as (submissions, health):
                 said = each.flood(running, opened, time.monotonic() + seconds)
@@ -117,25 +117,25 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
                 found = _longer(submissions, quiet[each.pause])
                 broken += [f"{name}: {what}" for what in found]
         if only in INTERFACE:
-            told = list(faults(running, Path(folder), max(1, int(EXAMPLES * scale))))
-            print(f"{INTERFACE}: {'faults' if told else 'no fault'}", flush=True)  # noqa: T201
-            broken += told
+            failed = list(faults(running, Path(folder), max(1, int(EXAMPLES * scale))))
+            print(f"{INTERFACE}: {'faults' if failed else 'no fault'}", flush=True)  # noqa: T201
+            broken += failed
             settings, key = with_key(Path(folder))
             with service(Path(folder), **settings) as keyed:
-                told = list(faults(keyed, Path(folder), max(1, int(EXAMPLES * scale)), key=key))
-            print(f"{INTERFACE}, with keys: {'faults' if told else 'no fault'}", flush=True)  # noqa: T201
-            broken += told
+                failed = list(faults(keyed, Path(folder), max(1, int(EXAMPLES * scale)), key=key))
+            print(f"{INTERFACE}, with keys: {'faults' if failed else 'no fault'}", flush=True)  # noqa: T201
+            broken += failed
         began = time.monotonic()
         code = running.end()
         took = time.monotonic() - began
         print(f"ended in {took:.1f} s, exit code {code}", flush=True)  # noqa: T201
         if code or took > END_SECONDS:
-            broken.append("the process did not end in good order")
+            broken.append("the process did not shut down as promised")
     return broken
 
 
 def _without(running: Service, pause: float, seconds: float) -> Waits:
-    """The waits of honest submissions while nobody attacks."""
+    """Return the waiting times of honest submissions without an attack."""
     with watched(running, pause, HONEST_ADDRESS) as (submissions, health):
         time.sleep(seconds)
     _print(f"nothing, pauses of {pause} s", submissions, health)
@@ -150,22 +150,24 @@ def _faults(submissions: Waits, health: Waits) -> Iterator[str]:
     if submissions.failures or not submissions.seconds:
         yield "honest clients had no answer"
     if health.failures or health.quantile(1.0) > HEALTH_SECONDS:
-        yield "a question about health took too long"
+        yield "a health check took too long"
 
 
 def _longer(submissions: Waits, quiet: Waits) -> Iterator[str]:
     p50, p99 = (submissions.quantile(share) / quiet.quantile(share) for share in (0.5, 0.99))
     print(f"    p50: {p50:.1f}, p99: {p99:.1f} times as long", flush=True)  # noqa: T201
     if p99 > LONGER:
-        yield f"one in a hundred honest waits is {p99:.1f} times as long"
+        yield f"the 99th percentile of honest waiting times is {p99:.1f} times as long"
 
 
 def main() -> int:
-    """Run all attacks, or those of which the name holds a word."""
+    """Run all attacks, or those whose names contain a word; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=25.0, help="for each attack")
-    parser.add_argument("--scale", type=float, default=1.0, help="the size, as a share")
-    parser.add_argument("--only", default="", help="a word of the attacks' names")
+    parser.add_argument(
+        "--scale", type=float, default=1.0, help="factor for the size of the attacks"
+    )
+    parser.add_argument("--only", default="", help="only attacks whose names contain this")
     options = parser.parse_args()
     broken = attack(options.seconds, options.scale, options.only)
     for line in broken:

@@ -1,4 +1,4 @@
-"""Requests that nobody wrote: the model answers of all exercises, spoiled in many ways."""
+"""Generate requests: the model answers of all exercises, changed at random."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -18,7 +18,7 @@ from tests.solutions.solved import solved
 PREVIEW: Final = "/v1/preview"
 COLUMNS: Final = ("a", "alpha", "d", "theta")
 HEADERS: Final = ("a", "alpha", "d", "theta", "a [mm]", "alpha (deg)", "θ", "twist", "joint", "")
-# What an entry becomes: another value, or no value.
+# Values that replace an entry.
 VALUES: Final[tuple[Any, ...]] = (
     0,
     1,
@@ -43,7 +43,7 @@ SPOILERS: Final = (
 
 
 class Model(NamedTuple):
-    """An exercise and what gets full marks in each of its parts."""
+    """An exercise, and for each of its parts an answer with full marks."""
 
     exercise: Exercise
     answers: Mapping[str, Any]
@@ -51,17 +51,17 @@ class Model(NamedTuple):
 
 @cache
 def exercises() -> tuple[Exercise, ...]:
-    """The shipped exercises."""
+    """Return the shipped exercises."""
     return tuple(shipped_exercises().values())
 
 
 def drawn_model(random: Random) -> Model:
-    """One of the exercises, which is solved when it is drawn for the first time."""
+    """Return a random exercise with its model answers."""
     return model_of(random.choice(exercises()))
 
 
 def model_of(exercise: Exercise) -> Model:
-    """An exercise with its model answers."""
+    """Return an exercise with its model answers."""
     return Model(exercise, {part.part: part.answer for part in solved(exercise).parts})
 
 
@@ -71,7 +71,7 @@ def _texts() -> list[str]:
 
 
 def rows_of(answer: Any) -> list[list[str]] | None:
-    """An answer as rows of texts, if it is a table or a matrix."""
+    """Return a table or a matrix as rows of texts, and None for any other answer."""
     if isinstance(answer, dict) and isinstance(answer.get("rows"), list):
         rows = answer["rows"]
         if all(isinstance(row, dict) for row in rows):
@@ -88,7 +88,7 @@ def _typed(value: Any) -> str:
 
 
 def pasted(rows: list[list[str]], random: Random) -> str:
-    """Rows as one text in some format, perhaps below headers."""
+    """Return rows as one text in a random format, perhaps with headers."""
     width = max(map(len, rows), default=0) or 1
     rows = [[*row, *["0"] * (width - len(row))] for row in rows] or [["0"]]
     if random.random() < 0.4:
@@ -101,7 +101,7 @@ def pasted(rows: list[list[str]], random: Random) -> str:
 
 
 def _entry(value: Any, random: Random) -> Any:
-    """Another value in the place of one."""
+    """Return a random replacement for a value."""
     kind = random.random()
     if kind < 0.1:
         return random.choice(VALUES)
@@ -115,7 +115,7 @@ def _entry(value: Any, random: Random) -> Any:
 
 
 def spoiled(value: Any, random: Random, share: float) -> Any:
-    """A value in which a share of the entries, and now and then a list, is another."""
+    """Return the value with a share of its entries, and sometimes a list, changed at random."""
     if isinstance(value, dict):
         return {key: spoiled(each, random, share) for key, each in value.items()}
     if not isinstance(value, list):
@@ -136,7 +136,7 @@ def spoiled(value: Any, random: Random, share: float) -> Any:
 
 
 def answers_of(model: Model, random: Random) -> dict[str, Any]:
-    """Answers to some parts of an exercise, more or less spoiled."""
+    """Return randomly changed answers to some parts of an exercise."""
     answers: dict[str, Any] = {}
     share = random.choice((0.0, 0.02, 0.1, 0.1, 0.5, 1.0))
     for part, answer in model.answers.items():
@@ -152,7 +152,7 @@ def answers_of(model: Model, random: Random) -> dict[str, Any]:
 
 
 def submission(random: Random, number: int | None = None) -> Post:
-    """A submission; with a ``number``, one whose entries no other number has."""
+    """Return a random submission; with a ``number``, its entries are unique to that number."""
     model = drawn_model(random)
     body: dict[str, Any] = {"answers": answers_of(model, random)}
     if random.random() < 0.3:
@@ -170,7 +170,7 @@ def submission(random: Random, number: int | None = None) -> Post:
 
 
 def _make_unique(answers: dict[str, Any], number: int) -> None:
-    """Add 0 times the number to some entry of each part that has texts."""
+    """Add 0 times the number to one text of each part."""
     for part, answer in answers.items():
         if isinstance(answer, str):
             continue
@@ -178,7 +178,7 @@ def _make_unique(answers: dict[str, Any], number: int) -> None:
 
 
 def _with_zero(value: Any, number: int) -> tuple[Any, bool]:
-    """The value with a zero of this number in its first text, and whether there was one."""
+    """Return the value with 0 times the number added to its first text, and True if it has one."""
     if isinstance(value, str) and value.strip():
         return f"{value} + 0*{number}", True
     if isinstance(value, dict | list):
@@ -193,7 +193,7 @@ def _with_zero(value: Any, number: int) -> tuple[Any, bool]:
 
 
 def preview(random: Random, number: int | None = None) -> Post:
-    """A text to be shown, with or without the part that it is for."""
+    """Return a random request for a preview, with or without an exercise and a part."""
     model = drawn_model(random)
     part = random.choice(list(model.answers))
     rows = rows_of(spoiled(model.answers[part], random, 0.2))
@@ -215,7 +215,7 @@ def preview(random: Random, number: int | None = None) -> Post:
 
 
 def _encoded(body: Any, random: Random) -> bytes:
-    """The body as JSON, now and then with other bytes in it."""
+    """Return the body as JSON, sometimes with random bytes in it."""
     data = bytearray(
         json.dumps(body, ensure_ascii=random.random() < 0.5).encode("utf-8", "replace")
     )

@@ -1,4 +1,4 @@
-"""What an attacker sends. Each goes on until its time is over, and keeps what it has opened."""
+"""Floods of requests, as an attacker sends them. Each runs until its time is over."""
 
 import itertools
 import json
@@ -18,14 +18,14 @@ from tests.worst.seeds import links_of
 HEAD = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
 CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n\r\n"
 SOURCE = "127.0.0.3"
-# As many of the costliest submissions as a body of 256 KiB holds.
+# The number of the costliest submissions that fit into a body of 256 KiB.
 MANY = 16
 
 Flood = Callable[[Service, ExitStack, float], str]
 
 
 def half_open(heads: int) -> Flood:
-    """So many connections with half a head, each opened again as soon as it is closed."""
+    """Return a flood of ``heads`` connections that send half a head."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         lines = [opened.enter_context(running.connect(HEAD, SOURCE)) for _ in range(heads)]
@@ -37,7 +37,7 @@ def half_open(heads: int) -> Flood:
 
 
 def half_bodies(bodies: int) -> Flood:
-    """So many connections with all of a large body but its end."""
+    """Return a flood of ``bodies`` connections that send a large body without its end."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = HEAD + b"Content-Length: 260000\r\n\r\n" + b" " * 250_000
@@ -54,7 +54,7 @@ def half_bodies(bodies: int) -> Flood:
 
 
 def endless(begin: bytes, piece: bytes) -> Flood:
-    """The same piece again and again behind a beginning, as fast as it is taken."""
+    """Return a flood that sends ``begin``, then ``piece`` again and again."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = tries = 0
@@ -70,7 +70,7 @@ def endless(begin: bytes, piece: bytes) -> Flood:
 
 
 def dripping(lines: int) -> Flood:
-    """So many bodies of which a byte comes each second."""
+    """Return a flood of ``lines`` connections that send a body byte by byte, one each second."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = HEAD + b"Content-Length: 1000\r\n\r\n"
@@ -89,7 +89,7 @@ def dripping(lines: int) -> Flood:
 
 
 def costly_answers(number: int) -> dict[str, Any]:
-    """Answers that take as much work as a submission may; no two are alike."""
+    """Return the costliest answers that a submission may have; they differ for each number."""
     return {"answers": {"links": links_of("c12 " * 33, number)}}
 
 
@@ -98,23 +98,23 @@ def _written(body: dict[str, Any]) -> bytes:
 
 
 def one_costly(number: int) -> bytes:
-    """One costly submission as it goes over the wire."""
+    """Return the bytes of a request with one costly submission."""
     return request(GRADE, _written(costly_answers(number)))
 
 
 def many_costly(number: int) -> bytes:
-    """As many costly submissions as one request may hold."""
+    """Return the bytes of a request with as many costly submissions as allowed."""
     numbers = range(MANY * number, MANY * (number + 1))
     submissions = [{"exercise": EXERCISE, **costly_answers(i)} for i in numbers]
     return request("/v1/grade", _written({"submissions": submissions}))
 
 
-# The fields of which the texts are no texts of students.
+# The fields whose texts are names; all other texts are what students write.
 _NAMES: Final = ("exercise", "part", "angle_unit", "quantity", "structure", "figure")
 
 
 def _spelled(value: Any, number: int) -> Any:
-    """The body with other spaces behind each text, so that none was read before."""
+    """Return the body with blanks appended to each text, so that no cache knows the texts."""
     match value:
         case dict():
             return {
@@ -128,7 +128,7 @@ def _spelled(value: Any, number: int) -> Any:
     return value
 
 
-# The kinds of bodies that cost most, one of each sort of work.
+# The costliest bodies, one for each kind of work.
 KINDS: Final = {
     "sines in degrees": (GRADE, KNOWN["links of sines in degrees"]),
     "roots": (GRADE, KNOWN["links of roots"]),
@@ -139,7 +139,7 @@ KINDS: Final = {
 
 
 def of_kind(kind: str) -> Callable[[int], bytes]:
-    """The bodies of one of the kinds; no two are alike."""
+    """Return a function that makes requests of one kind; they differ for each number."""
     path, known = KINDS[kind]
 
     def numbered(number: int) -> bytes:
@@ -149,12 +149,12 @@ def of_kind(kind: str) -> Callable[[int], bytes]:
 
 
 def from_one_address(_: int) -> str:
-    """The address of each attacking connection: the same for all."""
+    """Return the address of an attacking connection: the same for all."""
     return SOURCE
 
 
 def from_addresses(number: int) -> str:
-    """The address of each attacking connection: one of its own."""
+    """Return the address of an attacking connection: a different one for each."""
     return f"127.0.3.{number + 1}"
 
 
@@ -164,9 +164,9 @@ def costly(
     *,
     again: bool = True,
 ) -> Flood:
-    """Costly requests on 16 connections, each sent as soon as the last is answered.
+    """Return a flood of costly requests on 16 connections, each sent after the last answer.
 
-    Not ``again`` over the same connection, each has one of its own.
+    Unless ``again``, each request opens a new connection.
     """
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
@@ -197,15 +197,15 @@ def costly(
 
 
 def _answer(line: socket.socket, until: float) -> bool:
-    """Read one answer; false where the connection ends, or the time."""
-    came = b""
+    """Read one answer; return False if the connection or the time ends before."""
+    received = b""
     while time.monotonic() < until:
         with suppress(TimeoutError):
             part = line.recv(10**6)
             if not part:
                 return False
-            came += part
-            head, _, body = came.partition(b"\r\n\r\n")
+            received += part
+            head, _, body = received.partition(b"\r\n\r\n")
             if len(body) >= int(head.lower().partition(b"content-length: ")[2].split()[0]):
                 return True
     return False

@@ -1,9 +1,9 @@
-"""Random formulas as trees of their own, and their values. Nothing here knows the program.
+"""Random formulas as trees, and their values. This module uses nothing of the program.
 
     Number 0.5 | Ratio 1/2 | Turn 90 (degrees) | Name q1
     Sum of signed terms | Product of factors | Quotient | Power (a whole exponent) | Call
 
-An angle, the argument of sin, cos and tan, is a sum of angles' names, their multiples and turns.
+The argument of sin, cos and tan is a sum of names of angles, their multiples, and constant angles.
 """
 
 import math
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 Values = NDArray[np.float64]
 
-# The robot of docs/expressions.md: joint 3 slides.
+# The robot of docs/expressions.md: joint 3 is prismatic.
 TURNING: Final = (1, 2, 4, 5, 6)
 JOINTS: Final = tuple(f"q{index}" for index in TURNING)
 ANGLES: Final = ("alpha1", "alpha2", "beta")
@@ -25,7 +25,7 @@ NAMES: Final = (*JOINTS, *ANGLES, *LENGTHS, "k")
 
 
 class Number(NamedTuple):
-    """A decimal as it is written, without a sign."""
+    """A decimal number without a sign, as text."""
 
     text: str
 
@@ -62,14 +62,14 @@ class Product(NamedTuple):
 
 
 class Quotient(NamedTuple):
-    """One over another."""
+    """A numerator over a denominator."""
 
     top: "Tree"
     bottom: "Tree"
 
 
 class Power(NamedTuple):
-    """A base and a whole exponent."""
+    """A base with an integer exponent."""
 
     base: "Tree"
     exponent: int
@@ -90,26 +90,26 @@ _FUNCTIONS: Final = {
 }  # fmt: skip
 
 
-def worth(tree: Tree, values: Mapping[str, Values]) -> Values:
-    """The value of a formula at each sample, of shape (samples,)."""
+def evaluated(tree: Tree, values: Mapping[str, Values]) -> Values:
+    """Return the values of a formula at each sample, of shape (samples,)."""
     with np.errstate(all="ignore"):
-        return np.asarray(_worth(tree, values), dtype=float)
+        return np.asarray(_evaluated(tree, values), dtype=float)
 
 
-def _worth(tree: Tree, values: Mapping[str, Values]) -> Values:
+def _evaluated(tree: Tree, values: Mapping[str, Values]) -> Values:
     match tree:
         case Name(name):
             return values[name]
         case Sum(terms):
-            return np.asarray(sum(sign * _worth(term, values) for sign, term in terms))
+            return np.asarray(sum(sign * _evaluated(term, values) for sign, term in terms))
         case Product(factors):
-            return np.asarray(math.prod(_worth(factor, values) for factor in factors))
+            return np.asarray(math.prod(_evaluated(factor, values) for factor in factors))
         case Quotient(top, bottom):
-            return _worth(top, values) / _worth(bottom, values)
+            return _evaluated(top, values) / _evaluated(bottom, values)
         case Power(base, exponent):
-            return _worth(base, values) ** float(exponent)
+            return _evaluated(base, values) ** float(exponent)
         case Call(function, arguments):
-            found: Values = _FUNCTIONS[function](*(_worth(each, values) for each in arguments))
+            found: Values = _FUNCTIONS[function](*(_evaluated(each, values) for each in arguments))
             return found
         case _:
             return _constant(tree) * np.ones_like(next(iter(values.values())))
@@ -126,12 +126,12 @@ def _constant(tree: Number | Ratio | Turn) -> float:
 
 
 def numbers(random: Random, samples: int = 7) -> dict[str, Values]:
-    """A value of each name at each sample."""
+    """Return random values of shape (samples,) for each name."""
     return {name: np.array([random.uniform(0.25, 1.25) for _ in range(samples)]) for name in NAMES}
 
 
 def angle(random: Random) -> Tree:
-    """What sin and cos are taken of."""
+    """Return a random argument of sin, cos or tan."""
     if random.random() < 0.55:
         chosen = sorted(random.sample(JOINTS, random.choice((1, 1, 1, 2, 2, 3))))
         terms: list[tuple[int, Tree]] = [(1, Name(name)) for name in chosen]
@@ -171,7 +171,7 @@ def _number(random: Random) -> Tree:
 
 
 def factor(random: Random, depth: int) -> Tree:
-    """One factor of a product."""
+    """Return a random factor of a product."""
     kind = random.random()
     if kind < 0.3:
         return Name(random.choice((*LENGTHS, "k")))
@@ -205,21 +205,21 @@ def _call(random: Random, depth: int) -> Tree:
 
 
 def product(random: Random, depth: int) -> Tree:
-    """A term of a sum."""
+    """Return a random term of a sum."""
     factors = tuple(factor(random, depth) for _ in range(random.choice((1, 1, 2, 2, 2, 3, 4))))
     whole = factors[0] if len(factors) == 1 else Product(factors)
     return Quotient(whole, factor(random, depth)) if random.random() < 0.12 else whole
 
 
 def formula(random: Random, depth: int = 2) -> Tree:
-    """An entry as forward kinematics has it, or something wilder."""
+    """Return a random formula, often as in forward kinematics."""
     count = random.choice((1, 1, 1, 2, 2, 3, 4))
     terms = tuple((random.choice((1, 1, 1, -1)), product(random, depth)) for _ in range(count))
     return terms[0][1] if count == 1 and terms[0][0] == 1 else Sum(terms)
 
 
 def changed_sign(random: Random, tree: Tree) -> Tree:
-    """The same with another sign somewhere in its sum, or in front."""
+    """Return the formula with one sign changed."""
     if isinstance(tree, Sum):
         at = random.randrange(len(tree.terms))
         terms = list(tree.terms)

@@ -1,4 +1,4 @@
-"""Whole submissions in many spellings: their verdicts and points are those of plain writing."""
+"""Compare the reports on submissions in many spellings with that on the plain spelling."""
 
 import json
 import re
@@ -24,9 +24,9 @@ from tests.attack.formulas import (
     Tree,
     Turn,
     changed_sign,
+    evaluated,
     formula,
     numbers,
-    worth,
 )
 from tests.attack.spellings import PLAIN, Spelling, Writer
 from tests.grading.support.exercise_texts import graded, one_part
@@ -62,9 +62,9 @@ _TERM: Final = re.compile(r"\s*([+-]?)\s*([A-Za-z][A-Za-z_]*\d?|\d+deg|[\d.]+)")
 
 
 def exercise_of(trees: Sequence[Sequence[Tree]]) -> Exercise:
-    """An exercise that asks for this matrix."""
+    """Return an exercise whose answer is this matrix."""
     plain = Writer(PLAIN, Random(0))
-    # A list of texts in JSON is one in TOML.
+    # A list of texts is written in TOML as in JSON.
     rows = json.dumps([[plain.write(each) for each in row] for row in trees])
     text = one_part("matrix", f'expected = {rows}\nquantity = "number"', _SETTING)
     with tempfile.TemporaryDirectory() as folder:
@@ -74,23 +74,23 @@ def exercise_of(trees: Sequence[Sequence[Tree]]) -> Exercise:
 
 
 def _signature(report: PartReport) -> tuple[object, ...]:
-    """The verdicts and points of a report."""
+    """Return the verdicts and points of a report."""
     cells = [[cell.verdict.value for cell in row.cells] for row in report.rows]
     return report.verdict.value, report.points, [row.points for row in report.rows], cells
 
 
 def _refused(report: PartReport) -> bool:
-    """Whether some of it could not be read."""
+    """True if some cell could not be read or is missing."""
     verdicts = {cell.verdict for row in report.rows for cell in row.cells}
     return bool({Verdict.UNREADABLE, Verdict.MISSING} & (verdicts | {report.verdict}))
 
 
 def _spoiled(random: Random, trees: Trees) -> tuple[Trees, tuple[int, int]] | None:
-    """The matrix with another sign in one entry, if that changes what it is worth."""
+    """Return the matrix with a sign changed and the place of that, or None if no value changes."""
     i, j = random.randrange(len(trees)), random.randrange(len(trees[0]))
     changed = changed_sign(random, trees[i][j])
     values = numbers(random)
-    before, after = worth(trees[i][j], values), worth(changed, values)
+    before, after = evaluated(trees[i][j], values), evaluated(changed, values)
     if np.max(np.abs(after - before)) < 0.05 * max(1.0, np.max(np.abs(before))):
         return None
     rows = [list(row) for row in trees]
@@ -99,7 +99,7 @@ def _spoiled(random: Random, trees: Trees) -> tuple[Trees, tuple[int, int]] | No
 
 
 def _is_tame(tree: Tree) -> bool:
-    """Whether the value is a moderate number wherever joints and lengths are."""
+    """True if the value is a moderate number for all values of joints and lengths."""
     match tree:
         case Sum(terms):
             return all(_is_tame(term) for _, term in terms)
@@ -121,7 +121,7 @@ def _drawn(random: Random) -> Tree:
 
 
 def matrices(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """A matrix, right and with a changed sign, pasted in a few formats and as a list."""
+    """Submit a right matrix, and one with a changed sign, in a few formats; yield the outcomes."""
     trees = [[_drawn(random) for _ in range(3)] for _ in range(random.randint(2, 3))]
     exercise = exercise_of(trees)
     spoiled = _spoiled(random, trees)
@@ -168,7 +168,7 @@ def _reasons(report: PartReport) -> set[str]:
 
 
 def _tree(text: str) -> Tree | None:
-    """A cell of a model table as a tree; none for what is no sum of names, numbers and degrees."""
+    """Return a cell of a model table as a tree, or None if it is no sum of simple terms."""
     terms: list[tuple[int, Tree]] = []
     at = 0
     for match in _TERM.finditer(text):
@@ -186,7 +186,7 @@ def _tree(text: str) -> Tree | None:
 
 @memoized_by_exercise
 def _trees_of(exercise: Exercise) -> Trees | None:
-    """The model table in trees; none where it has other cells, or names that begin with q."""
+    """Return the model table as trees, or None if it has other cells or names q1, q2, …"""
     rows = model_of(exercise).answers["table"]["rows"]
     trees = [[_tree(str(row[column])) for column in COLUMNS] for row in rows]
     found = [[tree for tree in row if tree is not None] for row in trees]
@@ -196,7 +196,7 @@ def _trees_of(exercise: Exercise) -> Trees | None:
 
 
 def _table(random: Random) -> tuple[Exercise, Trees]:
-    """One of the model tables."""
+    """Return a random exercise with a table, and its model table."""
     with_tables = [each for each in exercises() if each.part("table")]
     while True:
         exercise = random.choice(with_tables)
@@ -205,7 +205,7 @@ def _table(random: Random) -> tuple[Exercise, Trees]:
 
 
 def _slips(random: Random, trees: Trees) -> Trees:
-    """The table with none, one or two slips."""
+    """Return the table with none, one or two random slips."""
     rows = [list(row) for row in trees]
     for _ in range(random.choice((0, 1, 1, 2))):
         row = random.choice(rows)
@@ -223,7 +223,7 @@ def _slips(random: Random, trees: Trees) -> Trees:
     return rows
 
 
-# Headers of the columns as people write them.
+# Column headers as people write them.
 _HEADERS: Final = (
     ("a", "alpha", "d", "theta"),
     ("a_i", "alpha_i", "d_i", "theta_i"),
@@ -233,7 +233,7 @@ _HEADERS: Final = (
 
 
 def tables(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """A table, right or with slips, as rows and pasted, its columns in some order."""
+    """Submit a table, right or with slips, as rows and pasted; yield the outcomes."""
     exercise, trees = _table(random)
     rows = _slips(random, trees)
     plain = Writer(PLAIN, random)

@@ -1,4 +1,4 @@
-"""Honest clients: what they wait for their answers while somebody else attacks."""
+"""Honest clients: measure how long they wait for their answers during an attack."""
 
 import http.client
 import threading
@@ -18,18 +18,18 @@ GRADE = f"/v1/exercises/{EXERCISE}/grade"
 
 @dataclass
 class Waits:
-    """How long answers took, in seconds, and how many never came."""
+    """The waiting times of answers in seconds, and the requests without an answer."""
 
     seconds: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
 
     def quantile(self, share: float) -> float:
-        """The wait that so many were not above, in seconds."""
+        """Return the quantile of the waiting times for a share between 0 and 1, in seconds."""
         ordered = sorted(self.seconds) or [float("nan")]
         return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
 
     def __str__(self) -> str:
-        """The waits in milliseconds."""
+        """Return the waiting times in milliseconds, as one line."""
         p50, p99, longest = (1e3 * self.quantile(share) for share in (0.5, 0.99, 1.0))
         failed = f", {len(self.failures)} failed: {self.failures[0]}" if self.failures else ""
         return (
@@ -41,9 +41,9 @@ class Waits:
 def watched(
     running: Service, pause: float = 0.0, source: str = "127.0.0.2"
 ) -> Iterator[tuple[Waits, Waits]]:
-    """The waits of honest submissions, and of questions about health, as long as this lasts.
+    """Run honest clients meanwhile; yield the waiting times of submissions and of health checks.
 
-    Each client makes a ``pause`` after each answer, in seconds.
+    Each client pauses for ``pause`` seconds after each answer.
     """
     submissions, health = Waits(), Waits()
     over = threading.Event()
@@ -68,7 +68,7 @@ def watched(
             over.wait(pause)
         connection.close()
 
-    # The same ones each time, half of them with one to four slips.
+    # The same bodies in each run, half of them with one to four slips.
     bodies = tables(seed=1, wrong=0.5)
     next(bodies)
     lock = threading.Lock()

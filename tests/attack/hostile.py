@@ -1,8 +1,7 @@
-"""Texts, grids and whole requests that nobody wrote, and what must hold for each of them.
+"""Generate texts, grids and whole requests, and check how the program reads them.
 
-Each is read among the others, and again from empty caches when the others of its group have been
-read; one in five at once again, too. It must be the same, and nothing but the documented error
-escapes.
+Each case is read once, and again from empty caches after all others of its group; one in five is
+also read twice in a row. All readings must be equal, and only documented errors may be raised.
 """
 
 import json
@@ -25,12 +24,13 @@ from tests.benchmarks.floors import stanford_pose
 from tests.expressions.fuzzing import next_outcome, texts
 from tests.grids import test_hostile as grids
 
-# Shares of what is read; a request costs as much as fifty texts.
+# The shares of the kinds of cases; a request costs as much as fifty texts.
 GRIDS: Final = 0.08
 SUBMISSIONS: Final = 0.01
 PREVIEWS: Final = 0.01
-AT_ONCE: Final = 5
-# So many of the costliest are kept of each group.
+# One in this number of cases is read twice in a row.
+TWICE: Final = 5
+# The number of the costliest cases that are kept.
 COSTLIEST: Final = 20
 
 
@@ -42,14 +42,14 @@ class Case(NamedTuple):
     degrees: bool = False
 
     def __str__(self) -> str:
-        """What to look at, cut where it is long."""
+        """Return the case as a line of a report, shortened."""
         value = self.value
         shown = repr(value) if isinstance(value, str) else f"{value.path} {value.body!r}"
         return f"{self.kind}{' in degrees' if self.degrees else ''}: {shown[:600]}"
 
 
 class Costly(NamedTuple):
-    """A case and its processor time as a multiple of the floor's."""
+    """A case and its processor time as a multiple of the numpy floor."""
 
     ratio: float
     case: Case
@@ -57,7 +57,7 @@ class Costly(NamedTuple):
 
 @dataclass
 class Found:
-    """What came of many cases."""
+    """The results of many cases."""
 
     count: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
@@ -66,7 +66,7 @@ class Found:
     costliest: list[Costly] = field(default_factory=list)
 
     def add(self, other: "Found") -> None:
-        """Put what another group came to with this."""
+        """Add the results of another group."""
         self.count += other.count
         self.outcomes += other.outcomes
         self.escaped += other.escaped
@@ -77,7 +77,7 @@ class Found:
 
 
 def cases(count: int, seed: str) -> Iterator[Case]:
-    """Yield so many cases; the same seed gives the same ones."""
+    """Yield ``count`` cases; the same seed gives the same ones."""
     random = Random(seed)
     single = texts(count, random.getrandbits(60))
     for _ in range(count):
@@ -110,21 +110,21 @@ def _grid(random: Random) -> str:
 
 
 class Reading:
-    """The program as these cases use it: one in each process."""
+    """Reads cases with the program, in this process."""
 
     @cached_property
     def service(self) -> InProcess:
-        """The routes, made when the first request comes."""
+        """The routes of the service, built at the first request."""
         return InProcess()
 
     def close(self) -> None:
-        """Close what was opened."""
+        """Close the service."""
         self.service.close()
 
     def outcome(self, case: Case) -> tuple[str, bytes, float]:
-        """What kind of outcome, a digest of all of it, and its processor time.
+        """Return the kind of the outcome, a digest of it, and the processor time.
 
-        Raises AssertionError, or whatever escapes.
+        Raises AssertionError, and all undocumented exceptions of the program.
         """
         start = time.process_time()
         if isinstance(case.value, Post):
@@ -132,7 +132,7 @@ class Reading:
             seconds = time.process_time() - start
             assert status < 500, body
             json.loads(body)
-            # A problem names its request, and no two requests have one name.
+            # A problem contains the request id, which differs for each request.
             return f"{case.kind} {status}", _digest(_REQUEST_ID.sub(b"", body)), seconds
         if case.kind == "grid":
             one, several = grids.outcome(case.value), grids.outcomes(case.value)
@@ -141,7 +141,7 @@ class Reading:
             named = "refused" if isinstance(one, tuple) else "read"
             return f"grid {named}", _digest(repr((one, several)).encode(*_CODEC)), seconds
         fingerprint, seconds = next_outcome(case.value, degrees=case.degrees)
-        # An error is a code, a message, a span and a suggestion.
+        # An error has four items: a code, a message, a span and a suggestion.
         named = f"refused: {fingerprint[0]}" if len(fingerprint) == 4 else "read"
         return f"text {named}", _digest(repr(fingerprint).encode(*_CODEC)), seconds
 
@@ -155,7 +155,7 @@ def _digest(data: bytes) -> bytes:
 
 
 def floor_seconds() -> float:
-    """The processor time of the plain-numpy floor of ``make bench``, now."""
+    """Measure the processor time of the plain-numpy floor of ``make bench``."""
     spent = []
     for _ in range(100):
         start = time.process_time()
@@ -164,23 +164,23 @@ def floor_seconds() -> float:
     return median(spent)
 
 
-def forget() -> None:
+def clear_caches() -> None:
     """Empty every cache of the program."""
     for clear in caches():
         clear()
 
 
 def group(chosen: Sequence[Case], reading: Reading) -> Found:
-    """Read each of these cases, and again."""
+    """Read each case twice or three times; return the results."""
     found = Found(len(chosen))
     digests: list[bytes | None] = []
     floor = floor_seconds()
     for number, case in enumerate(chosen):
         try:
             named, digest, _ = reading.outcome(case)
-            if number % AT_ONCE == 0 and reading.outcome(case)[1] != digest:
-                found.differing.append(f"at once again, {case}")
-        except Exception as error:  # noqa: BLE001 - whatever escapes is what is looked for
+            if number % TWICE == 0 and reading.outcome(case)[1] != digest:
+                found.differing.append(f"twice in a row, {case}")
+        except Exception as error:  # noqa: BLE001 - any exception is a finding
             found.escaped.append(f"{case}\n    {error!r}")
             digests.append(None)
             continue
@@ -202,22 +202,22 @@ def group(chosen: Sequence[Case], reading: Reading) -> Found:
 
 
 def measured(case: Case, reading: Reading) -> Costly:
-    """What the case costs from empty caches: the least of three, for other programs disturb."""
+    """Return the cost of a case from empty caches: the least of three measurements."""
     ratios = []
     for _ in range(3):
-        forget()
+        clear_caches()
         floor = floor_seconds()
         ratios.append(reading.outcome(case)[2] / floor)
     return Costly(min(ratios), case)
 
 
 def groups(count: int, seed: str, size: int) -> Iterator[tuple[int, str]]:
-    """The sizes and seeds of the groups that make up so many cases."""
+    """Yield the sizes and seeds of groups with ``count`` cases together."""
     for number in range(0, count, size):
         yield min(size, count - number), f"{seed}.{number // size}"
 
 
 def sample(count: int, seed: str) -> Found:
-    """What comes of one group."""
+    """Return the results of one group of cases."""
     with closing(Reading()) as reading:
         return group(list(cases(count, seed)), reading)

@@ -1,4 +1,4 @@
-"""The service without a socket: bytes of a body in, bytes of the answer out, by its own routes."""
+"""Call the routes of the service in this process, without a socket."""
 
 import asyncio
 import sys
@@ -11,21 +11,21 @@ from tests.shipped import shipped_exercises
 
 
 class Post(NamedTuple):
-    """A request as it is sent."""
+    """A POST request: its path and its body."""
 
     path: str
     body: bytes
 
 
 class Reply(NamedTuple):
-    """What comes back."""
+    """The status and the body of an answer."""
 
     status: int
     body: bytes
 
 
 class InProcess:
-    """The application as a server calls it, on an event loop of its own."""
+    """The application with an event loop of its own, called as a server would."""
 
     def __init__(self) -> None:
         self.catalogue = shipped_exercises()
@@ -37,7 +37,7 @@ class InProcess:
         self._loop.close()
 
     def post(self, post: Post) -> Reply:
-        """The answer. Raises whatever escapes from the application."""
+        """Return the answer to a request. Exceptions of the application are raised."""
         return self._loop.run_until_complete(self._answer(post))
 
     async def _answer(self, post: Post) -> Reply:
@@ -77,7 +77,7 @@ class InProcess:
 
 
 def caches() -> Iterator[Callable[[], None]]:
-    """What empties each cache of the program's modules."""
+    """Yield the function that empties it, for each cache in the program's modules."""
     known = set()
     for name, module in sorted(sys.modules.items()):
         if name.startswith("service."):
@@ -90,5 +90,5 @@ def caches() -> Iterator[Callable[[], None]]:
 
 
 def grade_path(exercise: Exercise) -> str:
-    """Where answers to an exercise are graded."""
+    """Return the path at which answers to an exercise are graded."""
     return f"/v1/exercises/{exercise.id}/grade"

@@ -1,4 +1,4 @@
-"""Requests that schemathesis makes up from the OpenAPI document, with all its checks."""
+"""Test the service with requests that schemathesis generates from the OpenAPI document."""
 
 import json
 import subprocess
@@ -15,18 +15,18 @@ from service.access.keys import Secret
 from service.attempts.storage.database import in_transaction, open_database
 from tests.server.raw import Service
 
-# What is right by its shape is refused all the same where it names another exercise or part (404,
-# 422), or asks for solutions that are not shown (403).
+# A request that matches the schema may still be refused: if it names an unknown exercise or part
+# (404, 422), or asks for solutions that are not shown (403).
 CONFIG = """
 [checks.positive_data_acceptance]
 expected-statuses = ["2xx", 403, 404, 422]
 """
 
 
-def as_taken(document: dict[str, Any]) -> dict[str, Any]:
-    """The OpenAPI document, with what the service takes beyond it.
+def with_all_accepted(document: dict[str, Any]) -> dict[str, Any]:
+    """Return the OpenAPI document, extended by requests that the service accepts in addition.
 
-    A field that may be left out may be null, and each of many submissions is checked by itself.
+    An optional field may be null, and each of many submissions is checked separately.
     """
     schemas = document["components"]["schemas"]
     for schema in schemas.values():
@@ -42,7 +42,7 @@ SECRET: Final = "0123456789abcdef" * 4
 
 
 def with_key(folder: Path) -> tuple[dict[str, str], str]:
-    """The settings of a service that needs keys, and a key with every scope."""
+    """Return the settings of a service that needs keys, and a key with every scope."""
     database = str(folder / "attempts.db")
     text, now = new_key_text(), datetime.now(UTC)
     until = now + timedelta(days=1)
@@ -56,16 +56,16 @@ def with_key(folder: Path) -> tuple[dict[str, str], str]:
 def faults(
     running: Service, folder: Path, examples: int, *options: str, key: str = ""
 ) -> Iterator[str]:
-    """Try every operation with so many requests; what schemathesis says if a check fails."""
+    """Try every operation with ``examples`` requests; yield schemathesis' output if one fails."""
     [answer] = running.ask(b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n")
     document, config = folder / "openapi.json", folder / "schemathesis.toml"
-    document.write_text(json.dumps(as_taken(answer.json())), encoding="utf-8")
+    document.write_text(json.dumps(with_all_accepted(answer.json())), encoding="utf-8")
     config.write_text(CONFIG, encoding="utf-8")
     command = [
         sys.executable, "-m", "schemathesis.cli", "--config-file", str(config), "--no-color",
         "run", str(document), "--url", f"http://127.0.0.1:{running.port}",
         "--checks", "all", "--max-examples", str(examples), "--warnings", "off", *options,
-        # How long it takes to make a request up says nothing of the service.
+        # The time to generate a request does not depend on the service.
         "--suppress-health-check", "too_slow",
         *(["--header", f"Authorization: Bearer {key}"] if key else []),
     ]  # fmt: skip

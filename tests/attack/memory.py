@@ -1,9 +1,9 @@
-"""`python -m tests.attack.memory --count 1000000`: does memory stay flat over different requests?
+"""`python -m tests.attack.memory --count 1000000`: does the memory grow with many requests?
 
-Bytes of a body go in and bytes of an answer come out, by the service's own routes, in one process:
-right and wrong tables and matrices, pasted texts, previews, and what nobody would write. No two are
-the same. Exit code 1 where the memory after the warm-up grows by more than is allowed, or where an
-answer is a failure. With ``--http``, the same over connections to a process that serves.
+Send requests to the routes of the service in this process: right and wrong tables and matrices,
+pasted texts, previews, and hostile requests. No two are equal. Exit with 1 if the memory after the
+warm-up grows by more than is allowed, or if an answer is a server error. With ``--http``, send the
+requests over a connection to a separate process.
 """
 
 import argparse
@@ -29,9 +29,9 @@ from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
 from tests.guards import ANSWER
 from tests.server.raw import service
 
-# All caches are full after so many: the largest keeps 8,192 texts.
+# The number of requests after which all caches are full: the largest keeps 8,192 texts.
 WARM_UP: Final = 20_000
-# Growth that is still flat, in MB: what the allocator leaves in pieces.
+# The growth in MB that is allowed, because the allocator fragments the memory.
 FLAT: Final = 20.0
 PROGRESS_SECONDS: Final = 20.0
 _STANFORD: Final = "/v1/exercises/stanford-arm/grade"
@@ -40,7 +40,7 @@ Send = Callable[[Post], int]
 
 
 def posts(seed: str) -> Iterator[Post]:
-    """Requests without end, no two the same."""
+    """Yield requests without end, no two of them equal."""
     number = 0
     while True:
         number += 1
@@ -59,7 +59,7 @@ def posts(seed: str) -> Iterator[Post]:
 
 
 def _student_s_table(random: Random, number: int) -> Post:
-    """A table with a text that nobody has written before; one in three is wrong."""
+    """Return a table that contains a new text; one in three is wrong."""
     rows = [list(row) for row in one_student_s_table(number)]
     at = random.randrange(6)
     rows[at][0] = f"{rows[at][0]} + 0*{number}"
@@ -67,7 +67,7 @@ def _student_s_table(random: Random, number: int) -> Post:
 
 
 def _matrix(random: Random, number: int) -> Post:
-    """A pose in which every entry is new; one in four has a changed entry."""
+    """Return a pose in which every entry is a new text; one in four has a wrong entry."""
     pose = distinct(T06, number)
     if random.random() < 0.25:
         pose[random.randrange(3)][random.randrange(4)] += " + s1"
@@ -85,15 +85,15 @@ def _graded(answers: dict[str, object]) -> Post:
 
 
 def resident(process: int | None = None) -> float:
-    """The memory of a process, of this one by default, in MB; nan where the system does not say."""
+    """Return the resident memory of a process (default: this one) in MB, or nan if unknown."""
     status = Path(f"/proc/{process or os.getpid()}/status")
     found = status.is_file() and re.search(r"VmRSS:\s+(\d+)", status.read_text(encoding="ascii"))
     return int(found[1]) / 1024 if found else float("nan")
 
 
 @dataclass
-class Course:
-    """How the memory went, in MB, and how many requests were answered with a failure."""
+class MemoryUse:
+    """The memory in MB after the warm-up and at the end, and the number of server errors."""
 
     count: int
     warm: float
@@ -102,11 +102,11 @@ class Course:
 
     @property
     def growth(self) -> float:
-        """From the end of the warm-up to the end."""
+        """The growth in MB after the warm-up."""
         return self.end - self.warm
 
     def __str__(self) -> str:
-        """One line."""
+        """Return the figures as one line."""
         return (
             f"{self.count:,} requests: {self.warm:.1f} MB after the warm-up, {self.end:.1f} MB at "
             f"the end, {self.growth:+.1f} MB; {self.failures} failures"
@@ -117,7 +117,7 @@ class Course:
 def in_process() -> Iterator[tuple[Send, Callable[[], float]]]:
     """Send requests to the routes in this process."""
     with closing(InProcess()) as running:
-        # As the server does when it starts.
+        # The server does this when it starts.
         gc.collect()
         gc.freeze()
         try:
@@ -128,7 +128,7 @@ def in_process() -> Iterator[tuple[Send, Callable[[], float]]]:
 
 @contextmanager
 def over_http() -> Iterator[tuple[Send, Callable[[], float]]]:
-    """Send requests to a process that serves, by one connection."""
+    """Send requests to a process of the service over one connection."""
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as running:
         connection = http.client.HTTPConnection("127.0.0.1", running.port, timeout=ANSWER)
 
@@ -142,45 +142,45 @@ def over_http() -> Iterator[tuple[Send, Callable[[], float]]]:
             yield send, lambda: resident(running.process.pid)
 
 
-def course(
+def measured(
     count: int,
     warm_up: int,
     seed: str,
     way: Callable[[], object] = in_process,
     minutes: float = float("inf"),
-) -> Course:
-    """Send so many requests after the warm-up, fewer if time is over; how the memory went."""
+) -> MemoryUse:
+    """Send ``count`` requests after the warm-up, fewer if the time ends; return the memory use."""
     with way() as (send, memory):  # type: ignore[attr-defined]
         endless = posts(seed)
         failures = sum(send(post) >= 500 for post in islice(endless, warm_up))
         gc.collect()
         warm = memory()
-        told = began = time.monotonic()
+        reported = began = time.monotonic()
         sent = 0
         for post in islice(endless, count):
             failures += send(post) >= 500
             sent += 1
             now = time.monotonic()
-            if now - told > PROGRESS_SECONDS:
-                told = now
+            if now - reported > PROGRESS_SECONDS:
+                reported = now
                 sys.stderr.write(f"{sent:,} of {count:,}: {memory():.1f} MB, began at {warm:.1f}\n")
             if now - began > 60 * minutes:
                 break
         gc.collect()
-        return Course(warm_up + sent, warm, memory(), failures)
+        return MemoryUse(warm_up + sent, warm, memory(), failures)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Send the requests and print how the memory went; return the exit code."""
+    """Send the requests and print the memory use; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=100_000, help="after the warm-up")
+    parser.add_argument("--count", type=int, default=100_000, help="requests after the warm-up")
     parser.add_argument("--warm-up", type=int, default=WARM_UP)
     parser.add_argument("--seed", default="1")
-    parser.add_argument("--http", action="store_true", help="to a process that serves")
-    parser.add_argument("--minutes", type=float, default=float("inf"), help="stop after so long")
+    parser.add_argument("--http", action="store_true", help="use a separate process")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="stop after this time")
     options = parser.parse_args(arguments)
     way = over_http if options.http else in_process
-    found = course(options.count, options.warm_up, options.seed, way, options.minutes)
+    found = measured(options.count, options.warm_up, options.seed, way, options.minutes)
     sys.stdout.write(f"{found}\n")
     return int(found.failures > 0 or found.growth > FLAT)
 

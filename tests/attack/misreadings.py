@@ -1,9 +1,9 @@
 """`python -m tests.attack.misreadings`: is a formula ever read as another one?
 
-Each formula is written in every spelling, and several in every format of a grid. The program must
-read what an oracle of the tests' own says that it is worth, or refuse it. Whole submissions get
-the verdicts and points of the same answer in plain writing, and a changed sign is never right.
-Exit code 1 where anything was misread, or where too much was refused.
+Write each random formula in every spelling, and matrices of formulas in every grid format. The
+program must read the value that an oracle of the tests computes, or refuse the text. A submission
+must get the verdicts and points of the same answer in plain spelling, and a changed sign must
+never be right. Exit with 1 if a text was misread, or if too many were refused.
 """
 
 import argparse
@@ -24,17 +24,17 @@ from tests.attack.formulas import (
     Tree,
     Values,
     angle,
+    evaluated,
     formula,
     numbers,
-    worth,
 )
 from tests.attack.spellings import OPEN, SPELLINGS, Spelling, Writer
 from tests.expressions.corpus_files import ROBOT
 from tests.grids.writers import FORMATS
 
-# The share of texts that may be refused in any spelling, and in any format.
+# The largest share of texts that may be refused, in each spelling and in each format.
 REFUSED: Final = 0.02
-# Grids in which blanks may part the cells, and those that are LaTeX.
+# Grids in which blanks may separate the cells, and those in LaTeX.
 BLANKS: Final = frozenset({
     "columns", "one blank", "MATLAB", "MATLAB with blanks", "MATLAB with lines",
     "MATLAB without brackets", "MATLAB print", "array print",
@@ -50,34 +50,34 @@ _CANONICAL: Final = {f"q{index}": f"theta{index}" for index in TURNING} | {"q3":
 
 @dataclass
 class Tally:
-    """What came of the texts of each spelling or format, and the texts that were misread."""
+    """Counts the outcomes for each spelling or format, and keeps the misread texts."""
 
     outcomes: dict[str, Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
     misread: list[str] = field(default_factory=list)
 
     def add(self, name: str, outcome: str, text: str = "") -> None:
-        """Count an outcome; a misread text is kept."""
+        """Count an outcome, and keep a misread text."""
         self.outcomes[name][outcome] += 1
         if outcome == "misread":
             self.misread.append(f"{name}: {text}")
 
     def refused(self, name: str) -> float:
-        """The share of texts that were refused."""
+        """Return the share of texts that were refused."""
         counted = self.outcomes[name]
         return counted.total() and 1 - counted["read"] / counted.total()
 
 
 def is_steady(tree: Tree, values: dict[str, Values]) -> bool:
-    """Whether rounding changes nothing, so that two ways of working it out must agree."""
-    found = worth(tree, values)
-    near = worth(tree, {name: each * (1 + 1e-12) for name, each in values.items()})
+    """True if rounding hardly changes the values, so that two computations must agree."""
+    found = evaluated(tree, values)
+    near = evaluated(tree, {name: each * (1 + 1e-12) for name, each in values.items()})
     return bool(np.all(np.isfinite(found)) and np.all(np.abs(found) < 1e9)) and bool(
         np.allclose(found, near, rtol=1e-9, atol=1e-9)
     )
 
 
 def drawn(random: Random, depth: int = 2) -> tuple[Tree, dict[str, Values]]:
-    """A formula that is defined everywhere, and values of its names."""
+    """Return a random formula that is defined everywhere, and values for its names."""
     while True:
         tree = angle(random) if random.random() < 0.1 else formula(random, depth)
         values = numbers(random)
@@ -86,19 +86,19 @@ def drawn(random: Random, depth: int = 2) -> tuple[Tree, dict[str, Values]]:
 
 
 def outcome(text: str, tree: Tree, values: dict[str, Values], *, degrees: bool) -> str:
-    """Whether a text is read as the formula that it was written from: read, misread, or refused."""
+    """Return "read" if a text is read as the formula ``tree``, else "misread" or "refused: …"."""
     try:
         expression = read(text, ROBOT, angle_unit="degrees" if degrees else "radians")
     except ExpressionError as error:
         return f"refused: {error.code}"
     named = {_CANONICAL.get(name, name): value for name, value in values.items()}
     found = np.broadcast_to(expression.evaluate(named), len(values["k"]))
-    same = np.allclose(found, worth(tree, values), rtol=1e-7, atol=1e-8)
+    same = np.allclose(found, evaluated(tree, values), rtol=1e-7, atol=1e-8)
     return "read" if same else "misread"
 
 
 def entries(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
-    """Write so many formulas in every spelling; yield spelling, outcome, text."""
+    """Write ``count`` formulas in every spelling; yield spelling, outcome, text."""
     for number in range(count):
         random = Random(f"{seed}.{number}")
         tree, values = drawn(random)
@@ -108,7 +108,7 @@ def entries(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
 
 
 def suited(name: str, random: Random) -> Spelling:
-    """A spelling that a cell of this format may have."""
+    """Return a random spelling for the cells of a grid format."""
     if name in BLANKS:
         return random.choice(TIGHT)
     closed = [each for each in SPELLINGS if each not in OPEN]
@@ -118,12 +118,12 @@ def suited(name: str, random: Random) -> Spelling:
         # A backslash and a bar have other meanings there.
         closed = [each for each in closed if "LaTeX" not in each]
     spelling = replace(SPELLINGS[random.choice(closed)], around=("{}",))
-    # A text that begins with a bracket is a list.
+    # A text that begins with a square bracket would be a list.
     return spelling if name in LATEX or spelling.latex else replace(spelling, opening=("(",))
 
 
 def grids(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
-    """Write so many matrices in every format; yield format, outcome, text."""
+    """Write ``count`` matrices in every format; yield format, outcome, text."""
     for number in range(count):
         random = Random(f"{seed}.{number}")
         rows, columns = random.randint(2, 4), random.randint(2, 4)
@@ -153,7 +153,7 @@ def _grid_outcome(text: str, trees: Sequence[Sequence[tuple[Tree, dict[str, Valu
 
 
 def submissions(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
-    """Hand in so many matrices and tables; yield what, outcome, text."""
+    """Submit ``count`` matrices and tables; yield kind, outcome, text."""
     for number in range(count):
         random = Random(f"{seed}.{number}")
         yield from graded.matrices(random, suited)
@@ -168,7 +168,7 @@ SECTIONS: Final[dict[str, Callable[[int, str], Iterable[tuple[str, str, str]]]]]
 
 
 def tallied(section: str, count: int, seed: str) -> Tally:
-    """What comes of so many formulas or grids."""
+    """Return the tally of one section with ``count`` formulas, grids or submissions."""
     tally = Tally()
     for name, found, text in SECTIONS[section](count, seed):
         tally.add(name, found, text)

@@ -1,7 +1,7 @@
-"""A formula written in the spellings that docs/expressions.md promises, at random.
+"""Write formulas in the spellings that docs/expressions.md promises.
 
-A spelling is a set of habits: how a name, a product, a power, a function, a turn is written. A
-writer knows where brackets must stand, and puts more where none need to.
+A spelling says how names, products, powers, functions and constant angles are written. A writer
+adds the brackets that are needed, and sometimes more.
 """
 
 from collections.abc import Callable, Mapping
@@ -29,15 +29,15 @@ _HALVES: Final = {(1, 2): "½", (1, 4): "¼", (3, 4): "¾", (1, 3): "⅓", (2, 3
 _DIGITS: Final = frozenset("0123456789.½¼¾⅓⅔⅕")
 _GREEK: Final = {"theta": "θ", "alpha": "α", "beta": "β"}
 
-# How strongly a text holds together: as a sum, a product, a power, or by itself.
+# The precedence of a text's outermost operation; an atom needs no brackets.
 SUM, PRODUCT, POWER, ATOM = range(4)
-# The text and its strength.
+# A text and its precedence.
 Written = tuple[str, int]
 
 
 @dataclass(frozen=True)
 class Spelling:
-    """The habits of one way of writing."""
+    """One way of writing formulas; where it has several variants, one is drawn at random."""
 
     names: Callable[[Random, str, str], str]
     times: tuple[str, ...] = ("*",)
@@ -178,28 +178,28 @@ SPELLINGS["mixed"] = replace(
         for name in ("plain", "Python", "Unicode", "Greek", "shorthand", "LaTeX", "LaTeX, mixed")
     ),
 )
-# What stands between values in a matrix would part these, or they hold what parts cells.
+# Spellings that are not used in grids: their texts contain separators of cells.
 OPEN: Final = frozenset({
     "blanks", "named", "MATLAB", "Mathematica", "mixed", "form in degrees"
 })  # fmt: skip
 
 
 class Writer:
-    """Writes a formula in one spelling; what is left open is drawn at random."""
+    """Writes formulas in one spelling; open choices are drawn at random."""
 
     def __init__(self, spelling: Spelling, random: Random) -> None:
         self._s = spelling
         self._random = random
 
     def write(self, tree: Tree) -> str:
-        """The formula as text."""
+        """Return the formula as text."""
         return self._random.choice(self._s.around).format(self._text(tree, SUM))
 
     def _blank(self) -> str:
         return self._random.choice(self._s.blanks)
 
     def _text(self, tree: Tree, least: int, *, angle: bool = False) -> str:
-        """The formula, in brackets where it holds less well together than ``least``."""
+        """Return the formula, in brackets if its precedence is lower than ``least``."""
         if self._s.others and self._random.random() < 0.4:
             other = replace(self._random.choice(self._s.others), others=self._s.others)
             return Writer(other, self._random)._text(tree, least, angle=angle)
@@ -211,7 +211,7 @@ class Writer:
     def _bracketed(self, text: str) -> str:
         opening = self._random.choice(self._s.opening)
         if opening not in {"(", r"\left("} and text.isdigit():
-            # q_1 [2] is an index.
+            # In q_1 [2], the bracket would be read as an index.
             opening = "("
         return f"{opening}{self._blank()}{text}{self._blank()}{_CLOSING[opening]}"
 
@@ -282,12 +282,12 @@ class Writer:
         return text
 
     def _product(self, factors: tuple[Tree, ...]) -> str:
-        """Numbers first where a product is not always marked, as everybody writes it."""
+        """Return a product; numbers come first if the spelling may omit the sign of a product."""
         marked = not set(self._s.times) & {"", " ", r" \, "}
         ordered = factors if marked else sorted(factors, key=_place_in_product)
         text = ""
         for at, each in enumerate(ordered):
-            # A quotient in front is the whole of what stands before the product.
+            # A quotient needs no brackets as the first factor.
             is_quotient = isinstance(each, Quotient | Ratio | Product | Turn)
             least = ATOM if (is_quotient and at) or not marked else POWER
             if at == 0 and isinstance(each, Ratio) and self._random.random() < 0.5:
@@ -300,7 +300,7 @@ class Writer:
             if times == "" and not _may_touch(text, written):
                 times = " "
             if times.strip() == "" or times == r" \, ":
-                # Two numbers side by side are no product, nor is a mixed number.
+                # Two adjacent numbers are not read as a product, nor is a mixed number.
                 is_mixed = isinstance(ordered[at - 1], Number) and "frac" in written[:6]
                 if written[0] in _DIGITS or is_mixed or _is_bare(text, self._s):
                     times = "*" if not self._s.latex else r" \cdot "
@@ -313,7 +313,7 @@ class Writer:
     def _quotient(self, top: Tree, bottom: Tree) -> Written:
         if self._s.divided == "frac":
             return rf"\frac{{{self._text(top, SUM)}}}{{{self._text(bottom, SUM)}}}", ATOM
-        # A product without signs before a stroke is read as it stands: a b/c is a (b/c).
+        # A product without signs needs no brackets before a slash: a b/c is a (b/c).
         over = self._text(top, ATOM if isinstance(top, Quotient | Ratio | Turn) else POWER)
         if isinstance(top, Product) and self._random.random() < 0.5:
             over = self._text(top, PRODUCT)
@@ -338,7 +338,7 @@ class Writer:
             if self._random.random() < self._s.powered_function:
                 return self._call(base.function, base.arguments, self._raised(exponent))
         if isinstance(base, Call):
-            # cos(q1)^2 is as good as (cos(q1))^2; bars and roots have their own ends.
+            # cos(q1)^2 needs no further brackets; bars and roots have an end of their own.
             bare = replace(self._s, bare=0.0)
             text = Writer(bare, self._random)._text(base, ATOM)
         else:
@@ -346,7 +346,7 @@ class Writer:
         return text + self._raised(exponent), POWER
 
     def _shorthand(self, call: Call) -> str:
-        """c12 for the cosine of a sum of joint angles; nothing for any other."""
+        """Return the shorthand (c12) for the sine or cosine of a sum of joint angles, or ""."""
         if call.function not in ("sin", "cos"):
             return ""
         [of] = call.arguments
@@ -405,12 +405,12 @@ class Writer:
 
 
 def _cosine_of_theta(random: Random, letter: str, digits: str) -> str:
-    r"""A cosine of one joint angle as LaTeX has it: c\theta_1, c_{\theta_1}."""
+    r"""Return the LaTeX shorthand for a cosine of one joint angle: c\theta_1, c_{\theta_1}."""
     return random.choice((rf"{letter}\theta_{digits}", rf"{letter}_{{\theta_{digits}}}"))
 
 
 def _place_in_product(each: Tree) -> int:
-    """Numbers, then names, then functions, then what needs brackets."""
+    """Return a sort key: numbers, then names, then functions, then factors in brackets."""
     for place, kinds in enumerate(((Number,), (Ratio, Turn), (Name,), (Power,))):
         if isinstance(each, kinds):
             return place
@@ -418,12 +418,12 @@ def _place_in_product(each: Tree) -> int:
 
 
 def _may_touch(left: str, right: str) -> bool:
-    """Whether a product may be written without even a blank."""
+    """True if a product may be written without a sign or blank between its factors."""
     if right[0] in "([" or left[-1] in ")]":
         return True
     return right[0].isalpha() and (left[-1].isdigit()) and right[0] not in "eE"
 
 
 def _is_bare(text: str, spelling: Spelling) -> bool:
-    """Whether a text ends with a function's argument that no bracket closes."""
+    """True if a text ends with the argument of a function without brackets."""
     return bool(spelling.bare) and text[-1] not in ")]}"

@@ -11,8 +11,8 @@ def test_hostile_texts_grids_and_requests() -> None:
     assert kinds == {"text", "grid", "submission", "preview"}
 
 
-class Forgetful(Reading):
-    """A program that reads a text in another way each time, and fails at one."""
+class Unsteady(Reading):
+    """A reader whose outcome differs each time, and which fails at the text "bad"."""
 
     def __init__(self) -> None:
         self.times = 0
@@ -24,14 +24,14 @@ class Forgetful(Reading):
         return "text read", str(self.times).encode(), 0.0
 
 
-def test_what_escapes_and_what_differs_is_found() -> None:
-    found = group([Case("text", "q1"), Case("text", "bad")], Forgetful())
-    assert [line.split()[0] for line in found.differing] == ["at", "from"]
+def test_exceptions_and_differing_readings_are_found() -> None:
+    found = group([Case("text", "q1"), Case("text", "bad")], Unsteady())
+    assert [line.split()[0] for line in found.differing] == ["twice", "from"]
     assert len(found.escaped) == 1
     total = Found()
     total.add(found)
     assert (total.count, total.outcomes["text read"]) == (2, 1)
 
 
-def test_groups_make_up_the_count() -> None:
+def test_the_sizes_of_the_groups_sum_up_to_the_count() -> None:
     assert list(groups(1200, "a", 500)) == [(500, "a.0"), (500, "a.1"), (200, "a.2")]

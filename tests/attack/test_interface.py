@@ -1,4 +1,4 @@
-"""A small sample of the requests that `make attack` makes up from the OpenAPI document."""
+"""A small sample of the requests that `make attack` generates from the OpenAPI document."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from tests.server.raw import service
 
 
 @pytest.mark.parametrize("keyed", [False, pytest.param(True, marks=pytest.mark.campaign)])
-def test_the_service_does_what_its_document_says(tmp_path: Path, keyed: bool) -> None:
+def test_the_service_follows_its_openapi_document(tmp_path: Path, keyed: bool) -> None:
     phases = "examples,fuzzing" if keyed else "examples"
     sample = ["--phases", phases, "--no-shrink", "--generation-database", "none"]
     settings, key = with_key(tmp_path) if keyed else ({}, "")

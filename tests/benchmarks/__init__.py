@@ -1,1 +1,1 @@
-"""Measurements against the budgets: ``python -m tests.benchmarks``."""
+"""Measure the program and compare it with its budgets: ``python -m tests.benchmarks``."""

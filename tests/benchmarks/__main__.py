@@ -1,7 +1,7 @@
-"""Print every figure that has a budget, as a multiple of a plain-numpy floor, beside the budget.
+"""Print every figure with its budget, both as multiples of a plain-numpy floor.
 
-With ``--against DIR``, print instead each line as a multiple of the floor here and in another
-checkout, both measured in turn; exit with 1 where a line is slower here by more than 3 %.
+With ``--against DIR``, compare this checkout with another one: measure both in turn, and exit with
+1 if a line is slower here by more than 3 %.
 """
 
 import argparse
@@ -27,7 +27,7 @@ ENTRY = "-s1*(d3*s2 + d2*c2) + d2*c1"
 
 
 def with_free_frames(exercise_id: str) -> Exercise:
-    """The shipped exercise with its table part set to free frames, if it is not."""
+    """Return a shipped exercise whose table part has free frames."""
     text = (shipped_folder() / f"{exercise_id}.toml").read_text(encoding="utf-8")
     if 'frames = "free"' not in text:
         text = re.sub(r'(kind = "dh_table"\n)', r'\1frames = "free"\n', text, count=1)
@@ -37,7 +37,7 @@ def with_free_frames(exercise_id: str) -> Exercise:
         return load_exercise(file)
 
 
-# The most that each line may take, in multiples of the floor.
+# The budget of each line, in multiples of the floor.
 BUDGETS = {
     "chain kinematics, 64 samples × 6 links": 0.5,
     "4×4 matrix of 16 entries graded, warm": 2.5,
@@ -49,21 +49,21 @@ BUDGETS = {
     "6-row table, other convention, diagnosed": 25.0,
     "wrong pose of a 6-joint arm, explained by slips of its table": 40.0,
 }
-# The least share of trivial POSTs that graded ones reach on the same server.
+# The least throughput of graded POSTs, as a share of trivial ones on the same server.
 SHARES = {
     "right tables": 0.40,
     "tables, one in three wrong": 0.20,
     "the same and new poses": 0.08,
 }
-# The least share of graded POSTs that are recorded as well.
+# The least throughput of recorded POSTs, as a share of those that are only graded.
 RECORDED_SHARE = 2 / 3
 FIRST_ANSWER_SECONDS = 1.0
-# The most that a whole process may take, its start included.
+# The budget of a whole process in seconds, including its start.
 START_SECONDS = {"dh-grader --help": 0.3, "dh-grader grade, one file": 0.8}
 
 
 def in_process() -> dict[str, float]:
-    """Each line that needs no server, as a multiple of the floor."""
+    """Measure each line that needs no server, as a multiple of the floor."""
     exercise = load_catalogue(shipped_folder())["stanford-arm"]
     free = with_free_frames("stanford-arm")
     vocabulary = exercise.vocabulary
@@ -101,7 +101,7 @@ def in_process() -> dict[str, float]:
 
 
 def print_budgets(*, with_server: bool) -> None:
-    """Print each figure of this checkout beside its budget."""
+    """Print each figure of this checkout with its budget."""
     floor = floor_seconds()
     printed = Table("what", "here", "asked", "", "milliseconds")
     printed.add_row(
@@ -123,7 +123,7 @@ def print_budgets(*, with_server: bool) -> None:
 
 
 def add_starts(printed: Table) -> None:
-    """Add the processor time of whole processes, and how often an import of numpy goes into it."""
+    """Add the processor time of whole processes, also as multiples of an import of numpy."""
     times = starts.start_seconds()
     numpy_alone = next(iter(times.values()))
     for what, seconds in times.items():
@@ -138,7 +138,7 @@ def add_starts(printed: Table) -> None:
 
 
 def add_server_lines(printed: Table) -> None:
-    """Add the figures that need a server, beside their budgets."""
+    """Add the figures that need a server, with their budgets."""
     for what, bodies in server.BODIES.items():
         speed = server.posts_per_second(bodies)
         share = speed["graded"] / speed["trivial"]
@@ -179,7 +179,7 @@ def add_server_lines(printed: Table) -> None:
 
 
 def print_comparison(there: Path, rounds: int, *, with_server: bool) -> bool:
-    """Print each line of this checkout beside that of another; return whether none is slower."""
+    """Print each line of this checkout and another one; return True if none is slower here."""
     lines = paired.compare(there, rounds, with_server=with_server)
     printed = Table(f"median of {rounds}, × floor", "here", str(there), "here / there", "")
     for line in lines:
@@ -197,9 +197,9 @@ def print_comparison(there: Path, rounds: int, *, with_server: bool) -> bool:
 def main() -> int:
     """Measure and print; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--no-server", action="store_true", help="leave out what needs a server")
+    parser.add_argument("--no-server", action="store_true", help="omit figures that need a server")
     parser.add_argument("--against", type=Path, metavar="DIR", help="another checkout")
-    parser.add_argument("--rounds", type=int, default=7, help="of both checkouts (7)")
+    parser.add_argument("--rounds", type=int, default=7, help="rounds of both checkouts (7)")
     options = parser.parse_args()
     with_server = not options.no_server
     if options.against is None:

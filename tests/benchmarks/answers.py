@@ -1,4 +1,4 @@
-"""What is graded in the measurements: the Stanford arm, written as a student would."""
+"""The answers that the benchmarks grade: the Stanford arm, written as a student would."""
 
 import random
 import re
@@ -40,12 +40,12 @@ T06 = [
 
 
 def table(rows: Rows) -> dict[str, Any]:
-    """The rows as the HTTP contract has them."""
+    """Return the rows in the form of the HTTP API."""
     return {"rows": [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in rows]}
 
 
 def turned_over() -> Rows:
-    """The same mechanism in frames of another choice: z2 turned over."""
+    """Return a valid table of the same mechanism with other frames: z2 is reversed."""
     rows = list(STANFORD)
     rows[1] = ("0", "-90deg", "d2", "theta2")
     rows[2] = ("0", "180deg", "-d3", "0")
@@ -53,14 +53,14 @@ def turned_over() -> Rows:
 
 
 def with_one_slip() -> Rows:
-    """One cell wrong: the sign of α2."""
+    """Return a table with one wrong cell: the sign of α2."""
     rows = list(STANFORD)
     rows[1] = ("0", "-90deg", "d2", "theta2")
     return rows
 
 
 def with_two_slips() -> Rows:
-    """Two cells wrong: the offset d2 forgotten, and the sign of α5."""
+    """Return a table with two wrong cells: d2 is missing, and the sign of α5 is wrong."""
     rows = list(STANFORD)
     rows[1] = ("0", "90deg", "0", "theta2")
     rows[4] = ("0", "-90deg", "0", "theta5")
@@ -68,7 +68,7 @@ def with_two_slips() -> Rows:
 
 
 def in_other_convention() -> Rows:
-    """The modified table, handed in where the standard one is asked for."""
+    """Return the modified table, which is wrong in an exercise with the standard convention."""
     link = [("0", "0"), *((a, alpha) for a, alpha, _, _ in STANFORD[:-1])]
     return [
         (a, alpha, d, theta) for (a, alpha), (_, _, d, theta) in zip(link, STANFORD, strict=True)
@@ -76,14 +76,15 @@ def in_other_convention() -> Rows:
 
 
 def standing_still() -> list[list[str]]:
-    """T_06 of an arm whose joint 2 stands still at 0."""
+    """Return T_06 with joint 2 fixed at 0."""
     return [[re.sub(r"\bs2\b", "0", re.sub(r"\bc2\b", "1", text)) for text in row] for row in T06]
 
 
 def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
-    """The same matrix with every text new, as no two students write alike: another zero added.
+    """Return the matrix with 0 times a number added to each text, so that no cache knows it.
 
-    Without a ``point`` it is a whole number, of which a wrong entry cannot be rounded.
+    The numbers are decimals, or integers if ``point`` is empty. With integers, a wrong entry is
+    never taken for a rounded one.
     """
     return [
         [f"{text} + 0*{abs(i) + 2}{point}{j}{k}" for k, text in enumerate(row)]
@@ -107,7 +108,7 @@ SPELLINGS = {
 
 
 def one_student_s_table(i: int) -> Rows:
-    """The table as another student spells it; one in three has a wrong cell."""
+    """Return the table as student ``i`` spells it; one in three has a wrong cell."""
     choose = random.Random(i)
     rows = [[choose.choice(SPELLINGS[cell]) for cell in row] for row in STANFORD]
     if i % 3 == 0:

@@ -1,6 +1,6 @@
-"""`python -m tests.benchmarks.app serve …`: `dh-grader serve …` with two routes more.
+"""`python -m tests.benchmarks.app serve …`: `dh-grader serve …` with two more routes.
 
-One only validates a body, the other tells the processor time of its process.
+One only validates a body, the other returns the processor time of its process.
 """
 
 import time
@@ -15,18 +15,18 @@ from service.server.installed import installed_app
 
 
 class Trivial(BaseModel):
-    """The shape of a submission."""
+    """The schema of a trivial request: that of a submission."""
 
     answers: dict[str, Any]
 
 
 async def trivial(body: Trivial) -> dict[str, int]:
-    """What a POST costs that is validated and answered, but not graded."""
+    """Validate and answer a POST without grading it."""
     return {"parts": len(body.answers)}
 
 
 async def processor_seconds() -> float:
-    """The processor time that this process has taken."""
+    """Return the processor time of this process."""
     return time.process_time()
 
 
@@ -37,7 +37,7 @@ def _with_trivial(*arguments: Any) -> FastAPI:
     return app
 
 
-# Outside of what follows, so that workers, which import this module, have the routes, too.
+# At module level, so that workers, which import this module, have the routes, too.
 vars(start)["installed_app"] = _with_trivial
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""A class's submissions on disk: as many as one likes, and among them what must harm nobody else.
+"""Write a folder with the submissions of a class, and a few broken ones that must harm no other.
 
-``python -m tests.benchmarks.class_folder --count 1000`` grades such a folder as a tutor would and
-prints how long it took, and how much memory.
+``python -m tests.benchmarks.class_folder --count 1000`` grades such a folder as a tutor would, and
+prints the time and the memory.
 """
 
 import argparse
@@ -20,7 +20,7 @@ EXERCISE = "stanford-arm"
 # In this time 1,000 submissions are graded on two cores.
 SECONDS = 15.0
 
-# The names of submissions that cannot be used, and a word of the reason.
+# The names of unusable submissions, and a word of the reason for each.
 BROKEN = {
     "a-empty.json": "is empty",
     "b-unreadable.json": "line 1",
@@ -35,7 +35,7 @@ BROKEN = {
 
 
 def write_class(folder: Path, count: int) -> None:
-    """Write so many usable submissions, and the broken ones beside them."""
+    """Write ``count`` usable submissions, and the broken ones."""
     folder.mkdir()
     (folder.parent / "secret.json").write_text('{"answers": {}}', encoding="utf-8")
     for i in range(count):
@@ -52,9 +52,9 @@ def write_class(folder: Path, count: int) -> None:
 
 
 def _write_student(folder: Path, i: int) -> None:
-    """A submission as one platform or another hands it out.
+    """Write a submission as one of the platforms exports it.
 
-    One table in three has a slip, one pose in five, and no two poses are written alike.
+    One table in three has a slip, one pose in five; all poses differ in their texts.
     """
     rows = answers.one_student_s_table(i)
     pose = answers.distinct(answers.T06 if i % 5 else answers.standing_still(), i)

@@ -1,4 +1,4 @@
-"""The same numbers by plain numpy and nothing else: what a measurement is held against."""
+"""The floor of the benchmarks: the kinematics of the Stanford arm in plain numpy."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 def link(
     a: float, alpha: float, d: NDArray[np.float64], theta: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Standard link transforms, written out the short way."""
+    """Return link transforms in the standard convention."""
     c, s = np.cos(theta), np.sin(theta)
     ca, sa = np.cos(alpha), np.sin(alpha)
     zero, one = np.zeros_like(c), np.ones_like(c)
@@ -21,7 +21,7 @@ def link(
 
 
 def stanford_pose(samples: int) -> NDArray[np.float64]:
-    """The Stanford arm's pose at random values, from drawing them to the product."""
+    """Return the poses of the Stanford arm at random joint values."""
     q = np.random.default_rng(1).uniform(0.3, 1.0, (8, samples))
     zero = np.zeros(samples)
     half = np.pi / 2

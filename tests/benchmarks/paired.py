@@ -1,4 +1,4 @@
-"""Two checkouts measured side by side: this one, that one, this one, that one."""
+"""Compare two checkouts by measuring them in turn."""
 
 import json
 import os
@@ -10,7 +10,7 @@ from statistics import median
 
 HERE = Path(__file__).parents[2]
 PROBE = Path(__file__).with_name("probe.py")
-# A line that is slower by more counts as slower.
+# A line counts as slower if its ratio is above this.
 TOLERATED = 1.03
 
 
@@ -40,7 +40,7 @@ def python_of(checkout: Path) -> str:
 
 
 def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
-    """Each line of a checkout's benchmark as a multiple of its floor, measured once."""
+    """Measure each line of a checkout's benchmark once, as a multiple of its floor."""
     options = [] if with_server else ["--no-server"]
     result = subprocess.run(
         [python_of(checkout), "-P", str(PROBE), *options],
@@ -52,7 +52,7 @@ def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
 
 
 def compare(there: Path, rounds: int, *, with_server: bool) -> list[Comparison]:
-    """Measure both checkouts in turn, so many times; the lines that both have."""
+    """Measure both checkouts in turn for some rounds; return the lines that both have."""
     pairs = [
         (measured(HERE, with_server=with_server), measured(there, with_server=with_server))
         for _ in range(rounds)

@@ -14,17 +14,17 @@ from typing import Any
 from tests.benchmarks import __main__ as lines
 from tests.benchmarks import server
 
-# Shorter than in ``make bench``: there are several rounds of this.
+# Shorter than in ``make bench``, because this is measured in several rounds.
 SECONDS_OF_POSTS = 3.0
 
 TIMING = runpy.run_path(str(Path(__file__).with_name("timing.py")))
 
 
 def in_process() -> dict[str, float]:
-    """The lines that need no server, as multiples of the floor."""
+    """Measure the lines that need no server, as multiples of the floor."""
     if hasattr(lines, "BUDGETS"):
         return lines.in_process()
-    # An older checkout takes seconds itself and gives thousandths of them, the floor's first.
+    # In an older checkout, this function returns milliseconds, with the floor as the first line.
     vars(lines).update(
         median_seconds=_thousandth_of(TIMING["multiple"]),
         median_of_each=_thousandth_of(TIMING["multiple_of_each"]),
@@ -38,7 +38,7 @@ def _thousandth_of(timer: Callable[[Callable[..., object]], float]) -> Callable[
 
 
 def over_http() -> dict[str, float]:
-    """The lines that need a server: what a graded POST costs in trivial ones, and the start."""
+    """Measure the lines that need a server: POSTs relative to trivial ones, and the start."""
     server.SECONDS = SECONDS_OF_POSTS
     figures = {}
     for what, bodies in server.BODIES.items():

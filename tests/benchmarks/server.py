@@ -1,6 +1,6 @@
-"""Graded POSTs against trivial ones, on one server in one run.
+"""Compare graded POSTs with trivial ones, on one server in one run.
 
-A second is one of the server's processor time, in which other programs have no part.
+All seconds are processor time of the server, so that other programs do not count.
 """
 
 import asyncio
@@ -17,10 +17,10 @@ from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
 from tests.server.raw import service
 
 CONNECTIONS = 8
-# Of trivial POSTs, and as many of graded ones; the two take turns so often.
+# Seconds of trivial and of graded POSTs each, and the number of rounds in which they take turns.
 SECONDS = 9.0
 ROUNDS = 20
-# The bodies of one turn.
+# The number of bodies in one round.
 MOST = 900
 GRADE = "/v1/exercises/stanford-arm/grade"
 RECORD = "/v1/exercises/stanford-arm/attempts"
@@ -29,24 +29,24 @@ CLOCK = "/processor-seconds"
 
 
 def right_tables(i: int) -> bytes:
-    """A right table, spelled in a way of its own."""
+    """Return a body with a right table, in the spelling of student ``i``."""
     wrong_ones = i // 2 + 1
     return json.dumps({"answers": {"table": table(one_student_s_table(i + wrong_ones))}}).encode()
 
 
 def tables(i: int) -> bytes:
-    """A student's table, spelled in a way of its own; one in three is wrong somewhere."""
+    """Return a body with the table of student ``i``; one in three has a wrong cell."""
     return json.dumps({"answers": {"table": table(one_student_s_table(i))}}).encode()
 
 
 def tables_and_poses(i: int) -> bytes:
-    """A table, and a pose in which every entry is a text that nobody has written before."""
+    """Return a body with a table, and a pose in which every entry is a new text."""
     answers = {"table": table(one_student_s_table(i)), "pose": distinct(T06, i)}
     return json.dumps({"answers": answers}).encode()
 
 
 def attempts(i: int) -> bytes:
-    """One of ``tables``, sent by a learner who has sent none yet."""
+    """Return a body as ``tables`` does, with a new learner."""
     return json.dumps(json.loads(tables(i)) | {"learner": f"learner {i}"}).encode()
 
 
@@ -63,7 +63,7 @@ def _processor_seconds(port: int) -> float:
 
 
 def request(path: str, body: bytes) -> bytes:
-    """One POST as it goes over the wire."""
+    """Return the bytes of a POST request."""
     head = (
         f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
         f"Content-Length: {len(body)}\r\n\r\n"
@@ -75,10 +75,10 @@ def request(path: str, body: bytes) -> bytes:
 def running_server(
     workers: int = 1, /, module: str = "tests.benchmarks.app", **settings: str
 ) -> Iterator[int]:
-    """The service with one trivial route more, in processes of its own; yields the port."""
+    """Run the service with the trivial route in processes of its own; yield the port."""
     with tempfile.TemporaryDirectory() as folder:
         options = ("--workers", str(workers))
-        # The modules are compiled once, as an installed program has them, and not at each start.
+        # The modules are compiled once, as for an installed program, and not at each start.
         settings = {"PYTHONDONTWRITEBYTECODE": "", **settings}
         with service(Path(folder), *options, module=module, **settings) as running:
             while running.log.count("startup complete") < workers:
@@ -104,7 +104,7 @@ async def _post_all(port: int, requests: list[bytes], deadline: float) -> int:
 
 
 async def _posted(port: int, path: str, messages: list[bytes]) -> tuple[int, float]:
-    """How many POSTs were answered, and the processor time that the server took for them."""
+    """Return the number of answered POSTs, and the processor time of the server for them."""
     shares = [
         [request(path, body) for body in messages[i::CONNECTIONS]] for i in range(CONNECTIONS)
     ]
@@ -114,13 +114,13 @@ async def _posted(port: int, path: str, messages: list[bytes]) -> tuple[int, flo
 
 
 def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
-    """Trivial and graded POSTs in a second; every graded body is different."""
+    """Return the numbers of trivial and of graded POSTs per second; all bodies differ."""
     trivial, graded = _in_turn({TRIVIAL: body, GRADE: body})
     return {"trivial": trivial, "graded": graded}
 
 
 def recorded_per_second() -> dict[str, float]:
-    """Graded and recorded POSTs in a second, of a service with a database of SQLite."""
+    """Return the numbers of graded and of recorded POSTs per second, with SQLite."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         graded, recorded = _in_turn({GRADE: tables, RECORD: attempts}, DH_GRADER_DATABASE=database)
@@ -128,7 +128,7 @@ def recorded_per_second() -> dict[str, float]:
 
 
 def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> Iterator[float]:
-    """POSTs to each path in a second, in turn many times on one server."""
+    """Yield the number of POSTs per second for each path, measured in turn on one server."""
     messages = {
         path: [body(i) for i in range(100 + ROUNDS * MOST)] for path, body in bodies.items()
     }
@@ -144,7 +144,7 @@ def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> I
 
 
 def graded_per_second(workers: int) -> float:
-    """Graded POSTs each second with so many workers; every body is different."""
+    """Return the number of graded POSTs per second with some workers; all bodies differ."""
     messages = [tables(i) for i in range(400 + ROUNDS * MOST)]
     with running_server(workers) as port:
         asyncio.run(_per_second(port, messages[:400]))
@@ -156,14 +156,14 @@ def graded_per_second(workers: int) -> float:
 
 
 async def _per_second(port: int, messages: list[bytes]) -> float:
-    """Graded POSTs each second of the clock."""
+    """Return the number of graded POSTs per second of wall time."""
     start = time.perf_counter()
     count, _ = await _posted(port, GRADE, messages)
     return count / (time.perf_counter() - start)
 
 
 def first_answer_seconds() -> float:
-    """From the start of the process to the first graded answer."""
+    """Return the seconds from the start of the process to the first graded answer."""
     start = time.perf_counter()
     with running_server(module="service") as port:
         asyncio.run(

@@ -1,4 +1,4 @@
-"""Processor time of whole processes of the command line, from their start to their end."""
+"""Measure the processor time of whole processes of the command line."""
 
 import os
 import resource
@@ -11,7 +11,7 @@ from service.catalogue import shipped_folder
 ROUNDS: Final = 5
 SUBMISSION: Final = shipped_folder().parent / "docs" / "examples" / "stanford-arm.json"
 
-# To be compared with, on a machine that is slow for a while.
+# A process for comparison, because the speed of a machine may vary.
 NUMPY: Final = ("-c", "import numpy")
 COMMANDS: Final = {
     "dh-grader --help": ("-m", "service", "--help"),
@@ -23,7 +23,7 @@ COMMANDS: Final = {
 
 
 def seconds(*arguments: str) -> float:
-    """The processor time of one Python process, with the modules compiled before."""
+    """Return the processor time of one Python process whose modules are already compiled."""
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(
@@ -34,7 +34,7 @@ def seconds(*arguments: str) -> float:
 
 
 def start_seconds() -> dict[str, float]:
-    """Each command's time, and that of an import of numpy alone; the least of some rounds."""
+    """Return the time of an import of numpy and of each command: the least of some rounds."""
     measured = {"python -c 'import numpy'": NUMPY, **COMMANDS}
     rounds = [
         {what: seconds(*command) for what, command in measured.items()} for _ in range(ROUNDS)

@@ -1,8 +1,7 @@
-"""How a measurement is taken.
+"""Measure processor time as a multiple of the floor.
 
-Everything is told as a multiple of the floor. It is processor time, in which other programs have no
-part, and each call takes turns with the floor, so that a machine that is slow for a while is slow
-for both.
+Other programs do not count in processor time. Calls alternate with the floor, so that both are
+affected if the machine is slow for a while.
 """
 
 import time
@@ -16,29 +15,29 @@ WARM_UP = 3
 
 
 def floor() -> object:
-    """The floor of ``make bench``."""
+    """Compute the floor of ``make bench``."""
     return floors.stanford_pose(32)
 
 
 def seconds(action: Callable[[], object]) -> float:
-    """The processor time of one call."""
+    """Return the processor time of one call."""
     start = time.process_time()
     action()
     return time.process_time() - start
 
 
 def floor_seconds() -> float:
-    """The median time of the floor."""
+    """Return the median time of the floor."""
     return median(seconds(floor) for _ in range(1000))
 
 
 def multiple(action: Callable[[], object]) -> float:
-    """The median time of one call, as a multiple of the floor's."""
+    """Return the median time of a call, as a multiple of the floor."""
     return multiple_of_each(lambda _: action())
 
 
 def multiple_of_each(action: Callable[[int], object]) -> float:
-    """The median time of ``action(i)``, each call with another ``i``, as a multiple."""
+    """Return the median time of ``action(i)`` over different ``i``, as a multiple of the floor."""
     for i in range(WARM_UP):
         floor()
         action(-1 - i)

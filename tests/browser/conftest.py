@@ -1,4 +1,4 @@
-"""One real server for all tests of a process, and two other origins beside it."""
+"""Fixtures: one real server for all tests of a process, and servers of two other origins."""
 
 import os
 import threading
@@ -16,7 +16,7 @@ from tests.browser.hostile import HOSTILE_EXERCISE
 
 @dataclass
 class Origin:
-    """A web server of somebody else, whose pages are the texts in ``pages``, by their paths."""
+    """A web server of another origin; ``pages`` maps paths to the texts of its pages."""
 
     address: str
     pages: dict[str, str] = field(default_factory=dict)
@@ -24,21 +24,21 @@ class Origin:
 
 @pytest.fixture(scope="session")
 def other_origin() -> Iterator[Origin]:
-    """A course site, which the service allows."""
+    """A course site, whose origin the service allows."""
     with origin() as made:
         yield made
 
 
 @pytest.fixture(scope="session")
 def stranger() -> Iterator[Origin]:
-    """A site that the service does not know."""
+    """A site whose origin the service does not allow."""
     with origin() as made:
         yield made
 
 
 @contextmanager
 def origin() -> Iterator[Origin]:
-    """A web server on a port of its own."""
+    """Run a web server on a free port."""
     pages: dict[str, str] = {}
 
     class Handler(BaseHTTPRequestHandler):
@@ -75,5 +75,5 @@ def service(tmp_path_factory: pytest.TempPathFactory, other_origin: Origin) -> I
 
 @pytest.fixture(scope="session")
 def axe() -> str:
-    """The script of axe-core, which finds what keeps people out."""
+    """The script of axe-core, which finds barriers for people with disabilities."""
     return next((Path(__file__).parent / "axe-core").glob("axe-*.min.js")).read_text("utf-8")

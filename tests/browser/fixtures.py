@@ -1,4 +1,4 @@
-"""One browser for all tests of a process, and visits with it."""
+"""Fixtures: one browser for all tests of a process, and pages in it."""
 
 import asyncio
 import os
@@ -19,10 +19,10 @@ from playwright.sync_api import (
 
 from tests.browser.chromium import ABSENT, OPTIONS, Chromium, find_chromium
 
-# A guard against a hang, in milliseconds: what is waited for takes a hundredth of it.
+# A guard against a hang, in milliseconds: about a hundred times as long as needed.
 GUARD: Final = 60_000
 expect.set_options(timeout=GUARD)
-# Where a page and all that it needs may come from: a server of the tests, or a file.
+# The addresses from which a page may load anything: servers of the tests, and files.
 OURS: Final = ("http://127.0.0.1:", "file:", "data:")
 # A light screen, a dark screen, and paper.
 APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dark"]], ...]] = (
@@ -70,8 +70,8 @@ def started_browser(chromium: Chromium) -> Iterator[Started]:
 def browser(started_browser: Started) -> Iterator[Browser]:
     """The browser.
 
-    Playwright leaves its event loop marked as running in this thread, so that no other loop could
-    be run there: the mark is taken away while tests without a browser run.
+    Playwright marks its event loop as running in this thread, which forbids any other loop. The
+    mark is removed while tests without a browser run.
     """
     asyncio._set_running_loop(started_browser.loop)
     yield started_browser.browser
@@ -80,31 +80,31 @@ def browser(started_browser: Started) -> Iterator[Browser]:
 
 @dataclass
 class Visit:
-    """A page, and what the browser complained about."""
+    """A page, and the complaints of the browser about it."""
 
     page: Page
     complaints: list[str] = field(default_factory=list)
     requests: list[str] = field(default_factory=list)
 
 
-# Said where the processor draws the page: it has to fetch each picture from WebGL.
+# A warning that appears only because the processor draws the page and fetches it from WebGL.
 READBACK: Final = "GPU stall due to ReadPixels"
 
 
 def complaint(line: ConsoleMessage) -> list[str]:
-    """What the browser or a script says in the console, if it is a complaint."""
+    """Return the text of a line in the console if it is an error or a warning."""
     is_complaint = line.type in ("error", "warning") and READBACK not in line.text
     return [line.text] if is_complaint else []
 
 
 def failure(request: Request) -> list[str]:
-    """The failure of a request, if it is none that a visitor made by going on to another page."""
+    """Return the failure of a request, unless the visitor has left the page meanwhile."""
     return [] if request.failure == "net::ERR_ABORTED" else [f"{request.failure}: {request.url}"]
 
 
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
-    """Opens a page in a context of its own; at the end nothing may have gone wrong in any."""
+    """A function that opens a page in a new context. In the end, no page may have complaints."""
     contexts: list[BrowserContext] = []
     visits: list[Visit] = []
 

@@ -1,6 +1,6 @@
-"""An exercise as somebody would write it who wants to run a script in a student's browser."""
+"""A hostile exercise, which tries to run scripts in a student's browser."""
 
-# Each would be seen by a test if it were taken for markup: it calls `stolen`, or loads a picture.
+# A test notices if one of these is taken for markup: it calls `stolen`, or loads a picture.
 SCRIPT = "<script>stolen('script')</script>"
 PICTURE = "<img src=x onerror=\"stolen('picture')\">"
 DRAWING = "<svg onload=\"stolen('drawing')\"><a href='javascript:stolen(1)'>q</a></svg>"

@@ -1,4 +1,4 @@
-"""What a student does on the page of an exercise."""
+"""Steps of a student on the page of an exercise."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -16,12 +16,12 @@ def open_exercise(page: Page, service: str, exercise: str, fragment: str = "") -
 
 
 def cells(page: Page, part: int = 0) -> Locator:
-    """The inputs of a part."""
+    """Return the inputs of a part."""
     return page.locator(".part").nth(part).locator("input")
 
 
 def right_answers(exercise: Exercise) -> dict[str, list[str]]:
-    """The entries of each part, in order, from the answers that the author wrote as right ones."""
+    """Return the entries of each part in order, from the right answers in the exercise file."""
     found: dict[str, list[str]] = {}
     for check in exercise.checks:
         if check.kind == "right":
@@ -59,9 +59,9 @@ def type_with_tab(page: Page, texts: Sequence[str]) -> None:
 
 
 def answer(page: Page, part: PartSpec, place: int, texts: Sequence[str]) -> None:
-    """Answer a part by keyboard from its first cell, which has the focus.
+    """Answer a part by keyboard, beginning at its first cell, which has the focus.
 
-    Matrices are pasted, as the text that MATLAB would write; all else is typed.
+    Matrices are pasted as MATLAB text; other answers are typed.
     """
     if part.kind not in _MATRICES:
         return type_with_tab(page, texts)
@@ -77,6 +77,6 @@ _MATRICES: Final = {"link_transforms": 4, "transform": 4, "rotation": 3}
 
 
 def paste(page: Page, text: str) -> None:
-    """Paste a text where the cursor is, from the real clipboard."""
+    """Paste a text at the cursor, from the real clipboard."""
     page.evaluate("text => navigator.clipboard.writeText(text)", text)
     page.keyboard.press("Control+V")

@@ -11,8 +11,8 @@ from tests.browser.test_robot_view import picture
 
 Opening = Callable[..., Visit]
 
-# Pictures in a second of dragging, and of a page that changes one number, which is the floor here;
-# last the milliseconds of script for one picture.
+# Returns the frames per second while dragging, those of a page that only changes one number (the
+# floor), and the milliseconds of script for each frame.
 DRAG = """async (slider) => {
   const pictures = async (change) => {
     const from = performance.now();
@@ -45,7 +45,7 @@ def cell(page: Page, row: int, column: int) -> Locator:
     return page.locator(".entry input").nth(4 * row - 4 + column)
 
 
-def test_a_seven_joint_arm_is_played_with(
+def test_a_seven_joint_arm_follows_its_sliders(
     visit: Opening, service: str, axe: str, figure: Callable[[str], None]
 ) -> None:
     page = visit(bypass_csp=True, viewport=SMALL).page
@@ -54,7 +54,7 @@ def test_a_seven_joint_arm_is_played_with(
     page.get_by_label("Start from a robot").select_option("Redundant arm, 7R")
     expect(page.locator(".slider")).to_have_count(7)
     home = picture(page)
-    # Stretched out upwards: 0.34 + 0.4 + 0.4 + 0.15.
+    # The arm points upwards: 0.34 + 0.4 + 0.4 + 0.15.
     assert entries(page) == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1.29, 0, 0, 0, 1]
     expect(page.get_by_text("6 degrees of freedom")).to_be_visible()
     slider = page.get_by_role("slider", name="theta4: joint 4 turns")
@@ -65,11 +65,11 @@ def test_a_seven_joint_arm_is_played_with(
     figure(
         f"seven joints: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each"
     )
-    # At 30 pictures a second there are 33 ms for one, and the browser needs most of them.
+    # At 30 frames per second, a frame has 33 ms, of which the browser needs most.
     assert script < 33
     assert drawn > floor / 6
 
-    # Its equivalent is the same robot: the pose stays.
+    # The equivalent table describes the same robot, so the pose stays.
     slider.press("Home")
     picture(page)
     pose = entries(page)
@@ -83,8 +83,8 @@ def test_a_seven_joint_arm_is_played_with(
 
 
 @pytest.mark.campaign
-def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str) -> None:
-    """Two rows that turn about one line."""
+def test_an_own_table_is_written_and_shared(visit: Opening, service: str) -> None:
+    """The table has two joints that turn about one line."""
     page = visit(permissions=["clipboard-read", "clipboard-write"], viewport=SMALL).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Planar arm, RR")
@@ -95,7 +95,7 @@ def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str)
     picture(page)
     shown = entries(page)
     cell(page, 2, 2).fill("l1 +")
-    # While a cell is half typed, robot and pose stay, and look as if from before.
+    # While a cell is incomplete, robot and pose stay, and are marked as outdated.
     expect(page.locator(".told")).to_contain_text("The picture is the one of before.")
     assert entries(page) == shown
     expect(page.locator(".numeric")).to_be_visible()
@@ -118,7 +118,9 @@ def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str)
     assert [url for url in friend.requests if "robot=" in url.partition("#")[0]] == []
 
 
-def test_an_element_that_is_moved_on_its_page_is_there_once(visit: Opening, service: str) -> None:
+def test_an_element_that_is_moved_on_its_page_appears_only_once(
+    visit: Opening, service: str
+) -> None:
     page = visit(viewport=SMALL).page
     page.goto(f"{service}/play")
     expect(page.get_by_role("heading", name="Free play")).to_have_count(1)

@@ -1,4 +1,4 @@
-"""The tutor's editor where the service is told to write: Save, and what it refuses."""
+"""Saving in the tutor's editor, if the service may write files."""
 
 import os
 import subprocess
@@ -42,7 +42,7 @@ def writing(folder: Path) -> Iterator[str]:
             process.wait(timeout=ANSWER)
 
 
-# The service is named first, so that it ends last: the page asks it to the end.
+# `writing` is the first fixture, so that it ends last: the page uses the service to the end.
 @pytest.mark.campaign
 def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -> None:
     opened = visit()
@@ -50,7 +50,7 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     page.goto(f"{writing}/tutor/editor?exercise=scara")
     text = page.get_by_label("Exercise file, TOML")
     written = text.input_value()
-    # The shipped file stays; the folder has one of its own, which the editor opens from now on.
+    # The shipped file stays; the editor now opens the copy in the folder.
     text.fill(written.replace("SCARA manipulator", "A robot", 1))
     save = page.get_by_role("button", name="Save")
     save.click()
@@ -61,13 +61,13 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     page.reload()
     expect(text).to_have_value(file.read_text(encoding="utf-8"))
 
-    # Somebody else has written it meanwhile: nothing is lost.
+    # If another person has changed the file meanwhile, nothing is lost.
     file.write_text(written, encoding="utf-8")
     text.fill(f"{written}\n# mine\n")
     save.click()
     expect(told.filter(has_text="has changed")).to_be_visible()
     assert file.read_text(encoding="utf-8") == written
-    # A text that is no exercise is not written, under whatever name.
+    # A text that is no exercise is never written.
     text.fill("title = 1")
     page.get_by_label("Id, the name").fill("../escaped")
     save.click()

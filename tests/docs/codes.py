@@ -1,9 +1,9 @@
-"""Finds the codes of the messages that the program may give, by reading its source.
+"""Find the codes of all messages of the program, by reading its source.
 
-A code is whatever is handed over as ``code``: to a class that has a field or an argument of that
-name (Finding, Note, ExpressionError …), or to a function that passes it on to one. It must be
-written out there as a string, or be a name that nothing but such strings is given to; a code that
-is put together while the program runs could not be found by reading, and so is refused.
+A code is the argument ``code`` of a class with a field or parameter of that name (Finding, Note,
+ExpressionError …), or of a function that passes it on to such a class. It must be a string
+constant, or a name to which only string constants are assigned. A code that is composed at run
+time cannot be found, and is refused.
 """
 
 import ast
@@ -15,13 +15,13 @@ from pathlib import Path
 CODE = "code"
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
-# Names and what they are given, one pair for each time.
+# Names and the values assigned to them, one pair for each assignment.
 Given = list[tuple[str, ast.expr]]
 
 
 @dataclass(frozen=True, slots=True)
 class CodeUse:
-    """A code, and the file and line where it is handed over."""
+    """A code, with the file and line in which it is used."""
 
     code: str
     file: str
@@ -29,14 +29,14 @@ class CodeUse:
 
 
 class HiddenCodeError(Exception):
-    """A code that is not written out."""
+    """A code that is not a string constant."""
 
     def __init__(self, file: str, value: ast.expr) -> None:
         super().__init__(f"{file}:{value.lineno}: not written out: {ast.unparse(value)}")
 
 
 def sources(folder: Path) -> dict[str, str]:
-    """All Python files below a folder, by their paths in it."""
+    """Return the texts of all Python files below a folder, by their paths in it."""
     return {
         file.relative_to(folder).as_posix(): file.read_text(encoding="utf-8")
         for file in sorted(folder.rglob("*.py"))
@@ -44,7 +44,7 @@ def sources(folder: Path) -> dict[str, str]:
 
 
 def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
-    """Every code that is handed over in these files. Raises HiddenCodeError."""
+    """Return every use of a code in these files. Raises HiddenCodeError."""
     trees = {file: ast.parse(text) for file, text in files.items()}
     nodes = {file: list(ast.walk(tree)) for file, tree in trees.items()}
     classes = _classes(chain.from_iterable(nodes.values()))
@@ -67,7 +67,7 @@ def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
 
 
 def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
-    """The classes that carry a code, each with its place among the arguments."""
+    """Return the classes that carry a code, with the position of that argument."""
     carriers: dict[str, int] = {}
     heirs: list[tuple[str, set[str]]] = []
     for node in nodes:
@@ -87,7 +87,7 @@ def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
             heirs.append(
                 (node.name, {base.id for base in node.bases if isinstance(base, ast.Name)})
             )
-    for _ in heirs:  # at most so many generations
+    for _ in heirs:  # at most as many generations as subclasses
         carriers |= {
             name: carriers[base] for name, bases in heirs for base in bases & carriers.keys()
         }
@@ -95,7 +95,7 @@ def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
 
 
 def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
-    """The functions and methods that pass a code on, likewise."""
+    """Yield the functions that pass a code on, with the position of that argument."""
     for node in nodes:
         if isinstance(node, Function) and node.name != "__init__" and CODE in _arguments(node):
             place = _arguments(node).index(CODE)
@@ -116,7 +116,7 @@ def _imported(nodes: Iterable[ast.AST]) -> set[str]:
 
 
 def _given(nodes: Iterable[ast.AST]) -> Given:
-    """What these statements give to names."""
+    """Return the names and values of all assignments among these nodes."""
     given: Given = []
     for node in nodes:
         if isinstance(node, ast.Assign):
@@ -128,7 +128,7 @@ def _given(nodes: Iterable[ast.AST]) -> Given:
 
 
 def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
-    """All calls, each with the innermost function that it stands in."""
+    """Yield all calls, each with the innermost function around it."""
     waiting: list[tuple[ast.AST, Function | None]] = [(tree, None)]
     while waiting:
         node, around = waiting.pop()
@@ -139,7 +139,7 @@ def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
 
 
 def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None:
-    """What a call hands over as a code, if anything; the call itself where that cannot be seen."""
+    """Return the code argument of a call, None without one, or the call itself if unknown."""
     for keyword in call.keywords:
         if keyword.arg == CODE:
             return keyword.value
@@ -156,7 +156,7 @@ def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None
 
 
 def _texts(value: ast.expr, function: Function | None, known: Given, file: str) -> list[str]:
-    """The codes that an expression may stand for; none where it passes on that of another."""
+    """Return the codes that an expression may have; none if it only passes a code on."""
     match value:
         case ast.Constant(str(text)):
             # A finding without a code gets that of its record.

@@ -32,7 +32,7 @@ from service.catalogue.parts import SPECS
 
 Schema = Mapping[str, Any]
 
-# An example of a value in TOML, by model and attribute; none where the type says enough.
+# An example of a value in TOML, by model and attribute, unless the type is clear without one.
 _EXAMPLES: Final = {
     "ExerciseSpec.title": '"Elbow arm"',
     "ExerciseSpec.source": '"Spong, Hutchinson, Vidyasagar, Robot Modeling and Control, 3.2"',
@@ -94,7 +94,7 @@ the part gives the answer itself."""
 
 
 def page() -> str:
-    """The whole page, in Markdown."""
+    """Return the whole page, in Markdown."""
     poses = [kind for kind, spec in SPECS.items() if issubclass(spec, PosePartSpec)]
     sections = [
         _INTRODUCTION,
@@ -121,7 +121,10 @@ def page() -> str:
 
 
 def _section(heading: str, model: type[BaseModel], text: str = "", first: str = "") -> str:
-    """The keys of a table that its base class does not have; ``first`` gives the key ``kind``."""
+    """Return a section on the keys of a model without those of its base class.
+
+    ``first`` is the row of the key ``kind``.
+    """
     schema = model.model_json_schema()
     base = model.__base__
     known = set(base.model_fields) if base and issubclass(base, BaseModel) else set[str]()
@@ -146,7 +149,7 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
 
 
 def meanings(model: type[BaseModel]) -> dict[str, str]:
-    """The text below each key of a model, by the key."""
+    """Return the docstring of each key of a model."""
     [tree] = ast.parse(textwrap.dedent(inspect.getsource(model))).body
     assert isinstance(tree, ast.ClassDef)
     found = {}
@@ -169,7 +172,7 @@ def _rows(
 
 
 def _markdown(text: str) -> str:
-    """The first paragraph of a text, with quoted words and double backticks as code."""
+    """Return the first paragraph of a text, with quoted words and double backticks as code."""
     paragraph = " ".join(text.partition("\n\n")[0].split())
     return re.sub(r'"[\w-]+"', r"`\g<0>`", paragraph.replace("``", "`"))
 
@@ -190,7 +193,7 @@ _NULL: Final = {"type": "null"}
 
 
 def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
-    """The type of a value in words; ``ending`` is "s" for several."""
+    """Return the type of a value in words; ``ending`` is "s" for the plural."""
     match schema:
         case {"$ref": str(reference)}:
             return _type(defs[reference.rpartition("/")[2]], defs, ending)
@@ -198,7 +201,7 @@ def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
             return _either(f"`{json.dumps(each)}`" for each in _as_list(choices))
         case {"anyOf": forms}:
             names = [_type(form, defs, ending) for form in forms if form != _NULL]
-            # A formula may be given as a number.
+            # A formula may also be a number.
             return _either(names).replace(f"text{ending} or number{ending}", f"formula{ending}")
         case {"format": "date-time"}:
             return f"date{ending} and time{ending} with a time zone"

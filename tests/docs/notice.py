@@ -1,4 +1,4 @@
-"""The notice of what the program carries from others: the file NOTICE.
+"""Write the notice of third-party works in the repository: the file NOTICE.
 
 ``python -m tests.docs.notice > NOTICE`` writes it.
 """
@@ -14,7 +14,7 @@ ROOT: Final = Path(__file__).parents[2]
 
 @dataclass(frozen=True)
 class Vendored:
-    """A work of others: its files, and the file that has its licence."""
+    """A third-party work: its files, and the file with its licence."""
 
     name: str
     version: str
@@ -61,7 +61,7 @@ VENDORED: Final = (
         shipped=False,
     ),
 )
-# What Swagger UI's one file of JavaScript holds of further works, in their own words.
+# The licences of further works inside Swagger UI's JavaScript file.
 BUNDLED: Final = f"{_SWAGGER}/swagger-ui-5.35.0.js.LICENSE.txt"
 _HEADING: Final = """\
 DH Grader

@@ -1,4 +1,4 @@
-"""The page of all sentences that a student can meet, each with an example: docs/sentences.md.
+"""Write the page of all sentences of messages, each with an example: docs/sentences.md.
 
 ``python -m tests.docs.sentences > docs/sentences.md`` writes it. Examples are those of the records
 of misconceptions, of docs/messages.md and of ``sentence_examples.toml``, the answers tried in the
@@ -30,8 +30,7 @@ from tests.grading.diagnosis.traces import END, answered, exercises
 ROOT: Final = Path(__file__).parents[2]
 EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
 _READING: Final = ("expressions/", "grids/", "grading/")
-# Strings of two words that are no part of a message, and the words for programs that read formulas
-# by themselves.
+# Strings of two words that are not part of a message, or only of one for programmers.
 _NO_SENTENCES: Final = frozenset(
     {
         "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
@@ -47,7 +46,7 @@ _LONGEST: Final = 240
 
 @dataclass(frozen=True)
 class Said:
-    """A message that an example draws: its code and sentence, the correction, what is answered."""
+    """A message that an example causes: its code, sentence and correction, and the answer."""
 
     code: str
     sentence: str
@@ -69,7 +68,7 @@ class Example:
 
 
 def formulas() -> Iterator[str]:
-    """Formulas for the robot of docs/expressions.md."""
+    """Yield formulas for the robot of docs/expressions.md."""
     for line in messages_page.LINES:
         if line.section in (messages_page.UNREAD, messages_page.NOTED) and line.example:
             yield line.example[0]
@@ -80,7 +79,7 @@ def formulas() -> Iterator[str]:
 
 
 def pasted_texts() -> Iterator[str]:
-    """Tables and matrices pasted for the planar RR arm."""
+    """Yield pasted tables and matrices for the planar RR arm."""
     sections = (messages_page.PASTED_UNREAD, messages_page.PASTED_NOTED)
     for line in messages_page.LINES:
         if line.section in sections and line.example:
@@ -102,11 +101,11 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     for exercise in catalogue.values():
         for check in exercise.checks:
             yield Example(exercise.id, check.answers, check.angle_unit)
-    # More than may be read of one submission.
+    # An answer that is too long to be read completely.
     yield Example("planar-rr", {"position": ["+" * LIMITS.characters] * 2})
     texts = "1, 2\n" * (GRID_LIMITS.characters // 5)
     yield Example("planar-rr", {"table": texts, "pose": texts})
-    # More than is explained of one.
+    # An answer with too many mistakes to explain them all.
     wrong = [["c1 c4", "c1 s4", "c4 s1", "s1 s4"]] * 4
     yield Example("stanford-arm", {"table": wrong[:1] * 6, "links": [wrong] * 6, "pose": wrong})
 
@@ -116,11 +115,11 @@ def _written() -> dict[str, Any]:
     return written
 
 
-# --- what they draw
+# --- the messages of the examples
 
 
 def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> Iterator[Said]:
-    """The error or the notes on each formula."""
+    """Yield the error or the notes on each formula."""
     for text in texts:
         try:
             found = [(note.code, note.message, "") for note in read(text, vocabulary).notes]
@@ -131,7 +130,7 @@ def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> It
 
 
 def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
-    """The error or the notes on each pasted text, in the preview."""
+    """Yield the error or the notes on each pasted text, in the preview."""
     for text in texts:
         for part in ("table", "links", "pose"):
             preview = preview_pasted(text, exercise, part)
@@ -145,7 +144,7 @@ def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
 def said_of_answers(
     examples: Iterable[Example], catalogue: Mapping[str, Exercise]
 ) -> Iterator[Said]:
-    """The messages on each answer."""
+    """Yield the messages on each answer."""
     for example in examples:
         submission = Submission(example.answers, example.angle_unit, FeedbackLevel.FULL)
         unit = ", in degrees" if example.angle_unit == "degrees" else ""
@@ -173,7 +172,7 @@ def _place(places: tuple[Place, ...]) -> str:
 
 
 def shown(answer: Any) -> str:
-    """An answer as short text: rows with semicolons, values with commas."""
+    """Return an answer as short text: rows with semicolons, values with commas."""
     match answer:
         case {"rows": [*rows], **rest}:
             head = "".join(f"{name}: {value}; " for name, value in rest.items())
@@ -192,14 +191,14 @@ def shown(answer: Any) -> str:
     return str(answer)
 
 
-# --- which go on the page
+# --- the choice of messages for the page
 
-# A template, and the codes that its file tells; none where the file has words for others.
+# A template, and the codes of its file; none if the file only has words for others.
 Known = tuple[Template, frozenset[str]]
 
 
 def known_templates() -> list[Known]:
-    """The templates of the files that read, judge and explain."""
+    """Return the templates of the files that read, judge and explain."""
     codes: dict[str, set[str]] = {}
     for use in messages_page.program():
         codes.setdefault(use.file, set()).add(use.code)
@@ -216,7 +215,7 @@ def all_said() -> Iterator[Said]:
     """All that the examples draw."""
     catalogue = exercises()
     yield from said_of_formulas(formulas())
-    # A preview for no exercise reads in the names of books.
+    # A preview without an exercise uses the names of textbooks.
     yield from said_of_formulas(["g0"], GENERIC)
     yield from said_of_pasted(pasted_texts(), catalogue["planar-rr"])
     yield from said_of_answers(answers(catalogue), catalogue)
@@ -231,10 +230,10 @@ class Row:
 
 
 def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
-    """The first message with each template, and the templates that none has.
+    """Return the first message with each template, and the templates without a message.
 
-    A short template may stand in many sentences; unless it begins one, it is met only by a message
-    of its own file.
+    Many sentences may contain a short template. So it counts only at the beginning of a sentence,
+    or in a message of its own file.
     """
     unmet = list(known)
     rows: list[Row] = []
@@ -286,7 +285,7 @@ These sentences have no example yet; … means a value that the program inserts.
 
 
 def page() -> str:
-    """The whole page, in Markdown."""
+    """Return the whole page, in Markdown."""
     rows, unmet = chosen(all_said(), known_templates())
     sections = dict.fromkeys(line.section for line in messages_page.LINES)
     blocks = [_HEAD]

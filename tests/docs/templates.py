@@ -1,8 +1,8 @@
-"""Finds the sentences of the messages that the program may give, by reading its source.
+"""Find the sentences of all messages of the program, by reading its source.
 
-A template is a string of two words or more in the code that reads, judges or explains; in an
-f-string each value that is put in is a gap. Texts for programmers (docstrings, patterns, the
-reasons of a ValueError) are none.
+A template is a string of at least two words in the code that reads, judges or explains. Each value
+in an f-string is a gap. Texts for programmers (docstrings, patterns, the text of a ValueError) are
+no templates.
 """
 
 import ast
@@ -13,19 +13,19 @@ from functools import cached_property
 from typing import Final
 
 GAP: Final = "…"
-# The exceptions whose texts no student reads.
+# Exceptions whose texts are not for students.
 _FOR_PROGRAMMERS: Final = {"ValueError", "TypeError", "RuntimeError", "UnknownPartError"}
 # What is registered by these is on the pages of codes and in no message.
 _RECORDS: Final = {"misconception", "check", "register"}
 _PATTERN: Final = re.compile(r"\\|\(\?|\[\^|\]\+|\)\*|\[A-Z|</?m|[\[(|].*\|")
-# What is put in later: {name}, or {…:in other words} where the first is put in at once.
+# Gaps that are filled later: {name} or {…:in other words}.
 _FIELD: Final = re.compile(r"\{\w+\}|\{…(?::[^{}]*)?\}")
 _WORD: Final = re.compile(r"[^\W\d_]{2,}")
 
 
 @dataclass(frozen=True, slots=False)
 class Template:
-    """The constant pieces of a sentence, in order, and the file in which it stands."""
+    """The constant pieces of a sentence in order, and its file."""
 
     pieces: tuple[str, ...]
     file: str
@@ -37,25 +37,25 @@ class Template:
 
     @property
     def is_telling(self) -> bool:
-        """Whether it is long enough to be known by itself."""
+        """True if the template is long enough to identify a sentence."""
         return len(_WORD.findall(self.text)) > 4
 
     def begins(self, sentence: str) -> bool:
-        """Whether the sentence begins with it, and not with what stands in a gap."""
+        """True if the sentence begins with the first constant piece of the template."""
         return bool(self.pieces[0].strip()) and self._pattern.match(sentence) is not None
 
     def is_met_by(self, text: str) -> bool:
-        """Whether the sentence stands somewhere in a text, with something in each gap."""
+        """True if a text contains the sentence, with any text in each gap."""
         return self._longest in text and self._pattern.search(text) is not None
 
     @cached_property
     def _longest(self) -> str:
-        """The longest piece without its first letter, which may be a capital in the text."""
+        """The longest piece without its first letter, which may be upper case in the text."""
         return max(self.pieces, key=len).strip()[1:]
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        """A clause may begin a sentence, with a capital letter."""
+        """The pattern of the sentence; its first letter may be upper case."""
         first, *others = [re.escape(piece) for piece in self.text.split(GAP)]
         if first[:1].islower():
             first = f"[{first[0]}{first[0].upper()}]{first[1:]}"
@@ -63,7 +63,7 @@ class Template:
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:
-    """The templates of these files, by their names, in order and each once for a file."""
+    """Return the templates of these files in order, each once for a file."""
     found = [
         Template(pieces, file)
         for file, text in files.items()
@@ -79,7 +79,7 @@ def _is_prose(pieces: tuple[str, ...]) -> bool:
 
 
 def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
-    """The strings below a node, each in the pieces between its gaps."""
+    """Yield the strings below a node, each as the pieces between its gaps."""
     for node in ast.iter_child_nodes(tree):
         match node:
             case ast.Expr(value=ast.Constant()):  # a docstring

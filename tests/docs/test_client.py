@@ -1,4 +1,4 @@
-"""The examples of the page on the client print what it says they print, on a real server."""
+"""The examples of docs/client.md print the shown output, on a real server."""
 
 import contextlib
 import io
@@ -15,7 +15,7 @@ _EXAMPLE = re.compile(r"^```python\n(.*?)^```\n(.*?)^```text\n(.*?)^```$", re.DO
 _SHOWN = "http://127.0.0.1:8000"
 
 
-def test_the_examples_print_what_the_page_says(server: Served) -> None:
+def test_the_examples_print_the_shown_output(server: Served) -> None:
     examples = _EXAMPLE.findall(PAGE)
     assert len(examples) == PAGE.count("```python") == 4
     names: dict[str, Any] = {}
@@ -26,14 +26,14 @@ def test_the_examples_print_what_the_page_says(server: Served) -> None:
         assert page.getvalue() == printed
 
 
-def test_the_page_names_what_there_is() -> None:
+def test_the_page_names_every_public_name() -> None:
     assert [name for name in client.__all__ if name not in PAGE] == []
     for method in re.findall(r"^\| `(\w+)\(", PAGE, re.MULTILINE):
         assert hasattr(client.GraderClient, method)
         assert hasattr(client.AsyncGraderClient, method)
 
 
-def test_the_retries_are_those_of_the_page() -> None:
+def test_the_page_has_the_default_retries() -> None:
     usual = Retries()
     assert (usual.number, usual.first_wait, usual.longest_wait) == (5, 0.5, 30.0)
     assert "tried up to five times more" in PAGE.replace("\n", " ")

@@ -1,4 +1,4 @@
-"""CONTRIBUTING.md names files, folders and targets that exist, and its map lacks no package."""
+"""CONTRIBUTING.md names files, folders and targets that exist; its map has every package."""
 
 import re
 from collections.abc import Iterator
@@ -7,12 +7,12 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 SERVICE = ROOT / "service"
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-# The folders that paths on the page begin in.
+# The folders to which paths on the page are relative.
 STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading", SERVICE / "web" / "static")
 
 
 def on_the_map() -> Iterator[Path]:
-    """The files and folders of the map; what is further indented lies inside."""
+    """Yield the files and folders of the map; deeper indentation means inside."""
     above: list[tuple[int, Path]] = []
     chart = PAGE[PAGE.index("## The map") : PAGE.index("## Five recipes")]
     for indent, names in re.findall(r"^    ( *)((?:\w+(?:/|\.py) +)+)", chart, re.MULTILINE):
@@ -23,7 +23,7 @@ def on_the_map() -> Iterator[Path]:
         yield from paths
 
 
-def test_the_map_shows_what_is_there_and_every_package() -> None:
+def test_the_map_shows_existing_files_and_every_package() -> None:
     shown = list(on_the_map())
     assert [path for path in shown if not path.exists()] == []
     packages = {file.parent for file in SERVICE.glob("*/__init__.py")}

@@ -1,4 +1,4 @@
-"""Every example line of docs/expressions.md, as it stands there."""
+"""Every example of docs/expressions.md is read as the page says."""
 
 import re
 from pathlib import Path
@@ -30,19 +30,19 @@ def rows(*heads: str) -> list[tuple[str, ...]]:
 
 
 @together(("text", "meaning"), rows("You type", "It means"))
-def test_it_means(text: str, meaning: str) -> None:
+def test_a_text_has_the_shown_meaning(text: str, meaning: str) -> None:
     assert read(text, ROBOT).text() == meaning
 
 
 @pytest.mark.parametrize(("text", "meaning", "note"), rows("You type", "It means", "The note"))
-def test_it_means_with_a_note(text: str, meaning: str, note: str) -> None:
+def test_a_text_has_the_shown_meaning_and_note(text: str, meaning: str, note: str) -> None:
     expression = read(text, ROBOT)
     assert expression.text() == meaning
     assert note in {found.code for found in expression.notes}
 
 
 @pytest.mark.parametrize(("text", "_why", "repaired"), rows("You type", "Why not", "Write"))
-def test_write_instead(text: str, _why: str, repaired: str) -> None:
+def test_a_refused_text_has_the_shown_repair(text: str, _why: str, repaired: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(text, ROBOT)
     assert caught.value.suggestion == repaired
@@ -50,7 +50,7 @@ def test_write_instead(text: str, _why: str, repaired: str) -> None:
 
 
 @pytest.mark.parametrize(("text", "_why"), rows("You type", "Why not"))
-def test_refused_without_a_repair(text: str, _why: str) -> None:
+def test_a_text_is_refused_without_a_repair(text: str, _why: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(text, ROBOT)
     assert caught.value.suggestion is None

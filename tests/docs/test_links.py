@@ -1,4 +1,4 @@
-"""The pages name each other by links, and the links lead somewhere."""
+"""Pages refer to each other by links, and the links have targets."""
 
 import re
 from pathlib import Path
@@ -13,7 +13,7 @@ _SECTION = re.compile(r"\]\(([^)#\s:]*)#([^)\s]+)\)")
 
 
 def prose(page: Path) -> str:
-    """The page without its code blocks."""
+    """Return the page without its code blocks."""
     return _CODE.sub("", page.read_text(encoding="utf-8"))
 
 

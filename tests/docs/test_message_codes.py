@@ -36,7 +36,7 @@ PASTED_NOTED = "A pasted table or matrix that is read, with a note"
 
 
 class Line(NamedTuple):
-    """A line of a table of codes; ``example`` is what stands behind the meaning, if anything."""
+    """A line of a table of codes; ``example`` is the columns after the meaning."""
 
     section: str
     code: str
@@ -44,7 +44,7 @@ class Line(NamedTuple):
 
 
 def lines(page: str) -> list[Line]:
-    """The lines of all tables whose first column is the code."""
+    """Return the lines of all tables whose first column is the code."""
     found: list[Line] = []
     section, heads = "", ""
     for line in page.split("\n"):
@@ -66,7 +66,7 @@ LINES = lines(PAGE)
 
 @cache
 def program() -> Sequence[CodeUse]:
-    """Every code in the program; found on first use, for it takes a second.
+    """Return every use of a code in the program, found once because it takes a second.
 
     Attempts only count the codes of reports.
     """
@@ -82,7 +82,7 @@ def test_every_code_of_the_program_is_on_the_page() -> None:
     assert {use.code for use in program()} - {line.code for line in LINES} == set()
 
 
-def test_every_code_on_the_page_is_one_of_the_programs() -> None:
+def test_every_code_on_the_page_exists() -> None:
     assert {line.code for line in LINES} - {use.code for use in program()} == set()
 
 
@@ -100,7 +100,7 @@ def test_a_line_of_the_page_without_its_example() -> None:
 
 
 def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str], set[str]]:
-    """The codes that an answer draws, at the level full and at the level score."""
+    """Return the codes of the messages on an answer, at the levels full and score."""
     full, hints, verdicts, score = (
         all_codes(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
         for level in FeedbackLevel
@@ -111,7 +111,7 @@ def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str]
 
 
 def examples(*sections: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Tries each line of these sections that has an example."""
+    """Run a test with each line of these sections that has an example."""
     chosen = [line for line in LINES if line.section in sections and line.example]
     return together("line", chosen)
 
@@ -129,7 +129,7 @@ def test_a_formula_is_read_with_a_note(line: Line) -> None:
 
 
 @examples(PASTED_UNREAD, PASTED_NOTED)
-def test_a_pasted_text_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_pasted_text_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, text = catalogue["planar-rr"], line.example[0].replace(" ↵ ", "\n")
     found: set[str] = set()
     for part_id in ("table", "links", "pose"):
@@ -151,7 +151,7 @@ def test_most_codes_have_an_example() -> None:
     assert len({line.code for line in LINES if line.example}) > 120
 
 
-# --- what else the page says
+# --- other statements of the page
 
 
 def test_the_message_on_the_page_is_in_the_report(catalogue: Mapping[str, Exercise]) -> None:
@@ -182,7 +182,7 @@ def test_the_limits_of_the_page() -> None:
         assert limit in PAGE
 
 
-def test_links_within_the_page_lead_somewhere() -> None:
+def test_links_within_the_page_have_targets() -> None:
     headings = re.findall(r"^##+ (.+)$", PAGE, re.MULTILINE)
     anchors = {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
     links = set(re.findall(r"\]\(#([\w-]+)\)", PAGE))

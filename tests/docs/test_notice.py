@@ -1,4 +1,4 @@
-"""NOTICE names every work of others that the repository carries, with its licence."""
+"""NOTICE names every third-party work in the repository, with its licence."""
 
 import subprocess
 
@@ -6,14 +6,14 @@ import pytest
 
 from tests.docs.notice import BUNDLED, ROOT, VENDORED, looks_vendored, notice
 
-# The files that say which licence holds, and what belongs to them.
+# The files with licences, and other files that belong to third-party works.
 BESIDE = {each.text for each in VENDORED} | {
     BUNDLED,
     "LICENSE",
     "NOTICE",
     "service/api/routes/swagger_ui/NOTICE",
     "service/web/static/vendor/three-0.185.1.README.md",
-    # Types for our checks, written here.
+    # Types for our checks, written in this project.
     "service/web/static/vendor/three-0.185.1.module.min.d.ts",
     "service/web/static/vendor/three-0.185.1.orbit-controls.d.ts",
     "tests/docs/notice.py",
@@ -46,5 +46,5 @@ def test_each_entry_has_the_text_of_its_licence() -> None:
         assert phrases[each.licence] in (ROOT / each.text).read_text(encoding="utf-8")
         assert all((ROOT / file).is_file() for file in each.files)
         assert all(each.version in file for file in each.files)
-        # What goes into the wheel is below the package.
+        # Files in the wheel are inside the package.
         assert each.shipped == each.text.startswith("service/")

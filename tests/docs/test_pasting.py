@@ -1,4 +1,4 @@
-"""Each example of docs/pasting.md does what the page says."""
+"""Each example of docs/pasting.md is read or refused as the page says."""
 
 import re
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The README is one page, and its commands do what it says."""
+"""The README is one page, and its commands and targets are right."""
 
 import html
 import re
@@ -20,18 +20,18 @@ COMMANDS = [
 ]
 
 
-def test_it_is_one_page() -> None:
+def test_the_readme_is_one_page() -> None:
     assert len(PAGE.splitlines()) <= 100
     assert len(PAGE.split()) <= 650
 
 
-def test_the_newcomer_s_commands_are_first() -> None:
-    """`make wheel` runs them in a fresh clone; see tests/installed."""
+def test_the_commands_of_the_installation_are_first() -> None:
+    """`make wheel` runs these commands in a fresh clone; see tests/installed."""
     install = ["python3 -m venv .venv", ".venv/bin/pip install .", ".venv/bin/dh-grader serve"]
     assert COMMANDS[:3] == install
 
 
-def test_the_picture_shows_what_the_command_prints(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_picture_shows_the_output_of_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     [command] = [each for each in COMMANDS if " grade " in each]
     result = CliRunner().invoke(program, command.split()[1:])
@@ -44,7 +44,7 @@ def test_the_picture_shows_what_the_command_prints(monkeypatch: pytest.MonkeyPat
     assert [line for line in printed if line not in shown] == []
 
 
-def test_its_targets_exist() -> None:
+def test_the_targets_of_the_readme_exist() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for target in re.findall(r"make (\w+)", " ".join(re.findall(r"`[^`]+`", PAGE) + COMMANDS)):
         assert re.search(rf"^{target}:", makefile, re.MULTILINE), target

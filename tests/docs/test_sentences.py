@@ -1,4 +1,4 @@
-"""docs/sentences.md: every sentence that a student can meet, each with an example."""
+"""docs/sentences.md lists every sentence of a message, each with an example."""
 
 import pytest
 
@@ -6,11 +6,11 @@ from tests.docs import sentences
 from tests.docs.sentences import Said, chosen, page, shown
 from tests.docs.templates import Template, templates_in
 
-# Sentences without an example. It may only shrink: a new sentence comes with its example.
+# The number of sentences without an example. It may only shrink.
 UNMET = 0
 
 
-def test_the_page_is_what_the_program_says() -> None:
+def test_the_page_is_up_to_date() -> None:
     written = (sentences.ROOT / "docs" / "sentences.md").read_text(encoding="utf-8")
     assert written == page(), "run `python -m tests.docs.sentences > docs/sentences.md`"
     assert written.partition("## Without an example")[2].count("\n- ") <= UNMET
@@ -46,7 +46,7 @@ def said(code: str, sentence: str, correction: str = "") -> Said:
     return Said(code, sentence, correction, "", "x")
 
 
-def test_a_template_is_met_with_anything_in_its_gaps() -> None:
+def test_a_template_matches_any_text_in_its_gaps() -> None:
     turns = template("Joint ", " turns about ", ".")
     assert turns.is_met_by("Look: Joint 1 turns about z.")
     assert not turns.is_met_by("Joint 1 slides along z.")
@@ -76,7 +76,7 @@ def test_the_words_of_a_correction_count() -> None:
     assert (len(rows), unmet) == (1, [])
 
 
-def test_a_short_sentence_is_not_met_by_a_message_of_another_file() -> None:
+def test_a_short_sentence_does_not_match_a_message_of_another_file() -> None:
     short = template("", " is wrong")
     assert chosen([said("b", "The name is wrong.")], [(short, frozenset({"a"}))]) == ([], [short])
     long = template("The name of this joint is not known here.")

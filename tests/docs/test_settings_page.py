@@ -1,4 +1,4 @@
-"""docs/settings.md lists every setting once, with what the program says about it."""
+"""docs/settings.md lists every setting once, and is up to date."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ FILE = Path(__file__).parents[2] / "docs" / "settings.md"
 _ROW = re.compile(r"^\| `DH_GRADER_([A-Z_]+)` \| (not set|`[^`]+`) \| (.+) \|$", re.MULTILINE)
 
 
-def test_the_page_is_what_the_settings_give() -> None:
+def test_the_page_is_up_to_date() -> None:
     assert FILE.read_text(encoding="utf-8") == page(), (
         "The settings have changed; run python -m tests.docs.settings > docs/settings.md"
     )

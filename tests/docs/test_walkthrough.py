@@ -1,4 +1,4 @@
-"""The pages that are followed from top to bottom, and the helper that follows them."""
+"""Pages whose commands are run from top to bottom, and tests of the helper that runs them."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ DOCS = Path(__file__).parents[2] / "docs"
         ("figures.md", 2),
     ],
 )
-def test_a_page_comes_true(
+def test_the_commands_of_a_page_print_the_shown_output(
     page: str, commands: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     reader = Reader(tmp_path, monkeypatch)
@@ -48,7 +48,7 @@ def follow(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Reader(folder, monkeypatch).follow(page)
 
 
-def test_a_page_that_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_right_page_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = PAGE.format(printed="…\narm.toml: a (line 1): …there is no key…")
     follow(page, tmp_path, monkeypatch)
 
@@ -65,7 +65,7 @@ def test_a_page_that_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         ('```csv "a b.csv"\nx\n```\n```csv "a b.csv" expected\ny\n```\n', "line 4: there is\nx"),
     ],
 )
-def test_a_page_that_is_not(
+def test_a_wrong_page_fails(
     page: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(AssertionError, match=reason):
@@ -73,12 +73,14 @@ def test_a_page_that_is_not(
 
 
 @pytest.mark.parametrize("page", ["```json\n{a: 1}\n```\n", "```toml\na = \n```\n"])
-def test_json_and_toml_are_read(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_json_and_toml_fail(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with pytest.raises(ValueError, match=r"Expecting|Invalid"):
         follow(page, tmp_path, monkeypatch)
 
 
-def test_a_block_may_take_back_the_one_before(
+def test_a_block_may_replace_the_one_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     words = ("x.toml\na = 1", "x.toml\nb = 2", "x.toml instead\nc = 3")
@@ -102,5 +104,5 @@ def test_a_block_may_take_back_the_one_before(
         ("a.c", "abc\n", False),
     ],
 )
-def test_dots_stand_for_anything(expected: str, printed: str, does: bool) -> None:
+def test_an_ellipsis_matches_any_text(expected: str, printed: str, does: bool) -> None:
     assert matches(expected, printed) is does

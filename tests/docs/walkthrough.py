@@ -1,6 +1,6 @@
-"""Runs a page of docs/ from top to bottom, in an empty folder, as its reader would.
+"""Run the commands of a page of docs/ from top to bottom, in an empty folder.
 
-What its code blocks do is said behind the three backticks:
+The words after the three backticks say what a code block does:
 
     console           each line `$ dh-grader …` is run, and the lines below it are what it prints
     console exit=1    the same, where the last command ends with that exit code
@@ -10,7 +10,7 @@ What its code blocks do is said behind the three backticks:
     csv FILE expected is what a command before has written into the file
     toml, json, sh    is only read
 
-In what is printed `…` stands for anything within a line, and alone on a line for any lines.
+In the output, `…` matches any text within a line, and alone on a line any lines.
 `$ export NAME=VALUE` sets a variable for the commands that follow.
 """
 
@@ -33,7 +33,7 @@ _ANYTHING = "…"
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One code block: its language, the words behind that, its text, and the line it begins in."""
+    """A code block: its language, the words after it, its text, and the number of its line."""
 
     language: str
     words: tuple[str, ...]
@@ -42,14 +42,14 @@ class Block:
 
 
 def blocks(page: str) -> Iterator[Block]:
-    """The code blocks of a page, in order."""
+    """Yield the code blocks of a page, in order."""
     for found in _FENCE.finditer(page):
         line = page.count("\n", 0, found.start()) + 1
         yield Block(found[1], tuple(shlex.split(found[2])), found[3], line)
 
 
 class Reader:
-    """Follows a page in ``folder``, which is the current one of the process."""
+    """Runs the blocks of a page in ``folder``, which is the current folder of the process."""
 
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self._folder = folder
@@ -59,7 +59,7 @@ class Reader:
         monkeypatch.chdir(folder)
 
     def follow(self, page: str) -> None:
-        """Do all that the page says; fails with the block's line where it does not come true."""
+        """Run all blocks of the page; fail with the line of a block that is not right."""
         for block in blocks(page):
             match block.language:
                 case "console":
@@ -79,7 +79,7 @@ class Reader:
                 case "sh":
                     pass
                 case other:
-                    pytest.fail(f"line {block.line}: nothing is known of blocks of {other}")
+                    pytest.fail(f"line {block.line}: unknown language of a block: {other}")
 
     def _write_toml(self, block: Block) -> None:
         if not block.words:
@@ -113,7 +113,7 @@ class Reader:
 
 
 def matches(expected: str, printed: str) -> bool:
-    """Whether a command printed this, `…` standing for anything."""
+    """True if the output of a command is as expected; `…` matches any text."""
     pattern = ""
     for line in expected.strip("\n").split("\n"):
         if line.strip() == _ANYTHING:

@@ -1,4 +1,4 @@
-"""Each robot of the catalogue against a product of exponentials that was read off its statement.
+"""Compare each robot of the catalogue with a product of exponentials from its statement.
 
 The screw axes and home poses below were written by hand from the words of the statements (where an
 axis passes, which way it points, where the tool is with all joint variables 0), not from the
@@ -27,7 +27,7 @@ ORIGIN = np.zeros(3)
 
 @dataclass(frozen=True)
 class Axis:
-    """A joint at home: the twist (ω; v) that it gives to the points of space."""
+    """The screw axis (ω; v) of a joint in the home pose."""
 
     turning: Vector
     velocity: Vector
@@ -46,7 +46,7 @@ def slide(direction: Vector) -> Axis:
 
 
 def frame(x: Vector, z: Vector, at: Vector) -> Vector:
-    """A frame by the directions of its x and z axes and its origin."""
+    """Return a frame, given the directions of its x and z axes and its origin."""
     home = np.eye(4)
     home[:3] = np.column_stack([x, np.cross(z, x), z, at])
     return home
@@ -146,7 +146,7 @@ def drawn(exercise: Exercise) -> dict[str, Vector]:
 
 
 def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
-    """T at each draw, ``(SAMPLES, 4, 4)``."""
+    """Return T at each sample, ``(SAMPLES, 4, 4)``."""
     poses = np.empty((SAMPLES, 4, 4))
     for lane in range(SAMPLES):
         numbers = {name: float(drawn_values[lane]) for name, drawn_values in values.items()}
@@ -156,12 +156,12 @@ def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
     return poses
 
 
-def test_every_robot_of_the_catalogue_is_here(catalogue: Mapping[str, Exercise]) -> None:
+def test_every_robot_of_the_catalogue_is_tested(catalogue: Mapping[str, Exercise]) -> None:
     assert {name for name, exercise in catalogue.items() if exercise.reference} == set(STATEMENTS)
 
 
 @pytest.mark.parametrize("exercise_id", STATEMENTS)
-def test_the_forward_kinematics_are_those_of_the_statement(
+def test_the_forward_kinematics_agree_with_the_statement(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]
@@ -177,7 +177,7 @@ def test_the_forward_kinematics_are_those_of_the_statement(
 
 
 @pytest.mark.parametrize("exercise_id", STATEMENTS)
-def test_the_screw_axes_are_those_of_the_statement(
+def test_the_screw_axes_agree_with_the_statement(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]

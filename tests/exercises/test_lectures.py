@@ -1,4 +1,4 @@
-"""What the lectures print: full marks, or for an erratum its mark and its message.
+"""Answers printed in lectures get full marks; a misprint gets its points and its message.
 
 The LaTeX is copied from the lectures: Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics*;
 Robotics and Automation, *Direct Kinematics (Part 2)*; MEAM 520, *More Denavit-Hartenberg (DH)*; and
@@ -17,12 +17,12 @@ from tests.grading.support.submitting import full_marks, handed_in, not_correct,
 
 
 def pasted(head: str, *rows: str) -> str:
-    """A table as it is copied from a page: columns by tabs."""
+    """Return a table as text copied from a page: columns separated by tabs."""
     return "\n".join("\t".join(line.split(" ")) for line in (head, *rows))
 
 
 def matrix(*rows: str) -> str:
-    """A matrix as a lecture's LaTeX writes it."""
+    """Return a matrix in the LaTeX of a lecture."""
     return r"\begin{bmatrix} " + r" \\ ".join(rows) + r" \end{bmatrix}"
 
 
@@ -149,7 +149,7 @@ def graded(
 
 
 @pytest.mark.parametrize(("exercise", "name"), CASES)
-def test_what_a_lecture_prints_gets_full_marks(
+def test_an_answer_of_a_lecture_gets_full_marks(
     exercise: str, name: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     answers, unit = PRINTED[exercise]
@@ -220,7 +220,7 @@ def test_the_final_stanford_table_of_robotic_fundamentals_has_lost_a_degree_of_f
     [lost] = [message for message in report.feedback if message.code == "lost_freedom"]
     assert "Joints 5 and 6 turn about one and the same line" in lost.message
     assert "row 5" in lost.message
-    # One cell in each of rows 3, 4 and 5, and joint 2 the other way round than the statement says.
+    # One cell in each of rows 3, 4 and 5, and the direction of joint 2, differ from the statement.
     assert not_correct(report) == {
         ("1", "alpha"): Verdict.INCORRECT,
         ("3", "alpha"): Verdict.INCORRECT,

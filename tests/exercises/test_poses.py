@@ -1,4 +1,4 @@
-"""What the lectures print gets full marks: products of their matrices, and closed forms.
+"""Poses of the lectures get full marks: products of their matrices, and closed forms.
 
 The matrices are copied from MEAM 520, *More Denavit-Hartenberg (DH)* (planar RR and Stanford arm)
 and from Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics* (planar RRR, RRRP); SymPy
@@ -18,7 +18,7 @@ from tests.grading.support.submitting import full_marks, graded_pose, not_correc
 
 Matrix = list[list[str]]
 
-# The shorthand is its own symbol for SymPy; the grader knows that c1 is cos(theta1).
+# For SymPy, c1 is a symbol; the grader reads it as cos(theta1).
 c1, c2, c4, c5, c6, s1, s2, s4, s5, s6 = sp.symbols("c1 c2 c4 c5 c6 s1 s2 s4 s5 s6")
 d2, d3, d6 = sp.symbols("d2 d3 d6")
 
@@ -42,7 +42,7 @@ def product(*matrices: Any) -> Any:
 
 
 def planar_rrr() -> Any:
-    """0T1 1T2 2T3 3Te as the lecture prints them."""
+    """Return the product 0T1 1T2 2T3 3Te of the printed matrices."""
     q1, q2, q3, l1, l2, l3 = sp.symbols("q1 q2 q3 l1 l2 l3")
 
     def link(q: Any, length: Any) -> Any:
@@ -54,7 +54,7 @@ def planar_rrr() -> Any:
 
 
 def rrrp() -> Any:
-    """The lecture's table in the lecture's general matrix of the distal convention."""
+    """Return the pose from the lecture's table and its general matrix (standard convention)."""
     q1, q2, q3, q4, l1, l2, l3, l4 = sp.symbols("q1 q2 q3 q4 l1 l2 l3 l4")
 
     def link(a: Any, alpha: Any, d: Any, theta: Any) -> Any:
@@ -76,7 +76,7 @@ PRODUCTS = {
 
 
 @pytest.mark.parametrize("exercise", PRODUCTS)
-def test_the_product_of_the_printed_matrices(
+def test_the_product_of_the_printed_matrices_is_right(
     exercise: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     report = graded_pose(catalogue[exercise], entries(PRODUCTS[exercise]))
@@ -84,7 +84,7 @@ def test_the_product_of_the_printed_matrices(
 
 
 @pytest.mark.parametrize("exercise", ["planar-rrr", "rrrp"])
-def test_the_product_expanded(exercise: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_the_expanded_product_is_right(exercise: str, catalogue: Mapping[str, Exercise]) -> None:
     expanded = PRODUCTS[exercise].applyfunc(sp.expand)
     assert full_marks(graded_pose(catalogue[exercise], entries(expanded)))
 
@@ -178,14 +178,16 @@ CASES = [(exercise, name) for exercise, forms in CLOSED_FORMS.items() for name i
 
 
 @pytest.mark.parametrize(("exercise", "name"), CASES)
-def test_the_closed_form(exercise: str, name: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_the_closed_form_is_right(
+    exercise: str, name: str, catalogue: Mapping[str, Exercise]
+) -> None:
     report = graded_pose(catalogue[exercise], CLOSED_FORMS[exercise][name])
     assert full_marks(report), not_correct(report)
     assert [row.label for row in report.rows] == ["1", "2", "3", "4"]
 
 
 @pytest.mark.parametrize("exercise", CLOSED_FORMS)
-def test_each_entry_with_the_wrong_sign_is_wrong_alone(
+def test_only_the_entry_with_the_wrong_sign_is_wrong(
     exercise: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     for i in range(4):

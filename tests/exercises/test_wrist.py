@@ -22,7 +22,7 @@ ROTATION = about_z(four) * ABOUT_Y * about_z(six)
 POSITION = ["d6 c4 s5", "d6 s4 s5", "d6 c5"]
 
 
-def test_the_lectures_answers(catalogue: Mapping[str, Exercise]) -> None:
+def test_the_answers_of_the_lecture_are_right(catalogue: Mapping[str, Exercise]) -> None:
     rows = [[str(ROTATION[i, j]) for j in range(3)] for i in range(3)]
     answers = {
         "rotation": rows,
@@ -43,14 +43,14 @@ def test_the_lectures_answers(catalogue: Mapping[str, Exercise]) -> None:
         ["atan2(-s4 s5, -c4 s5)", "-acos(c5)", "atan2(-s5 s6, -s5 c6)"],
     ],
 )
-def test_other_triples_of_the_same_rotation(
+def test_other_angles_of_the_same_rotation_are_right(
     angles: list[str], catalogue: Mapping[str, Exercise]
 ) -> None:
     report = handed_in(catalogue["spherical-wrist"], {"zyz": angles})
     assert full_marks(part(report, "zyz"))
 
 
-def test_the_table_by_its_rows(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_table_with_row_labels_is_right(catalogue: Mapping[str, Exercise]) -> None:
     answer = "i,a,alpha,d,theta\n4,0,-90,0,theta4\n5,0,90,0,theta5\n6,0,0,d6,theta6"
     report = handed_in(catalogue["spherical-wrist"], {"table": answer}, "degrees")
     assert full_marks(part(report, "table"))

@@ -1,4 +1,4 @@
-"""``python -m tests.frame_choice --tables 1000 --seed N``: the figures for all robots."""
+"""``python -m tests.frame_choice --tables 1000 --seed N``: run the campaign for all robots."""
 
 import argparse
 import sys
@@ -11,14 +11,14 @@ from tests.frame_choice.trials import Tally
 
 
 def main() -> int:
-    """Run and print; 1 if a figure does not hold."""
+    """Run the campaign and print its figures; return 1 if one is below its least share."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice", description=__doc__)
     parser.add_argument("--tables", type=int, default=TABLES, help="for each robot and convention")
     parser.add_argument("--free-tables", type=int, default=FREE_TABLES, help="with free base, …")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, help="processes; one for each processor by default")
     parser.add_argument("--robot", default="", help="only robots whose name contains this")
-    parser.add_argument("--misses", type=int, default=0, help="print so many of each kind")
+    parser.add_argument("--misses", type=int, default=0, help="misses to print of each kind")
     options = parser.parse_args()
     robots = [robot for robot in ROBOTS if options.robot.lower() in robot.name.lower()]
     lines: list[str] = []

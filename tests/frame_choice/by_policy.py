@@ -1,7 +1,7 @@
-"""``python -m tests.frame_choice.by_policy --robots N``: unseen robots under the eight policies.
+"""``python -m tests.frame_choice.by_policy --robots N``: random robots under the eight policies.
 
-Under each policy, and in each convention, tables of random robots are drawn: valid ones must get
-full marks, ones with a slip must not, and no verdict may depend on the draw of the samples.
+Draw tables of random robots under each policy and in each convention. Valid ones must get full
+marks, ones with a slip must not, and no verdict may depend on the random samples.
 """
 
 import argparse
@@ -24,12 +24,12 @@ from tests.frame_choice.unseen import random_robot
 
 SEEDS = 20
 VALID, WRONG = "valid", "wrong"
-MISJUDGED, EXACT, UNSTEADY = "misjudged", "blamed on its cell", "changed by the draw"
+MISJUDGED, EXACT, UNSTEADY = "misjudged", "blamed on its cell", "changed by the samples"
 
 
 @dataclass
 class Counts:
-    """Counts by policy, truth and what was said; ``misses`` are tables that were misjudged."""
+    """Counts by policy, truth and judgement; ``misses`` are the misjudged tables."""
 
     counts: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -39,7 +39,7 @@ class Counts:
         self.misses += other.misses
 
     def of(self, truth: str, said: str = "", policy: str | None = None) -> int:
-        """How many of the tables ``truth`` is true of were ``said`` something of."""
+        """Return the number of valid or wrong tables (``truth``) with a judgement (``said``)."""
         return sum(
             count
             for (name, its_truth, told), count in self.counts.items()
@@ -47,7 +47,7 @@ class Counts:
         )
 
     def judge(self, table: Table, edit: Edit | None, seeds: int) -> None:
-        """Grade a table, which is wrong if there is an edit, and count what is said of it."""
+        """Grade a table, which is wrong if there is an edit, and count the judgement."""
         truth = WRONG if edit else VALID
 
         def count(said: str) -> None:
@@ -70,7 +70,7 @@ class Counts:
 
 
 def full_marks(table: Table, seed: int) -> bool:
-    """Whether the table gets full marks in another draw of the samples."""
+    """True if the table gets full marks with other random samples."""
     compiled = exercise(table.robot, table.policy)
     redrawn = replace(compiled, version=f"{compiled.version} {seed}")
     report = grade_rows(redrawn, table.texts, table.convention)
@@ -78,7 +78,7 @@ def full_marks(table: Table, seed: int) -> bool:
 
 
 def described(table: Table) -> str:
-    """Robot, policy and table, to be pasted into a test."""
+    """Return robot, policy and table as text for a test."""
     robot = table.robot
     lines = [
         f"{robot.name} {robot.structure}, {robot.convention}; {table.policy.name}",
@@ -92,7 +92,7 @@ def described(table: Table) -> str:
 def run(
     numbers: Iterable[int], seed: int, seeds: int, policies: tuple[Policy, ...] = POLICIES
 ) -> Counts:
-    """The counts for the robots of these numbers: two tables for each policy and convention."""
+    """Return the counts for some robots, with two tables for each policy and convention."""
     counts = Counts()
     for number in numbers:
         rng = np.random.default_rng([seed, number])
@@ -101,7 +101,7 @@ def run(
             for convention in conventions(robot, policy):
                 try:
                     table, _ = reassignment(robot, policy, convention, rng)
-                except RuntimeError:  # its numbers are no formulas
+                except RuntimeError:  # its numbers cannot be written as formulas
                     continue
                 if not equivalent(table):
                     raise AssertionError(f"the generator drew a wrong table: {described(table)}")
@@ -120,7 +120,7 @@ def _task(task: tuple[range, int, int]) -> Counts:
 
 
 def lines(found: Counts) -> list[str]:
-    """The figures by policy, and of all."""
+    """Return the figures of each policy, and of all together, as lines."""
     said = [(VALID, ""), (VALID, MISJUDGED), (VALID, UNSTEADY)]
     said += [(WRONG, ""), (WRONG, MISJUDGED), (WRONG, UNSTEADY), (WRONG, EXACT)]
     head = "".join(f"{told or truth:>20}" for truth, told in said)
@@ -132,13 +132,13 @@ def lines(found: Counts) -> list[str]:
 
 
 def main() -> int:
-    """Run and print; 1 if a table was misjudged."""
+    """Run the campaign and print the figures; return 1 if a table was misjudged."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.by_policy")
     parser.add_argument("--robots", type=int, default=700)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--seeds", type=int, default=SEEDS, help="draws of each table")
+    parser.add_argument("--seeds", type=int, default=SEEDS, help="sets of samples for each table")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--misses", type=int, default=5, help="print so many")
+    parser.add_argument("--misses", type=int, default=5, help="misses to print")
     options = parser.parse_args()
     size = 10
     tasks = [

@@ -1,7 +1,7 @@
-"""The campaign: many tables of every robot in frames of random choice, whole and with slips.
+"""The campaign: many tables of every robot in random frames, valid ones and ones with slips.
 
-``python -m tests.frame_choice`` runs it and prints its figures; pytest runs it where it is asked
-for by its marker (``-m campaign``), and a sample of it always (``test_properties``).
+``python -m tests.frame_choice`` runs it and prints its figures. pytest runs it with
+``-m campaign``, and a sample of it always (``test_properties``).
 """
 
 import os
@@ -20,13 +20,13 @@ from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, Robot, convention
 from tests.frame_choice.trials import Tally, run
 
 TABLES = 1000
-# Under free policies the oracle, too, has to search: each table takes it long.
+# Fewer tables under free policies, because the oracle has to search and takes long.
 FREE_TABLES = 20
 
 
 @dataclass(frozen=True)
 class Task:
-    """What one process does at a time: so many tables of a robot in one convention."""
+    """The work of one process at a time: ``tables`` tables of a robot in one convention."""
 
     robot: Robot
     convention: str
@@ -45,7 +45,7 @@ class Task:
 
 
 def tasks(robots: Sequence[Robot], *, only_given: bool, tables: int, seed: int) -> list[Task]:
-    """One for each robot and convention."""
+    """Return a task for each robot and convention."""
     policy = GIVEN if only_given else POLICIES[-1]
     return [
         Task(robot, convention, only_given, tables, seed)
@@ -55,7 +55,7 @@ def tasks(robots: Sequence[Robot], *, only_given: bool, tables: int, seed: int) 
 
 
 def tallies(todo: Sequence[Task], jobs: int) -> list[Tally]:
-    """The tally of each task, with a line of progress on standard error."""
+    """Return the tally of each task, and print a line of progress to standard error."""
     if jobs == 1:
         return list(_with_progress(todo, map(Task.tally, todo)))
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
@@ -74,7 +74,7 @@ def _with_progress(todo: Sequence[Task], found: Iterable[Tally]) -> Iterator[Tal
 
 
 def total(found: Sequence[Tally]) -> Tally:
-    """All tallies in one."""
+    """Return the sum of all tallies."""
     everything = Tally()
     for tally in found:
         everything.add(tally)
@@ -83,7 +83,7 @@ def total(found: Sequence[Tally]) -> Tally:
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure, and the least share that must hold; None where it is only reported."""
+    """A figure and its least share, or None if it is only reported."""
 
     name: str
     part: int
@@ -102,8 +102,8 @@ class Figure:
         )
 
 
-# What was counted of what, and the least share. Ties are wrong cells that could be repaired in
-# another cell as well, so that no grader can know which was intended.
+# Each: the name, the counted part, the whole, and the least share. Ties are wrong cells that could
+# also be repaired in another cell, so that no grader can know which was intended.
 GIVEN_FIGURES = (
     ("valid tables: full marks and no error", "valid accepted", "valid", 1.0),
     ("one slip: no full marks", "slip caught", "slip", 1.0),
@@ -124,7 +124,7 @@ FREE_FIGURES = (
 
 
 def figures(given: Tally, free: Tally) -> Iterator[Figure]:
-    """What the campaign found, misconceptions that were put into every robot included."""
+    """Yield the figures of the campaign, including those of the misconceptions."""
     for tally, rows in ((given, GIVEN_FIGURES), (free, FREE_FIGURES)):
         for name, part, whole, least in rows:
             yield Figure(name, tally.counts[part], tally.counts[whole], least)
@@ -145,7 +145,7 @@ def whole_campaign(
     jobs: int | None = None,
     show: Callable[[Task, Tally], None] = lambda _task, _tally: None,
 ) -> tuple[Tally, Tally]:
-    """The tallies with base, tool and directions given, and under the free policies in turn."""
+    """Return two tallies: with base, tool and directions given, and under the free policies."""
     found = []
     for only_given, count in ((True, tables), (False, free_tables)):
         todo = tasks(robots, only_given=only_given, tables=count, seed=seed)

@@ -1,4 +1,4 @@
-"""A cell as a student would write it: joint variable, letters, and a constant."""
+"""Table cells as a student would write them: sums of joint variables, letters and constants."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,12 +12,12 @@ SAME = 1e-9
 
 
 class NotExpressibleError(Exception):
-    """The numbers are not those of a formula that a cell can be written as."""
+    """The numbers cannot be written as the formula of a cell."""
 
 
 @dataclass(frozen=True)
 class Term:
-    """A closed form that is no sum of letters (a root, an arc tangent) and its values."""
+    """A closed form other than a sum of letters (a root, an arc tangent), and its values."""
 
     text: str
     values: Numbers
@@ -25,7 +25,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Cell:
-    """``variables`` and ``letters`` map names to multiples, ``terms`` closed forms likewise."""
+    """A cell; ``variables``, ``letters`` and ``terms`` map names or closed forms to factors."""
 
     angle: bool
     constant: float = 0.0
@@ -39,7 +39,7 @@ class Cell:
 
     @property
     def text(self) -> str:
-        """The cell as a formula that both Python and the service read."""
+        """The cell as a formula that both Python and the service can read."""
         named = {**self.variables, **self.letters, **self.terms}
         parts = [_multiple(factor, name) for name, factor in named.items()]
         if self.constant:
@@ -70,12 +70,12 @@ def _angle(value: float) -> str:
 
 
 def _whole(value: float) -> float:
-    """The value without the dust of floating-point geometry."""
+    """Return the value without floating-point noise."""
     return float(np.round(value, 11)) + 0.0
 
 
 def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence[Term]) -> Cell:
-    """The sum of letters and a constant that gives ``values`` ``(K,)``, or one of the roots."""
+    """Return the cell with ``values`` ``(K,)``: a sum of letters and a constant, or a root."""
     basis = np.array([*letters.values(), np.ones(len(values))]).T
     solution = np.linalg.lstsq(basis, values, rcond=None)[0]
     if np.abs(basis @ solution - values).max() < SAME:
@@ -92,7 +92,7 @@ def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence
 
 
 def angle_cell(values: Numbers, arcs: Sequence[Term]) -> Cell:
-    """The sum of at most two of the arcs and a constant that gives ``values`` ``(K,)`` mod 2π."""
+    """Return the cell with ``values`` ``(K,)`` mod 2π: a constant and at most two of the arcs."""
     for count in range(3):
         for chosen in combinations(arcs, count):
             for signs in product((1.0, -1.0), repeat=count):

@@ -1,4 +1,4 @@
-"""The slips that a single cell can hold."""
+"""Slips in a single cell."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ QUARTER = np.pi / 2
 
 @dataclass(frozen=True)
 class Edit:
-    """What was changed, in which cell of which row (from 0)."""
+    """A slip: its kind, its row (from 0) and column, and the wrong cell."""
 
     kind: str
     row: int
@@ -26,7 +26,7 @@ class Edit:
 
 
 def random_edit(table: Table, rng: np.random.Generator, not_in_row: int | None = None) -> Edit:
-    """A cell drawn evenly, then a slip drawn evenly from those that it can hold."""
+    """Return a random slip in a random cell."""
     rows = [i for i in range(len(table.rows)) if i != not_in_row]
     row, column = int(rng.choice(rows)), int(rng.integers(4))
     cell = table.rows[row][column]
@@ -59,7 +59,7 @@ def _slips(
 
 
 def _letters(robot: Robot, cell: Cell) -> Iterator[tuple[str, Cell]]:
-    """Another letter in place of one, or one where there was none."""
+    """Yield cells with a letter replaced, removed or added."""
     for name in robot.lengths:
         if not cell.letters:
             yield "another letter too", replace(cell, letters={name: 1.0})

@@ -1,11 +1,11 @@
-"""The figures as lines of a table."""
+"""Format the figures of the campaign as lines of a table."""
 
 from statistics import median
 
 from tests.frame_choice.trials import Tally
 
 COLUMNS = (
-    # heading, what was counted, of what
+    # heading, counted part, whole
     ("accepted", "valid accepted", "valid"),
     ("caught", "slip caught", "slip"),
     ("skew exact", "skew exact", "skew"),
@@ -23,7 +23,7 @@ HEAD = f"{'':31}" + "".join(f"{name:>{WIDTH}}" for name, _, _ in COLUMNS) + "   
 
 
 def by_policy(tally: Tally) -> str:
-    """Accepted and caught under each policy."""
+    """Return the shares of accepted and caught tables under each policy, as text."""
     lines = []
     for name in sorted({name for name, _ in tally.policies}):
         of = {key: count for (policy, key), count in tally.policies.items() if policy == name}
@@ -35,7 +35,7 @@ def by_policy(tally: Tally) -> str:
 
 
 def line(name: str, tally: Tally) -> str:
-    """One line: counts and shares, and the median times of right and of wrong tables."""
+    """Return counts and shares, and the median times of right and of wrong tables, as one line."""
     cells = []
     for _, part, whole in COLUMNS:
         counted = f"{tally.counts[part]}/{tally.counts[whole]}"

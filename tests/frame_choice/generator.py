@@ -1,13 +1,11 @@
-"""Valid re-assignments: the same mechanism with other frames, as a student might choose them.
+"""Generate valid tables: the same mechanism with other frames, as a student might choose them.
 
-From the base on, at each joint the student's frame is put somewhere on the joint's
-axis (z either way, either x along the common normal, any origin and x direction where the axes are
-parallel or one line; the axis of a sliding joint anywhere). The row is the common normal between
-one z axis and the next, at K values of the lengths at once; in the end the numbers are recognised
-as formulas.
+The generator starts at the base. At each joint it puts the student's frame on the joint's axis. The
+directions of z and x are random. If the next axis is parallel, the origin and x are random as well;
+the axis of a prismatic joint may be anywhere. Each row is computed from the common normal between
+two z axes, at K values of the lengths at once. In the end the numbers are written as formulas.
 
-``pose`` is always the student's frame seen from the reference's frame at the same joint,
-``(K, 4, 4)``.
+``pose`` is always the student's frame in the reference's frame at the same joint, ``(K, 4, 4)``.
 """
 
 from dataclasses import dataclass, replace
@@ -28,7 +26,7 @@ Constants = tuple[Numbers, Numbers]
 
 @dataclass(frozen=True)
 class Table:
-    """A table as handed in: cells in the order a, α, d, θ."""
+    """A table as a student submits it: cells in the order a, α, d, θ."""
 
     robot: Robot
     policy: Policy
@@ -40,14 +38,14 @@ class Table:
         return [[cell.text for cell in row] for row in self.rows]
 
     def edited(self, row: int, column: int, cell: Cell) -> "Table":
-        """The table with another cell in one place."""
+        """Return the table with one cell replaced."""
         rows = [list(cells) for cells in self.rows]
         rows[row][column] = cell
         return replace(self, rows=tuple((a, b, c, d) for a, b, c, d in rows))
 
 
 class _UnreachableError(Exception):
-    """No row leads to the given end-effector frame from where the last frame was put."""
+    """No row leads from the last frame to the given end-effector frame."""
 
 
 def reassignment(
@@ -57,9 +55,9 @@ def reassignment(
     rng: np.random.Generator,
     boldness: float | None = None,
 ) -> tuple[Table, int]:
-    """A random valid table, and how many draws could not be written down before it came out.
+    """Return a random valid table, and the number of failed attempts before it.
 
-    ``boldness`` is how often it departs from the reference's frames, drawn where it is None.
+    ``boldness`` is the share of choices that differ from the reference's frames, random if None.
     """
     for failed in range(200):
         try:
@@ -89,7 +87,7 @@ class _Reassignment:
         self._read_reference()
 
     def _read_reference(self) -> None:
-        """The reference's constants as X_0, then Z_i X_i; ``tool`` is Z_n X_n Z_e."""
+        """Read the reference's constants as X_0, then Z_i X_i; ``tool`` is Z_n X_n Z_e."""
         home = {name: np.zeros(K) for name in self.robot.joints}
         cells = cell_values(self.robot.rows, home | self.letters)
         none = np.zeros((1, 2, K))
@@ -122,7 +120,7 @@ class _Reassignment:
         return -1 if self._bold() else 1
 
     def _length(self) -> Numbers:
-        """A shift that can be written down: a number, a letter of the robot, or their sum."""
+        """Return a random shift that a cell can express: a number, a letter, or their sum."""
         number = np.full(K, round(self.rng.uniform(0.1, 0.8), 2) * self.rng.choice([-1, 1]))
         if not self.letters or self.rng.random() < 0.5:
             return number
@@ -142,7 +140,7 @@ class _Reassignment:
         return np.full(K, np.radians(degrees))
 
     def _sideways(self) -> Numbers:
-        """Where the axis of a sliding joint is moved: ``(K, 4, 4)``."""
+        """Return a random displacement for the axis of a prismatic joint, ``(K, 4, 4)``."""
         move = np.tile(np.eye(4), (K, 1, 1))
         move[:, 0, 3], move[:, 1, 3] = self._shift(), self._shift()
         return move
@@ -159,7 +157,7 @@ class _Reassignment:
     # Frames
 
     def _anywhere_on_axis(self, joint: int) -> Numbers:
-        """A frame on a joint's axis, wherever a free base or end effector lets it be."""
+        """Return a random frame on the axis of a joint, for a free base or end effector."""
         on_axis = screw_x(0.0, 0.0 if self._sign() > 0 else np.pi)
         on_axis = screw_z(self._shift(), self._turn()) @ on_axis
         return self._sideways() @ on_axis if self._slides(joint) else on_axis
@@ -185,7 +183,7 @@ class _Reassignment:
         return pose
 
     def _next_frame(self, pose: Numbers, link: Numbers, joint: int) -> Numbers:
-        """The frame on the axis of ``joint``; its row is noted."""
+        """Return the frame on the axis of ``joint``, and append its row."""
         moved = link @ self._sideways() if self._slides(joint) else link
         z, x = self._row_to_axis(pose, moved, self._sign())
         self.z.append(z)
@@ -201,13 +199,13 @@ class _Reassignment:
             self._end_on_tool_axis(pose)
             return
         if self._slides(len(self.links)) and self.rng.random() < 0.7:
-            # The axis was moved as it came; back onto the line of the end effector's x axis.
+            # The axis was displaced at random; move it back to meet the end effector's x axis.
             self._aligned_with_tool(pose)
             return
         self._end_directly(target)
 
     def _end_directly(self, target: Numbers) -> None:
-        """One row to the whole frame: its x axis must meet this z axis at a right angle."""
+        """Append one row to the end-effector frame, whose x axis must meet this z axis at 90°."""
         theta = np.arctan2(target[:, 1, 0], target[:, 0, 0])
         alpha = np.arctan2(target[:, 2, 1], target[:, 2, 2])
         a = target[:, 0, 3] * np.cos(theta) + target[:, 1, 3] * np.sin(theta)
@@ -218,7 +216,7 @@ class _Reassignment:
         self.x.append(x)
 
     def _aligned_with_tool(self, pose: Numbers) -> None:
-        """Redo the row to the last, sliding axis so that the axis meets the tool's x axis."""
+        """Replace the row to the last, prismatic axis so that it meets the tool's x axis."""
         if not self.links:
             raise _UnreachableError
         link = self.links[-1]
@@ -233,7 +231,7 @@ class _Reassignment:
         self._end_directly(inverse(pose) @ self.tool)
 
     def _end_on_tool_axis(self, pose: Numbers) -> None:
-        """A frame on the end effector's z axis, then the Z of the fixed row e."""
+        """Append a row to a frame on the end effector's z axis, and the fixed row e."""
         z, x = self._row_to_axis(pose, self.tool, 1)
         rest = inverse(pose @ screw_z(*z) @ screw_x(*x)) @ self.tool
         self.z.append(z)
@@ -241,7 +239,7 @@ class _Reassignment:
         self.z.append((rest[:, 2, 3], np.arctan2(rest[:, 1, 0], rest[:, 0, 0])))
 
     def _open_end(self, target: Numbers) -> None:
-        """Any last row that a student may like."""
+        """Append a random last row, for a free end effector."""
         angles = (target[:, 1, 0], target[:, 0, 0]), (target[:, 2, 1], target[:, 2, 2])
         theta, alpha = (
             np.arctan2(*angle) * self.rng.integers(2) + self._turn() for angle in angles
@@ -257,7 +255,7 @@ class _Reassignment:
     def _row_to_axis(
         self, pose: Numbers, link: Numbers, z_sign: int
     ) -> tuple[Constants, Constants]:
-        """(d, θ) and (a, α) that lead from ``pose`` to the z axis of ``link``'s frame."""
+        """Return (d, θ) and (a, α) that lead from ``pose`` to the z axis of ``link``'s frame."""
         target = inverse(pose) @ link
         axis, point = z_sign * target[:, :3, 2], target[:, :3, 3]
         if np.hypot(axis[:, 0], axis[:, 1]).max() > SMALL:
@@ -273,7 +271,7 @@ class _Reassignment:
     def _common_normal(
         self, target: Numbers, axis: Numbers, point: Numbers
     ) -> tuple[Constants, Constants]:
-        """point = d z + a x − t axis with x along z × axis, solved for d, a and t."""
+        """Solve point = d z + a x − t axis with x along z × axis; return (d, θ) and (a, α)."""
         z = np.tile([0.0, 0.0, 1.0], (K, 1))
         x = np.cross(z, axis)
         x /= np.linalg.norm(x, axis=1, keepdims=True)
@@ -284,14 +282,14 @@ class _Reassignment:
         return (d, np.arctan2(x[:, 1], x[:, 0])), (a, np.arctan2(sine, axis[:, 2]))
 
     def _across(self, pose: Numbers, link: Numbers, point: Numbers) -> Constants:
-        """a and θ between parallel axes: straight across, from one line to the other."""
+        """Return a and θ of the common normal between parallel axes."""
         sign = self._sign()
         across = point[:, :2]
         _, sizes, directions = np.linalg.svd(across, full_matrices=False)
-        if sizes[1] < SMALL:  # one direction whatever the lengths are
+        if sizes[1] < SMALL:  # the same direction for all lengths
             x = directions[0] * np.sign(directions[0] @ across[0])
             return sign * across @ x, np.full(K, np.arctan2(sign * x[1], sign * x[0]))
-        # In the reference's frame the way across is a sum of letters.
+        # In the reference's frame, the vector between the axes is a sum of letters.
         way = link[:, :3, 3] - pose[:, :3, 3]
         texts = [length_cell(way[:, i], self.letters, ()).text for i in range(2)]
         arc = Term(f"atan2({texts[1]}, {texts[0]})", np.arctan2(way[:, 1], way[:, 0]))
@@ -303,7 +301,7 @@ class _Reassignment:
     # Writing down
 
     def _rows(self) -> tuple[CellRow, ...]:
-        """The constants as cells, in the rows of the convention."""
+        """Return the constants as cells, in the rows of the convention."""
         none = (np.zeros(K), np.zeros(K))
         if self.convention == STANDARD:
             pairs = list(zip(self.x[1:], self.z, strict=True))
@@ -332,5 +330,5 @@ class _Reassignment:
 
 
 def _read_x(screw: Numbers) -> Constants:
-    """a and α of an X factor."""
+    """Return a and α of an X factor."""
     return screw[:, 0, 3], np.arctan2(screw[:, 2, 1], screw[:, 2, 2])

@@ -1,4 +1,4 @@
-"""Forward kinematics from the two definitions, on its own: nothing of the service is used here.
+"""Forward kinematics from the two definitions, independent of the service.
 
 A table is a list of rows of formulas in the column order a, α, d, θ. Formulas are the arithmetic
 that Python and a student's cell have in common; they are read as syntax trees, never run.
@@ -27,7 +27,7 @@ _FUNCTIONS: dict[str, Callable[..., Numbers]] = {"sqrt": np.sqrt, "atan2": np.ar
 
 
 def evaluate(text: str, values: Mapping[str, Numbers]) -> Numbers:
-    """The value of a formula; the shape is that of ``values``, or ``()`` for a constant."""
+    """Return the value of a formula; its shape is that of ``values``, or ``()`` for a constant."""
     return _value(_tree(text), values)
 
 
@@ -54,7 +54,7 @@ def _value(node: ast.expr, values: Mapping[str, Numbers]) -> Numbers:
 
 
 def cell_values(rows: Sequence[Sequence[str]], values: Mapping[str, Numbers]) -> Numbers:
-    """The table in numbers ``(rows, 4, ...)`` at values of the symbols of shape ``(...)``."""
+    """Return the table in numbers, ``(rows, 4, ...)`` for values of the symbols of ``(...)``."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     table = np.empty((len(rows), 4, *shape))
     for i, row in enumerate(rows):
@@ -64,12 +64,12 @@ def cell_values(rows: Sequence[Sequence[str]], values: Mapping[str, Numbers]) ->
 
 
 def screw_z(d: ArrayLike, theta: ArrayLike) -> Numbers:
-    """Z = Rot_z(θ) Trans_z(d): ``(..., 4, 4)``."""
+    """Return Z = Rot_z(θ) Trans_z(d), ``(..., 4, 4)``."""
     return _screw(2, d, theta)
 
 
 def screw_x(a: ArrayLike, alpha: ArrayLike) -> Numbers:
-    """X = Rot_x(α) Trans_x(a): ``(..., 4, 4)``."""
+    """Return X = Rot_x(α) Trans_x(a), ``(..., 4, 4)``."""
     return _screw(0, a, alpha)
 
 
@@ -86,9 +86,9 @@ def _screw(axis: int, shift: ArrayLike, angle: ArrayLike) -> Numbers:
 
 
 def factors(table: Numbers, convention: str) -> Numbers:
-    """The alternating factors of a table ``(rows, 4, ...)``: ``(2 rows, ..., 4, 4)``.
+    """Return the factors Z X Z X … (standard) or X Z X Z … (modified) of a table.
 
-    Standard: Z X Z X …; modified: X Z X Z ….
+    The table has the shape ``(rows, 4, ...)``, the factors ``(2 rows, ..., 4, 4)``.
     """
     x = screw_x(table[:, 0], table[:, 1])
     z = screw_z(table[:, 2], table[:, 3])
@@ -97,12 +97,12 @@ def factors(table: Numbers, convention: str) -> Numbers:
 
 
 def forward(table: Numbers, convention: str) -> Numbers:
-    """The pose of the last frame in the first one, ``(..., 4, 4)``."""
+    """Return the pose of the last frame in the first one, ``(..., 4, 4)``."""
     return reduce(np.matmul, factors(table, convention))
 
 
 def inverse(pose: Numbers) -> Numbers:
-    """The inverse of rigid transforms ``(..., 4, 4)``."""
+    """Return the inverse of rigid transforms ``(..., 4, 4)``."""
     rotation = np.swapaxes(pose[..., :3, :3], -1, -2)
     result = np.zeros_like(pose)
     result[..., :3, :3] = rotation

@@ -1,7 +1,7 @@
-"""Each misconception that a student may hold of a table, put into every robot.
+"""Apply each misconception about DH tables to every robot, and count those that are named.
 
-Whether the table is wrong at all is decided by independent forward kinematics; a misconception that
-does not change the mechanism cannot be seen and is left out.
+Independent forward kinematics decide whether the table is wrong; a misconception that does not
+change the mechanism is left out.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -29,7 +29,7 @@ Misconception = Callable[[Robot, Rows], Iterator[Rows]]
 
 
 def report(robot: Robot, rows: Rows) -> PartReport:
-    """What the service says to a table of the robot."""
+    """Return the report of the service on a table of the robot."""
     answer = {
         "rows": [dict(zip(COLUMNS, row, strict=True)) for row in rows],
         "convention": robot.convention,
@@ -38,7 +38,7 @@ def report(robot: Robot, rows: Rows) -> PartReport:
 
 
 def codes(part: PartReport) -> set[str]:
-    """The codes of all messages of a report."""
+    """Return the codes of all messages of a report."""
     cells = [message for row in part.rows for cell in row.cells for message in cell.feedback]
     rows = [message for row in part.rows for message in row.feedback]
     return {message.code for message in (*part.feedback, *rows, *cells)}
@@ -46,7 +46,7 @@ def codes(part: PartReport) -> set[str]:
 
 @dataclass(frozen=True)
 class Named:
-    """In how many tables with a misconception it was named; of the others robot, rows and codes."""
+    """The number of tables whose misconception was named; the others with robot, rows, codes."""
 
     named: int
     missed: list[tuple[str, Rows, list[str]]]
@@ -57,7 +57,7 @@ class Named:
 
 
 def named_in_all_robots(misconception: Misconception, names: set[str]) -> Named:
-    """Put the misconception into every robot that it changes; ``names`` are the codes for it."""
+    """Apply a misconception to every robot; ``names`` are the codes that name it."""
     named, missed = 0, []
     for robot in ROBOTS:
         for rows in misconception(robot, robot.rows):
@@ -79,13 +79,13 @@ def with_cell(rows: Rows, i: int, column: int, text: str) -> Rows:
 
 
 def joint_cells(robot: Robot, rows: Rows) -> Iterator[tuple[int, int, str]]:
-    """Row, column and variable of each joint."""
+    """Yield row, column and variable of each joint."""
     for i, variable in enumerate(robot.joints):
         yield i, robot.column(i), variable
 
 
 def without_variable(robot: Robot, i: int, column: int, cell: str) -> str | None:
-    """What a cell is without its joint variable; None where it has none."""
+    """Return a cell without its joint variable, or None if it has none."""
     if i >= len(robot.joints) or column != robot.column(i):
         return None
     rest = cell.replace(robot.joints[i], "").strip(" +")
@@ -160,7 +160,7 @@ def degrees_everywhere(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 
 def columns_shifted(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """a and α of the row before, as if the conventions were mixed."""
+    """Yield the table with a and α taken from the row before, as if conventions were mixed."""
     link = [("0", "0"), *((row[A], row[ALPHA]) for row in rows[:-1])]
     yield [(a, alpha, row[D], row[THETA]) for (a, alpha), row in zip(link, rows, strict=True)]
 
@@ -179,7 +179,7 @@ def rows_exchanged(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 
 def column_signs(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """Every α has the wrong sign."""
+    """Yield the table with the wrong sign at every α."""
     yield [(a, f"-({alpha})", d, theta) for a, alpha, d, theta in rows]
 
 
@@ -193,8 +193,8 @@ def row_missing(robot: Robot, rows: Rows) -> Iterator[Rows]:
         yield [*rows[:i], *rows[i + 1 :]]
 
 
-# The misconception, and the codes that name it. Some slips are two things at once: −90° for 90° is
-# a sign and half a turn, and to mirror every α of a wrist is to reverse its joint 5.
+# Each misconception, and the codes that name it. Some slips have two names: −90° for 90° is a wrong
+# sign and half a turn, and wrong signs at every α of a wrist reverse its joint 5.
 MISCONCEPTIONS: tuple[tuple[Misconception, set[str]], ...] = (
     (wrong_sign, {"sign", "half_turn"}),
     (quarter_turn, {"quarter_turn"}),

@@ -1,7 +1,7 @@
-"""Which other readings of a wrong table are as good as the slip that was made.
+"""Find the cells in which a wrong table can be repaired.
 
-On parallel axes, and around sliding joints, one slip can often be repaired in another cell than the
-one that it was made in. No grader can know which was intended.
+On parallel axes, and next to prismatic joints, a slip can often be repaired in another cell as
+well. Then no grader can know which cell was intended.
 """
 
 from collections.abc import Sequence
@@ -31,10 +31,10 @@ STARTS = 8
 def can_repair(
     robot: Robot, policy: Policy, texts: Texts, convention: str, cells: Sequence[Place]
 ) -> bool:
-    """Whether other values of these cells make the table valid.
+    """True if other values of these cells make the table valid.
 
-    Each cell becomes a constant for each set of lengths, with the joint variable, either way, in
-    its own column; found by least squares from several starts.
+    Each cell becomes a constant for each set of lengths, plus or minus the joint variable in its
+    own column. The constants are found by least squares from several starts.
     """
     values = samples(robot)
     holds_variable = [robot.column(r) == c if r < len(robot.joints) else False for r, c in cells]
@@ -63,7 +63,7 @@ def can_repair(
 
         for attempt in range(STARTS):
             start = np.concatenate(starts) + (attempt > 0) * rng.uniform(-2, 2, 2 * len(cells))
-            if attempt < len(TURNS):  # where all axes are parallel no gradient leads
+            if attempt < len(TURNS):  # if all axes are parallel, the gradient is no help
                 angles = np.repeat([c in (ALPHA, THETA) for _, c in cells], LENGTHS)
                 start = np.where(angles, TURNS[attempt], start)
             found = least_squares(error, start, method="trf", max_nfev=60)
@@ -73,11 +73,11 @@ def can_repair(
 
 
 def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[int, int]]:
-    """The cells of which another value alone would make the table valid, both ends given.
+    """Return the cells that can each alone repair the table, if both ends are given.
 
-    The pose depends on a cell through one factor, F = A⁻¹ T_reference C⁻¹ with what stands before
-    and behind it. The cell repairs the table if F is such a factor at every sample, the joint
-    variable in its own column and nowhere else.
+    The pose depends on a cell through one factor, F = A⁻¹ T_reference C⁻¹, where A and C are the
+    products before and after it. The cell repairs the table if F is such a factor at every sample,
+    with the joint variable only in its own column.
     """
     values = samples(robot)
     chain = factors(cell_values(texts, values), convention)
@@ -101,7 +101,7 @@ def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[in
 def _fills(
     robot: Robot, texts: Texts, row: int, column: int, wanted: Numbers, values: Values
 ) -> bool:
-    """Whether a value of this one cell makes its factor the wanted one, at all samples."""
+    """True if some value of this cell gives the wanted factor at all samples."""
     axis = 0 if column in (A, ALPHA) else 2
     first, second = (axis + 1) % 3, (axis + 2) % 3
     other = evaluate(texts[row][{A: ALPHA, ALPHA: A, D: THETA, THETA: D}[column]], values)

@@ -1,9 +1,8 @@
-"""``python -m tests.frame_choice.rounded --robots N``: tables whose numbers were rounded.
+"""``python -m tests.frame_choice.rounded --robots N``: grade tables with rounded numbers.
 
-Tables of random robots with arbitrary constants, in frames of the writer's own, are printed with
-three to six figures. They must get full marks; and not where a digit was changed that matters.
-Whether it matters is decided by the oracle: some choice of all the numbers that were rounded, each
-within rounding or cutting off, would make the table valid, or none comes near.
+Print tables of random robots in random frames with three to six digits. They must get full marks.
+With a changed digit they must not, unless the oracle finds that the digit does not matter: that
+some choice of all rounded numbers, each within rounding or truncation, makes the table valid.
 """
 
 import argparse
@@ -26,22 +25,22 @@ from tests.frame_choice.unseen import random_robot
 FIGURES = (3, 4, 5, 6)
 CHANGED_BY = 3
 ROUNDED_UP, CUT_OFF = 0.5, 1.0
-# An error that is left is one beyond doubt if it is this share of that of a single unit.
+# A remaining error above this share of the error of one unit shows a wrong digit.
 CLEARLY = 0.1
-# An error that is smaller than this share of the unit is none but that of the oracle.
+# An error below this share of the error of one unit comes from the oracle itself.
 NO_EFFECT = 1e-3
 
 
 @dataclass(frozen=True)
 class RoundedCell(Cell):
-    """A cell whose constant is a decimal of so many figures."""
+    """A cell whose constant is a decimal with ``figures`` significant digits."""
 
     figures: int = 3
     units: int = 0  # added in the last place
 
     @property
     def unit(self) -> float:
-        """1 in the last place; 0 without a constant."""
+        """The value of one unit in the last place; 0 without a constant."""
         if not self.constant:
             return 0.0
         return float(10.0 ** (np.floor(np.log10(abs(self.constant))) + 1 - self.figures))
@@ -61,7 +60,7 @@ class RoundedCell(Cell):
 
 
 def with_odd_angles(robot: Robot, rng: np.random.Generator) -> Robot:
-    """The robot with constant angles that are no multiples of 15°, but for those that are 0."""
+    """Return the robot with random constant angles in place of all but those that are 0."""
 
     def odd(text: str, column: int) -> str:
         if column not in (ALPHA, THETA) or text == "0" or text in robot.joints:
@@ -77,7 +76,7 @@ def with_odd_angles(robot: Robot, rng: np.random.Generator) -> Robot:
 
 
 def rounded(table: Table, figures: int) -> Table:
-    """The table with its constants printed with so many figures."""
+    """Return the table with its constants rounded to ``figures`` significant digits."""
     rows = tuple(
         tuple(RoundedCell(**vars(cell), figures=figures) for cell in row) for row in table.rows
     )
@@ -85,9 +84,9 @@ def rounded(table: Table, figures: int) -> Table:
 
 
 def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, int]] | None:
-    """The table with one digit changed, and the place.
+    """Return the table with one digit changed, and the place.
 
-    None where there is no such digit, or a root or an arc tangent has decimals of its own.
+    None if there is no such digit, or if the table contains a root or an arc tangent.
     """
     if any(cell.terms for row in table.rows for cell in row):
         return None
@@ -104,14 +103,14 @@ def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, i
 
 
 def _matters(other: Table, printed: Table) -> bool:
-    """Whether nothing makes the changed table right, where something does the one that it was."""
+    """True if some rounding makes the printed table valid, but none the changed one."""
     return least_error(other) > CLEARLY and least_error(printed) < CLEARLY / 10
 
 
 def least_error(table: Table) -> float:
-    """The error that is left for the best choice of the rounded numbers, in errors of one unit.
+    """Return the error for the best choice of the rounded numbers, relative to one unit's error.
 
-    To first order; by descent along one number after the other.
+    It is computed to first order, by coordinate descent.
     """
     cells = [
         (i, j, cell)
@@ -154,7 +153,7 @@ def least_error(table: Table) -> float:
 
 @dataclass
 class RoundedCounts:
-    """How many tables of each kind there were, and those that were misjudged."""
+    """The number of tables of each kind, and the misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -171,14 +170,14 @@ class RoundedCounts:
             self.counts[f"{kind} misjudged"] += 1
             self.misses.append(f"{kind}: {described(table)}")
         elif any(full_marks(table, seed) != right for seed in range(seeds)):
-            self.counts[f"{kind} changed by the draw"] += 1
-            self.misses.append(f"{kind} changed by the draw: {described(table)}")
+            self.counts[f"{kind} changed by the samples"] += 1
+            self.misses.append(f"{kind} changed by the samples: {described(table)}")
 
 
 def tables(
     numbers: Iterable[int], seed: int, policies: tuple[Policy, ...]
 ) -> Iterator[tuple[Table, np.random.Generator]]:
-    """Valid tables, in frames of the writer's own."""
+    """Yield valid tables in random frames."""
     for number in numbers:
         rng = np.random.default_rng([seed, number])
         robot = with_odd_angles(random_robot(number, rng), rng)
@@ -186,7 +185,7 @@ def tables(
             for convention in conventions(robot, policy):
                 try:
                     table, _ = reassignment(robot, policy, convention, rng)
-                except RuntimeError:  # its numbers are no formulas
+                except RuntimeError:  # its numbers cannot be written as formulas
                     continue
                 if equivalent(table):
                     yield table, rng
@@ -195,7 +194,7 @@ def tables(
 def run(
     numbers: Iterable[int], seed: int, seeds: int = 0, policies: tuple[Policy, ...] = POLICIES
 ) -> RoundedCounts:
-    """The counts for the robots of these numbers."""
+    """Return the counts for the robots with these numbers."""
     found = RoundedCounts()
     for table, rng in tables(numbers, seed, policies):
         figures = int(rng.choice(FIGURES))
@@ -203,7 +202,7 @@ def run(
         found.judge(printed, f"{figures} figures, {table.policy.name}", right=True, seeds=seeds)
         edit = changed(printed, rng)
         ends = table.policy.base and table.policy.tool
-        # The oracle finds two free ends by finite differences, too coarse for a last digit.
+        # With two free ends, the oracle uses finite differences, too coarse for a last digit.
         if edit is not None and not ends and _matters(edit[0], printed):
             found.judge(edit[0], f"changed, {table.policy.name}", right=False, seeds=seeds)
         for cached in (exercise, oracle.samples, oracle.reference_poses):
@@ -212,14 +211,14 @@ def run(
 
 
 def main() -> int:
-    """Run and print; 1 if a table was misjudged."""
+    """Run the campaign and print the figures; return 1 if a table was misjudged."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rounded")
     parser.add_argument("--robots", type=int, default=100)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--seeds", type=int, default=0, help="draws of each table")
-    parser.add_argument("--misses", type=int, default=5, help="print so many")
-    parser.add_argument("--policies", type=int, default=len(POLICIES), help="the first so many")
+    parser.add_argument("--seeds", type=int, default=0, help="sets of samples for each table")
+    parser.add_argument("--misses", type=int, default=5, help="misses to print")
+    parser.add_argument("--policies", type=int, default=len(POLICIES), help="number of policies")
     options = parser.parse_args()
     numbers = range(options.first, options.first + options.robots)
     found = run(numbers, options.seed, options.seeds, POLICIES[: options.policies])

@@ -1,4 +1,4 @@
-"""Robots that nobody has seen, under the eight policies: a sample of ``by_policy``."""
+"""Random robots under the eight policies: a sample of ``by_policy``."""
 
 import pytest
 
@@ -18,7 +18,7 @@ def test_no_table_is_misjudged(sample: Counts, policy: str) -> None:
         assert sample.of(truth, MISJUDGED, policy) == 0, "\n".join(sample.misses)
 
 
-def test_no_verdict_depends_on_the_draw_of_the_samples(sample: Counts) -> None:
+def test_no_verdict_depends_on_the_random_samples(sample: Counts) -> None:
     unsteady = sample.of(VALID, UNSTEADY) + sample.of(WRONG, UNSTEADY)
     assert unsteady == 0, "\n".join(sample.misses)
 

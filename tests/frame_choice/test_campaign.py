@@ -1,4 +1,4 @@
-"""The whole campaign (``pytest -m campaign``), and that its machinery works."""
+"""The whole campaign (``pytest -m campaign``), and tests of its own code."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Tables that were once judged wrongly, each with what the oracle says of it."""
+"""Tables that were once misjudged, with the verdict of the oracle."""
 
 import pytest
 
@@ -117,7 +117,7 @@ Case = tuple[str, str, str, tuple[str, ...]]
 
 
 def judged(case: Case) -> tuple[bool, bool]:
-    """Whether the oracle and the service find the table valid."""
+    """Return two verdicts, of the oracle and of the service: True if the table is valid."""
     name, convention, policy, lines = case
     robot = ROBOT[name]
     rows = [[cell.strip() for cell in text.split("|")] for text in lines]
@@ -134,5 +134,5 @@ def test_valid_tables_get_full_marks(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", INVALID, ids=lambda case: " ".join(case[:3]))
-def test_wrong_tables_do_not(case: Case) -> None:
+def test_wrong_tables_do_not_get_full_marks(case: Case) -> None:
     assert judged(case) == (False, False)

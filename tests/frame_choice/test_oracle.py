@@ -1,4 +1,4 @@
-"""The judge is judged: known pairs of tables, and the identities of the design."""
+"""The oracle is right about known pairs of tables and known identities."""
 
 import math
 
@@ -48,7 +48,7 @@ def test_the_reference_is_valid(robot: Robot, policy: Policy) -> None:
     assert is_equivalent(robot, policy, robot.rows, robot.convention)
 
 
-def test_the_lecture_s_own_modified_table_is_valid() -> None:
+def test_the_modified_table_of_the_lecture_is_valid() -> None:
     assert is_equivalent(RRRP, GIVEN, RRRP_MODIFIED, MODIFIED)
     assert not is_equivalent(RRRP, GIVEN, RRRP_MODIFIED, STANDARD)
 
@@ -101,7 +101,7 @@ def test_what_each_policy_frees() -> None:
 
 
 def test_a_mirrored_mechanism_is_another_one() -> None:
-    """Planar and spatial, with both ends free."""
+    """With both ends free; a planar and a spatial mechanism."""
     for name in ("skew RPR", "Baxter 7R"):
         robot = BY_NAME[name]
         mirrored = [
@@ -125,7 +125,7 @@ def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
 
 
 def test_the_cells_that_repair_a_table() -> None:
-    """Two ways to the same answer: closed form and least squares."""
+    """Closed form and least squares give the same cells."""
     shared = with_cell(RRRP, 1, D, "0.3")  # d1, d2, d3 lie on parallel axes
     assert repairing_cells(RRRP, shared, STANDARD) == {(0, D), (1, D), (2, D), (3, D)}
     alone = with_cell(STANFORD, 1, A, "0.3")

@@ -1,7 +1,7 @@
-"""What must hold of grading where the frames are the student's own choice.
+"""Properties of grading with the student's own frames: a sample of the campaign.
 
-Every valid table is accepted, no wrong one is, and the blame falls where the slip was made. This is
-a sample of the campaign; ``make campaign`` draws 1,000 tables of each robot and convention.
+Every valid table is accepted, no wrong one is, and the cell with the slip is blamed.
+``make campaign`` draws 1,000 tables of each robot and convention.
 """
 
 import sys
@@ -50,11 +50,11 @@ def either(request: pytest.FixtureRequest) -> Tally:
 
 
 def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
-    """The first tables that were judged otherwise."""
+    """Return the first misjudged tables as text."""
     return "\n\n".join(str(miss) for miss in tally.misses if chosen(miss.what))[:4000]
 
 
-def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally) -> None:
+def test_every_valid_table_gets_full_marks_and_no_error_message(either: Tally) -> None:
     assert either.counts["valid"] >= 60
     assert either.counts["valid accepted"] == either.counts["valid"], first_misses(
         either, lambda what: what.startswith("valid")
@@ -73,7 +73,7 @@ def test_nothing_raises(either: Tally) -> None:
 
 
 def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
-    """Where no other single cell would repair the table, so that the blame is nobody else's."""
+    """Only slips that no other single cell would repair are counted."""
     assert given.counts["skew unshared"] >= 25
     assert given.share("skew unshared exact", "skew unshared") >= 0.99, first_misses(
         given, lambda what: what.startswith("one slip, skew")
@@ -87,7 +87,7 @@ def test_a_slip_between_parallel_axes_is_blamed_on_one_row(given: Tally) -> None
     )
 
 
-def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given: Tally) -> None:
+def test_two_independent_slips_are_both_found(given: Tally) -> None:
     assert given.counts["two unshared"] >= 45
     assert given.share("two unshared found", "two unshared") >= 0.95, first_misses(
         given, lambda what: what.startswith("two slips")
@@ -95,7 +95,7 @@ def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given:
 
 
 def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
-    """Ties and all. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
+    """With ties. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
     assert given.counts["skew"] >= 30
     assert given.share("skew exact", "skew") >= 0.95
     assert given.counts["two slips"] >= 80

@@ -1,4 +1,4 @@
-"""Grading drawn tables and keeping count: whole ones, with one slip, with two."""
+"""Grade random tables and count the results: valid ones, with one slip, with two."""
 
 import time
 from collections import Counter
@@ -33,7 +33,7 @@ DRAWS = 60
 
 @dataclass(frozen=True)
 class Grading:
-    """What the service said to a table; ``blamed`` are rows (from 0) and columns."""
+    """The report on a table; ``blamed`` are rows (from 0) and columns."""
 
     report: PartReport
     blamed: frozenset[Place]
@@ -45,7 +45,7 @@ class Grading:
 
     @property
     def is_clean(self) -> bool:
-        """All correct, and no word of an error."""
+        """True if all cells are correct and no message is an error."""
         messages = [
             *self.report.feedback,
             *(message for row in self.report.rows for message in row.feedback),
@@ -68,14 +68,14 @@ class CrashError(Exception):
 
 
 def grade_rows(compiled: Exercise, rows: list[list[str]], convention: str) -> PartReport:
-    """The report on a table, handed in as the service takes it."""
+    """Return the report on a table."""
     cells = [dict(zip(COLUMNS, row, strict=True)) for row in rows]
     answer = {"rows": cells, "convention": convention}
     return grade(compiled, Submission({"table": answer})).parts[0]
 
 
 def graded(table: Table) -> Grading:
-    """What the service says to a table. Raises CrashError where the service raises anything."""
+    """Grade a table. Raises CrashError if the service raises an exception."""
     compiled = exercise(table.robot, table.policy)
     rows = table.texts
     start = time.perf_counter()
@@ -86,7 +86,7 @@ def graded(table: Table) -> Grading:
     took = 1e3 * (time.perf_counter() - start)
     labels = [row.label for row in report.rows]
     if table.robot.labels(len(labels)) != labels:
-        # Rows were taken for others: none of them is where it was written.
+        # The rows were read in another order, so no place can be compared.
         return Grading(report, frozenset({(-1, -1)}), took)
     blamed = frozenset(
         (i, COLUMNS.index(cell.label))
@@ -98,15 +98,15 @@ def graded(table: Table) -> Grading:
 
 
 def equivalent(table: Table) -> bool:
-    """Whether the oracle finds the table valid."""
+    """True if the oracle finds the table valid."""
     return is_equivalent(table.robot, table.policy, table.texts, table.convention)
 
 
 def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
-    """Whether what a cell measures is shared with a parallel axis.
+    """True if the axes next to a cell are parallel.
 
     a and α belong to the link between two axes: these two are parallel. d and θ are measured on one
-    axis: the one before it or the one behind it is parallel.
+    axis: the previous or the next one is parallel to it.
     """
     link = row if table.convention != MODIFIED or column in (A, ALPHA) else row + 1
     if column in (A, ALPHA):
@@ -115,20 +115,20 @@ def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
 
 
 def _joins_parallel_axes(table: Table, link: int) -> bool:
-    """Whether the α of this row is 0 or 180°.
+    """True if the α of this row is 0 or 180°.
 
-    A link whose α the table does not hold ends in the last joint's own frame: parallel.
+    A link beyond the table counts as parallel, because it ends in the last joint's own frame.
     """
     if link >= len(table.rows):
         return True
     if table.convention == MODIFIED and link == 0:
-        return False  # leads from the base frame, which is no joint's axis
+        return False  # it begins at the base frame, which is on no joint axis
     return bool(abs(np.sin(table.rows[link][ALPHA].constant)) < 1e-9)
 
 
 @dataclass(frozen=True)
 class Miss:
-    """A table that was not judged as it should have been."""
+    """A misjudged table."""
 
     what: str
     table: Table
@@ -153,7 +153,7 @@ class Miss:
 
 @dataclass
 class Tally:
-    """Counts by name, times, and what went wrong."""
+    """Counts by name, times, and misses."""
 
     counts: Counter[str] = field(default_factory=Counter)
     right_ms: list[float] = field(default_factory=list)
@@ -164,7 +164,7 @@ class Tally:
     explain: bool = True
 
     def add(self, other: "Tally") -> None:
-        """Take another tally's counts in."""
+        """Add another tally."""
         self.counts += other.counts
         self.right_ms += other.right_ms
         self.wrong_ms += other.wrong_ms
@@ -173,12 +173,12 @@ class Tally:
         self.policies += other.policies
 
     def share(self, name: str, of: str) -> float:
-        """How many of those are also these; 1 where there are none."""
+        """Return the count ``name`` as a share of the count ``of``; 1 if that is 0."""
         return self.counts[name] / self.counts[of] if self.counts[of] else 1.0
 
 
 def policies(only_given: bool) -> Iterator[Policy]:
-    """The policies in turn."""
+    """Yield the policies in turn, without end."""
     return cycle([GIVEN] if only_given else POLICIES[1:])
 
 
@@ -192,10 +192,10 @@ def run(
     slips: int | None = None,
     explain: bool = True,
 ) -> Tally:
-    """Grade so many re-assignments of a robot whole, and some with one slip and with two.
+    """Grade ``tables`` random tables of a robot, and some of them with one slip and with two.
 
-    ``slips`` is how many of them, all where it is None. ``explain`` finds out for each miss whether
-    the blame given is as good as the true one, which takes its time.
+    ``slips`` is the number of tables with slips; all if None. ``explain`` checks for each miss
+    whether the blamed cells could repair the table, which takes long.
     """
     tally = Tally(explain=explain)
     in_turn = policies(only_given)
@@ -218,7 +218,7 @@ def run(
 
 
 def _try_whole(table: Table, tally: Tally, _: np.random.Generator) -> None:
-    # Counted before it is graded: a table that raises is one that is not accepted.
+    # Counted before grading: a table that raises an exception is not accepted.
     tally.counts["valid"] += 1
     tally.policies[table.policy.name, "valid"] += 1
     found = graded(table)
@@ -231,7 +231,7 @@ def _try_whole(table: Table, tally: Tally, _: np.random.Generator) -> None:
 
 
 def one_slip(table: Table, rng: np.random.Generator, not_in_row: int | None = None) -> Edit | None:
-    """A slip that the oracle finds to be one; None where none comes up."""
+    """Return a random slip that makes the table wrong, or None if none is found."""
     for _ in range(DRAWS):
         edit = random_edit(table, rng, not_in_row)
         if not equivalent(table.edited(edit.row, edit.column, edit.cell)):
@@ -275,7 +275,7 @@ def _try_one_slip(table: Table, tally: Tally, rng: np.random.Generator) -> None:
 
 
 def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
-    """Whether other values in the blamed cells, which are so few, make the table valid."""
+    """True if at most ``at_most`` cells are blamed, and other values in them repair the table."""
     if not 0 < len(blamed) <= at_most or any(
         row < 0 or row >= len(table.rows) for row, _ in blamed
     ):
@@ -284,7 +284,7 @@ def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
 
 
 def _is_unshared(table: Table, edit: Edit) -> bool:
-    """Whether the slip, were it the only one, could be repaired in its own cell alone."""
+    """True if no other single cell than that of the slip could repair the table."""
     wrong = table.edited(edit.row, edit.column, edit.cell)
     return len(repairing_cells(table.robot, wrong.texts, table.convention)) == 1
 

@@ -1,4 +1,4 @@
-"""Robots that nobody has seen: random chains of one to seven joints.
+"""Random robots of one to seven joints.
 
 Axes are skew, parallel, intersecting or one line; lengths are letters, decimals, or some of each.
 """
@@ -15,7 +15,7 @@ _ODD = ("pi/3", "-pi/4", "pi/6", "-40*pi/180", "0.3", "2*pi/3")
 
 
 def random_robot(number: int, rng: np.random.Generator) -> Robot:
-    """A robot in either convention; ``number`` gives it a name of its own."""
+    """Return a random robot in a random convention; ``number`` is part of its name."""
     return _Draft(number, rng).robot()
 
 
@@ -24,7 +24,7 @@ class _Draft:
         self.number, self.rng = number, rng
         self.constants = CONSTANTS[number % len(CONSTANTS)]
         self.lengths: list[str] = []
-        # Some robots have right angles only, as most real ones.
+        # Most robots have right angles only, like most real ones.
         self.odd = float(rng.choice([0.0, 0.0, 0.3]))
         self.parallel = float(rng.choice([0.0, 0.3, 0.9]))
 

@@ -1,7 +1,7 @@
-"""Install the built wheel with all its dependencies and grade with it: ``make wheel``.
+"""Install the built wheel with all its dependencies, and grade with it: ``make wheel``.
 
-On each supported Python of this machine by pip, and by pipx on this one, as a user would; and from
-a fresh clone by the commands of the README. It needs the package index.
+Install it with pip on each supported Python of this machine, with pipx on the current one, and in
+a fresh clone with the commands of the README. This needs the package index.
 """
 
 import sys
@@ -16,7 +16,7 @@ POINTS = "8.67 / 32 points"
 
 
 def report(program: Path, folder: Path) -> str:
-    """The figures of one installation; raises AssertionError where it grades otherwise."""
+    """Return the figures of one installation. Raises AssertionError if its points are wrong."""
     graded = run(program, "grade", SUBMISSION, "--exercise", "stanford-arm", cwd=folder)
     assert graded.returncode == 1, graded.stderr
     assert POINTS in graded.stdout

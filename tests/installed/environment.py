@@ -1,4 +1,4 @@
-"""The program as a user has it: built into a wheel and installed, away from the checkout."""
+"""Build the program into a wheel and install it outside of the checkout, as a user would."""
 
 import os
 import shutil
@@ -22,7 +22,7 @@ def run(*command: object, cwd: Path, **environment: str) -> subprocess.Completed
     return subprocess.run(
         [str(word) for word in command],
         cwd=cwd,
-        # To compile all modules takes longer than to compile those that are used.
+        # Compiling all modules takes longer than compiling those that are used.
         env=clean | {"LC_ALL": "C.UTF-8", "PIP_NO_COMPILE": "1", **environment},
         capture_output=True,
         text=True,
@@ -32,23 +32,23 @@ def run(*command: object, cwd: Path, **environment: str) -> subprocess.Completed
 
 
 def checked(*command: object, cwd: Path, **environment: str) -> str:
-    """The output of a program that must succeed."""
+    """Run a program that must succeed; return its output."""
     result = run(*command, cwd=cwd, **environment)
     assert result.returncode == 0, result.stdout + result.stderr
     return result.stdout
 
 
 def build(folder: Path) -> Path:
-    """The wheel, built from the checkout."""
+    """Build a wheel from the checkout; return its path."""
     checked(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder, cwd=ROOT)
     [wheel] = folder.glob("*.whl")
     return wheel
 
 
 def environment(folder: Path, python: str = sys.executable) -> Path:
-    """An environment that borrows the packages of this one; its folder of programs.
+    """Create a virtual environment that uses the packages of this one; return its bin folder.
 
-    So a test needs no network. The packages that are compiled work for this Python only.
+    So a test needs no network. Compiled packages work only for this version of Python.
     """
     if not folder.exists():
         checked(python, "-m", "venv", "--without-pip", folder, cwd=ROOT)
@@ -64,7 +64,7 @@ def install(wheel: Path, programs: Path) -> None:
 
 
 def other_pythons() -> list[str]:
-    """Each supported Python of this machine that is another version than this one."""
+    """Return the supported Pythons of this machine with another version than this one."""
     names = [f"python3.{minor}" for minor in range(OLDEST[1], 20)]
     found = [path for name in names if (path := shutil.which(name))]
     found += map(str, Path.home().glob(".pyenv/versions/3.*/bin/python"))

@@ -1,4 +1,4 @@
-"""What students hand in to a platform, right and hostile, as files in a folder."""
+"""Submissions to a platform, right, wrong and hostile, as files in a folder."""
 
 import json
 from collections.abc import Callable
@@ -8,7 +8,7 @@ from typing import Any, Final
 from tests.formats.submissions import POSE, ROWS, WRITTEN
 
 EXERCISE: Final = "planar-rrr"
-# A shell that looked at these names would make a file of this name, or leave the folder.
+# A shell that evaluated the names of hostile files would create a file of this name.
 MARK: Final = "broken-out"
 
 
@@ -30,11 +30,11 @@ def unreadable(folder: Path) -> None:
 
 
 def missing(folder: Path) -> None:
-    """Hand in nothing."""
+    """Submit nothing."""
 
 
 def hostile(folder: Path) -> None:
-    """Names and texts that break out of whatever evaluates them, and a right table among them."""
+    """Write hostile file names and texts, and a right table."""
     write(folder, {"table": {"rows": ROWS}, "pose": WRITTEN})
     for name in (
         f"$(touch {MARK}).json",
@@ -62,7 +62,7 @@ SORTS: Final[dict[str, Callable[[Path], None]]] = {
 
 
 def assert_nothing_ran(place: Path, *texts: str) -> None:
-    """Check that no name became a command, to a shell, a terminal, a build or a page."""
+    """Check that no name was run as a command of a shell, a terminal, a build or a page."""
     assert not list(place.rglob(MARK))
     for text in texts:
         assert "\x1b" not in text
@@ -73,5 +73,5 @@ def assert_nothing_ran(place: Path, *texts: str) -> None:
 
 
 def points_of(result: dict[str, Any]) -> float:
-    """The sum of the points of a result's tests."""
+    """Return the sum of the points of a result's tests."""
     return sum(float(test["score"]) for test in result["tests"])

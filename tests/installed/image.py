@@ -1,8 +1,8 @@
-"""Build the image and try it, without a container engine's service: ``make image``.
+"""Build the image and run the service in it, without a container engine: ``make image``.
 
-Needs root, Debian's ``buildah`` and ``debootstrap``, and the package indexes of Debian and Python;
-allow three minutes. Where no base image can be pulled, a bootstrapped Debian stands in for it. The
-service then runs as the user of the image, on a root file system that nobody may write to.
+This needs root, Debian's ``buildah`` and ``debootstrap``, the package indexes of Debian and Python,
+and three minutes. If no base image can be pulled, a bootstrapped Debian replaces it. The service
+runs as the user of the image, on a read-only root file system.
 """
 
 import json
@@ -19,10 +19,10 @@ from tests.installed.environment import ROOT
 
 SUITE = "bookworm"
 PACKAGES = "ca-certificates,python3,python3-pip,python3-venv"
-# Builds need the certificates and the index that pip is set up for here.
+# Files of this machine that builds need: certificates, and the configuration of pip.
 BORROWED = ("/etc/ssl/certs", "/etc/pip.conf")
 
-# What runs in the image, with the submission as standard input.
+# The script that runs in the image, with the submission as standard input.
 TRIAL = """
 id -u
 for place in /tmp /srv /opt/dh-grader; do
@@ -34,7 +34,7 @@ for _ in $(seq 60); do python -m service.server.alive && break; sleep 1; done
 python -m service.server.alive; echo "health $?"
 kill -TERM "$service"; wait "$service"; echo "end $?"
 """
-# Mounts die with the namespace that they are made in.
+# The mounts end together with their namespace.
 ENTER = """
 mount --bind "$0" "$0" && mount -t proc proc "$0/proc" && mount --bind /dev "$0/dev" &&
 mount -o remount,ro,bind "$0" && exec chroot --userspec="$1" "$0" env -i "${@:3}" bash -c "$2"
@@ -49,7 +49,7 @@ class Builder:
         self._store = ("--root", folder / "images", "--runroot", folder / "run")
 
     def __call__(self, *words: object) -> str:
-        """The output of a command of buildah's."""
+        """Run a command of buildah; return its output."""
         command = [str(word) for word in ("buildah", *self._store, *words)]
         settings = {"STORAGE_DRIVER": "vfs", "BUILDAH_ISOLATION": "chroot"}
         done = subprocess.run(
@@ -58,7 +58,7 @@ class Builder:
         return done.stdout.strip()
 
     def stand_in(self, folder: Path, name: str) -> None:
-        """Make a Debian with Python, under the name of the base image."""
+        """Build a Debian with Python, under the name of the base image."""
         options = ("--variant=minbase", f"--include={PACKAGES}", SUITE, str(folder))
         subprocess.run(("debootstrap", *options), stdout=subprocess.DEVNULL, check=True)
         (folder / "usr/bin/python").symlink_to("python3")
@@ -69,7 +69,7 @@ class Builder:
         self("commit", "--quiet", container, f"docker.io/library/{name}")
 
     def image(self, context: Path) -> str:
-        """Build the Dockerfile of a folder; returns the path of its root file system."""
+        """Build the Dockerfile of a folder; return the path of its root file system."""
         borrowed = [f"--volume={path}:{path}:ro" for path in BORROWED if Path(path).exists()]
         # The stand-in has another digest than the base image.
         undigested = self._folder / "Dockerfile"
@@ -81,7 +81,7 @@ class Builder:
 
 
 def settings_of(dockerfile: str) -> tuple[str, list[str]]:
-    """The user of the image and its environment variables."""
+    """Return the user of the image and its environment variables."""
     final = dockerfile.rpartition("\nFROM ")[2].replace("\\\n", " ")
     user = re.findall(r"^USER (\S+)", final, re.MULTILINE)[-1]
     pairs = " ".join(re.findall(r"^ENV (.*)", final, re.MULTILINE)).split()
@@ -90,7 +90,7 @@ def settings_of(dockerfile: str) -> tuple[str, list[str]]:
 
 
 def main() -> int:
-    """Build, try, and print what was seen; the exit code is 1 where something is wrong."""
+    """Build and try the image, and print the results; return 1 if something is wrong."""
     dockerfile = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     base = re.findall(r"^FROM ([^\s@]+)", dockerfile, re.MULTILINE)[-1]
     user, environment = settings_of(dockerfile)
@@ -115,7 +115,7 @@ def main() -> int:
 
 
 def report(seen: str, user: str) -> int:
-    """Print what was seen, and whether it is as it must be."""
+    """Print the results; return 1 if something is wrong."""
     uid, *others = seen.splitlines()
     graded = next(json.loads(line) for line in others if line.startswith("{"))
     points = graded["report"]["points"]

@@ -1,4 +1,4 @@
-"""The bundles, unpacked and run as their platforms do."""
+"""Bundles work when they are unpacked and run as on their platforms."""
 
 import json
 import os
@@ -24,7 +24,7 @@ ALL = pytest.param(tuple(SORTS), id="all", marks=pytest.mark.campaign)
 
 
 def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
-    """The bundle that the installed program writes."""
+    """Return the bundle that the installed program writes."""
     file = folder / f"{platform}.zip"
     what = ("bundle", platform, "--exercise", EXERCISE, "--output", file, *options)
     checked(programs / "dh-grader", *what, cwd=folder)
@@ -32,7 +32,7 @@ def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
 
 
 def valid(file: Path, platform: str) -> dict[str, Any]:
-    """The result in this file, held to the rules of the platform."""
+    """Return the result in a file, validated against the schema of the platform."""
     schema = json.loads((SCHEMAS / f"{platform}.json").read_text(encoding="utf-8"))
     result: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator(schema).validate(result)
@@ -45,7 +45,7 @@ def test_gradescope_gets_a_valid_result(
 ) -> None:
     place = tmp_path / "autograder"
     unpack(bundle(programs, tmp_path, "gradescope"), place / "source")
-    # What the script would download is borrowed.
+    # The packages that the script would download come from this environment.
     venv = environment(place / "source" / "venv")
     checked(place / "source" / "setup.sh", cwd=tmp_path, PYTHON=os.fspath(venv / "python"))
     shutil.copy(place / "source" / "run_autograder", place)
@@ -123,7 +123,7 @@ def test_the_job_of_a_repository_runs(platform: str, programs: Path, tmp_path: P
         checked("bash", "-ec", clone, cwd=work, GRADER_URL=grader.as_uri())
     install, *grading = steps
     assert install == "bash .grader/setup.sh"
-    # Another test runs that script.
+    # Another test runs the script that installs the program.
     (work / ".grader" / "venv").symlink_to(programs.parent)
     summary = tmp_path / "summary.md"
     done: list[subprocess.CompletedProcess[str]] = [

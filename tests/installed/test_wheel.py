@@ -1,4 +1,4 @@
-"""The wheel in an environment of its own."""
+"""The wheel works in an environment of its own."""
 
 import asyncio
 import json
@@ -35,7 +35,7 @@ def test_the_program_is_the_installed_one(programs: Path, tmp_path: Path) -> Non
 
 
 async def posted(body: dict[str, Any]) -> Any:
-    """The report on a body, over HTTP."""
+    """Return the report on a body over HTTP."""
     transport = httpx.ASGITransport(create())
     async with httpx.AsyncClient(transport=transport, base_url="http://service") as client:
         return (await client.post("/v1/exercises/planar-rrr/grade", json=body)).json()
@@ -81,14 +81,14 @@ def test_every_other_python_installs_and_starts_it(wheel: Path, tmp_path: Path) 
     for i, python in enumerate(other_pythons()):
         programs = environment(tmp_path / f"environment{i}", python)
         install(wheel, programs)
-        # Grading needs packages compiled for that Python: `make wheel` installs them, too.
+        # Grading needs packages compiled for that Python, which only `make wheel` installs.
         assert "dh-grader" in checked(
             programs / "dh-grader", "--help", cwd=tmp_path, PYTHONDONTWRITEBYTECODE="1"
         )
 
 
 def contents(wheel: Path) -> dict[str, bytes]:
-    """The files of a wheel, but for those that name the tool which made it."""
+    """Return the files of a wheel, except those that name the build tool."""
     with zipfile.ZipFile(wheel) as archive:
         return {
             name: archive.read(name)
@@ -97,7 +97,7 @@ def contents(wheel: Path) -> dict[str, bytes]:
         }
 
 
-def test_the_program_makes_its_own_wheel_anew(wheel: Path, programs: Path, tmp_path: Path) -> None:
+def test_the_program_rebuilds_its_own_wheel(wheel: Path, programs: Path, tmp_path: Path) -> None:
     make = (
         "import pathlib, service.bundles.own_wheel as own; made = own.own_wheel();"
         "pathlib.Path(made.name).write_bytes(made.content)"

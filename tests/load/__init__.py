@@ -1,1 +1,1 @@
-"""Many clients at once, and what they wait."""
+"""Load tests with many clients."""

@@ -1,8 +1,8 @@
-"""`python -m tests.load`: 200 clients that submit in a row, graded and recorded, for a minute.
+"""`python -m tests.load`: 200 clients submit for a minute; measure grading and recording.
 
-Prints throughput, p50 and p99 of each load, with the throughput as a share of trivial POSTs. Exit
-code 1 where an answer is a failure, an attempt is lost or recorded twice, or honest clients wait
-beside the costliest bodies more than five times as long (p99).
+Print throughput, p50 and p99 of each load, and the throughput as a share of that of trivial POSTs.
+Exit with 1 if an answer is a failure, if an attempt is lost or recorded twice, or if an attack with
+the costliest bodies makes the p99 more than five times as long.
 """
 
 import argparse
@@ -20,26 +20,26 @@ from service.attempts.storage.database import open_database
 from service.attempts.storage.tables import attempts
 from tests.attack.floods import costly
 from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
-from tests.load.clients import Mix, Told, submitted
+from tests.load.clients import Mix, Results, submitted
 from tests.server.raw import Service, service
 
 P99 = 5.0
 MIXED = Mix(recorded=0.5)
 
 
-def misrecorded(url: str, told: dict[str, str]) -> list[str]:
-    """What differs between the database and what clients were told; empty where nothing does."""
+def misrecorded(url: str, results: dict[str, str]) -> list[str]:
+    """Return the differences between the database and the ids that clients received."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
     engine.dispose()
     recorded = {row.idempotency_key: row.id for row in rows}
-    lost = [key for key, found in told.items() if recorded.get(key) != found]
+    lost = [key for key, found in results.items() if recorded.get(key) != found]
     found = [f"{len(lost)} attempts are lost, such as {lost[0]}"] if lost else []
     if len(rows) != len(recorded):
         found.append(f"{len(rows) - len(recorded)} attempts were recorded twice")
-    if strangers := recorded.keys() - told.keys():
-        found.append(f"{len(strangers)} attempts were recorded of which nobody was told")
+    if strangers := recorded.keys() - results.keys():
+        found.append(f"{len(strangers)} recorded attempts were never confirmed to a client")
     return found
 
 
@@ -47,7 +47,7 @@ def misrecorded(url: str, told: dict[str, str]) -> list[str]:
 def replicas(
     folder: Path, number: int, workers: int, url: str, **settings: str
 ) -> Iterator[list[Service]]:
-    """So many services over one database, each with its workers, and a trivial route besides."""
+    """Run ``number`` services with one database, each with workers and a trivial route."""
     with ExitStack() as stack:
         running = []
         for i in range(number):
@@ -68,7 +68,7 @@ def replicas(
 
 @contextmanager
 def attacked(running: Sequence[Service], seconds: float) -> Iterator[None]:
-    """Meanwhile, the costliest bodies come on 16 connections."""
+    """Send the costliest bodies on 16 connections meanwhile."""
     with ExitStack() as opened:
         until = time.monotonic() + seconds
         thread = threading.Thread(target=lambda: costly()(running[0], opened, until))
@@ -79,7 +79,7 @@ def attacked(running: Sequence[Service], seconds: float) -> Iterator[None]:
 
 @contextmanager
 def database(kind: str, folder: Path) -> Iterator[str]:
-    """A new database of this kind."""
+    """Yield the URL of a new database of a kind."""
     if kind == "sqlite":
         yield new_file(folder)
         return
@@ -88,9 +88,9 @@ def database(kind: str, folder: Path) -> Iterator[str]:
 
 
 def load(kind: str, number: int, workers: int, clients: int, seconds: float) -> list[str]:
-    """Run the loads one after the other and print their figures; what was not held."""
+    """Run the loads one after the other and print figures; return the broken promises."""
     broken: list[str] = []
-    rows: list[tuple[str, Told]] = []
+    rows: list[tuple[str, Results]] = []
     with (
         tempfile.TemporaryDirectory() as name,
         database(kind, Path(name)) as url,
@@ -108,40 +108,40 @@ def load(kind: str, number: int, workers: int, clients: int, seconds: float) -> 
             rows.append((called, submitted(ports, clients, span, mix, called)))
         with attacked(running, seconds):
             rows.append(("both, attacked", submitted(ports, clients, seconds, MIXED, "attacked")))
-        for called, told in rows:
-            broken += [f"{called}: {failure}" for failure in told.failures[:3]]
-            if told.lost_connections or told.refused:
-                lost = f"{told.lost_connections} connections lost, {told.refused} attempts refused"
-                broken.append(f"{called}: {lost}")
-        everything = {key: found for _, told in rows for key, found in told.attempts.items()}
+        for called, results in rows:
+            broken += [f"{called}: {failure}" for failure in results.failures[:3]]
+            if results.lost_connections or results.refused:
+                lost = f"{results.lost_connections} connections lost"
+                broken.append(f"{called}: {lost}, {results.refused} attempts refused")
+        everything = {key: found for _, results in rows for key, found in results.attempts.items()}
         broken += misrecorded(url, everything)
         for each in running:
             if each.end():
-                broken.append("a service did not end in good order")
+                broken.append("a service did not shut down with exit code 0")
     _print(f"{clients} clients, {number} x {workers} processes, {kind}", rows)
     longer = rows[-1][1].quantile(0.99) / rows[-2][1].quantile(0.99)
-    print(f"beside the costliest bodies, p99 is {longer:.1f} times as long")  # noqa: T201
+    print(f"during an attack, p99 is {longer:.1f} times as long")  # noqa: T201
     if longer > P99:
-        broken.append(f"p99 is {longer:.1f} times as long beside the costliest bodies")
+        broken.append(f"p99 is {longer:.1f} times as long during an attack")
     return broken
 
 
-def _print(title: str, rows: Sequence[tuple[str, Told]]) -> None:
+def _print(title: str, rows: Sequence[tuple[str, Results]]) -> None:
     print(title)  # noqa: T201
     print(  # noqa: T201
         f"{'':16}{'answers':>9}{'a second':>10}{'p50 ms':>9}{'p99 ms':>9}{'of trivial':>12}"
     )
     trivial = rows[0][1].per_second
-    for called, told in rows:
-        p50, p99 = (1e3 * told.quantile(share) for share in (0.5, 0.99))
+    for called, results in rows:
+        p50, p99 = (1e3 * results.quantile(share) for share in (0.5, 0.99))
         print(  # noqa: T201
-            f"{called:16}{len(told.waits):9}{told.per_second:10.0f}{p50:9.0f}{p99:9.0f}"
-            f"{told.per_second / trivial:12.0%}"
+            f"{called:16}{len(results.waits):9}{results.per_second:10.0f}{p50:9.0f}{p99:9.0f}"
+            f"{results.per_second / trivial:12.0%}"
         )
 
 
 def main() -> int:
-    """Run the loads on a database of each kind, or of one."""
+    """Run the loads with a database of one kind; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="for each mixed load")
     parser.add_argument("--clients", type=int, default=200)

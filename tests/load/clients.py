@@ -1,4 +1,4 @@
-"""Clients that submit in a row, each from an address of its own, and keep what they were told."""
+"""Clients that submit one request after the other, each from an address of its own."""
 
 import asyncio
 import json
@@ -16,68 +16,68 @@ EXERCISE: Final = "stanford-arm"
 GRADE: Final = f"/v1/exercises/{EXERCISE}/grade"
 ATTEMPTS: Final = f"/v1/exercises/{EXERCISE}/attempts"
 TRIVIAL: Final = "/trivial"
-# One in so many attempts is sent again under its key, as after an answer that got lost.
+# One in 20 attempts is sent again under its key, as after a lost answer.
 AGAIN: Final = 20
-# How often an attempt is sent that is refused because the database is down, or not answered.
+# How often an attempt is sent again if it is refused or not answered.
 TRIES: Final = 300
 
 
 @dataclass
-class Told:
-    """What clients were told: waits in seconds, statuses, and attempts by their keys."""
+class Results:
+    """The answers to clients: waiting times in seconds, failures, and ids of attempts by keys."""
 
     waits: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     attempts: dict[str, str] = field(default_factory=dict)
     lost_connections: int = 0
-    # Attempts for which the database was down, each time.
+    # The number of answers 503 to attempts, because the database was down.
     refused: int = 0
     seconds: float = 0.0
 
     @property
     def per_second(self) -> float:
-        """Answers each second."""
+        """The number of answers per second."""
         return len(self.waits) / self.seconds
 
     def quantile(self, share: float) -> float:
-        """The wait that so many were not above, in seconds."""
+        """Return the quantile of the waiting times for a share between 0 and 1, in seconds."""
         ordered = sorted(self.waits) or [float("nan")]
         return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
 
 
 @dataclass(frozen=True)
 class Mix:
-    """Which share of the requests goes where; the rest is graded."""
+    """The shares of recorded and of trivial requests; all others are only graded."""
 
     recorded: float = 0.0
     trivial: float = 0.0
 
 
 class Client:
-    """One student: sends, waits for the answer, sends the next."""
+    """A student who sends requests, each after the answer to the last."""
 
     def __init__(
         self,
         number: int,
         ports: Sequence[int],
         mix: Mix,
-        told: Told,
+        results: Results,
         run: str,
         pause: float = 0.0,
     ) -> None:
         self._pause = pause
         self._name = f"{run}.{number}"
-        # Loopback has many addresses; turns are fair between them.
+        # Each client has an address of its own, because turns are fair between addresses.
         self._source = f"127.1.{number // 250}.{number % 250 + 1}"
         self._ports = ports
         self._random = random.Random(number)
         self._mix = mix
-        self._told = told
+        self._results = results
         self._turn = number
         self._lines: dict[int, tuple[asyncio.StreamReader, asyncio.StreamWriter]] = {}
 
     async def submit(self, until: float) -> None:
-        """Submit until then; nothing is left half done."""
+        """Submit until a time of ``time.perf_counter()``, and finish the last request."""
         for i in range(1_000_000):
             if time.perf_counter() > until:
                 break
@@ -103,19 +103,19 @@ class Client:
         if found and self._random.randrange(AGAIN) == 0:
             again = await self._post(ATTEMPTS, body, key)
             if again and again != found:
-                self._told.failures.append(f"{key} was recorded twice")
+                self._results.failures.append(f"{key} was recorded twice")
         for _ in range(TRIES):
             if found:
                 break
-            # As the documentation says: the same attempt again, until it is known to be recorded.
+            # As documented, send the same attempt again until an answer says that it is recorded.
             found = await self._post(ATTEMPTS, body, key)
         else:
-            self._told.failures.append(f"{key} was never recorded")
+            self._results.failures.append(f"{key} was never recorded")
             return
-        self._told.attempts[key] = found
+        self._results.attempts[key] = found
 
     async def _post(self, path: str, body: dict[str, object], key: str = "") -> str:
-        """Post to each service in turn; the id of the attempt, empty where no answer came."""
+        """Post to each service in turn; return the id of the attempt, or "" without an answer."""
         self._turn += 1
         port = self._ports[self._turn % len(self._ports)]
         content = json.dumps(body).encode()
@@ -130,22 +130,22 @@ class Client:
                 self._exchange(port, head.encode() + content), ANSWER
             )
         except (OSError, EOFError):
-            self._told.lost_connections += 1
+            self._results.lost_connections += 1
             with suppress(KeyError):
                 self._lines.pop(port)[1].close()
             await asyncio.sleep(0.05)
             return ""
         except TimeoutError:
-            self._told.failures.append(f"{path}: no answer")
+            self._results.failures.append(f"{path}: no answer")
             return ""
         if key and status == 503 and b":store-down" in answer:
-            self._told.refused += 1
+            self._results.refused += 1
             await asyncio.sleep(0.1)
             return ""
         if status != (201 if key else 200):
-            self._told.failures.append(f"{path}: {status} {answer[:200].decode()}")
+            self._results.failures.append(f"{path}: {status} {answer[:200].decode()}")
             return ""
-        self._told.waits.append(time.perf_counter() - began)
+        self._results.waits.append(time.perf_counter() - began)
         return str(json.loads(answer)["attempt"]["id"]) if key else ""
 
     async def _exchange(self, port: int, message: bytes) -> tuple[int, bytes]:
@@ -171,16 +171,16 @@ def submitted(
     seconds: float,
     mix: Mix,
     run: str,
-    told: Told | None = None,
+    results: Results | None = None,
     pause: float = 0.0,
-) -> Told:
-    """What so many clients were told in this time; ``run`` tells one run's learners from others.
+) -> Results:
+    """Run clients for some seconds; return their results. ``run`` is part of the learners' names.
 
-    Each makes a ``pause`` after each answer, in seconds.
+    Each client pauses for ``pause`` seconds after each answer.
     """
-    told = Told() if told is None else told
+    results = Results() if results is None else results
     began = time.perf_counter()
-    everybody = [Client(number, ports, mix, told, run, pause) for number in range(clients)]
+    everybody = [Client(number, ports, mix, results, run, pause) for number in range(clients)]
     asyncio.run(_submit_all(everybody, seconds))
-    told.seconds = time.perf_counter() - began
-    return told
+    results.seconds = time.perf_counter() - began
+    return results

@@ -1,4 +1,4 @@
-"""nginx before services of this machine, with the configuration of compose.yaml."""
+"""Run nginx as a proxy of services on this machine, with the configuration of compose.yaml."""
 
 import re
 import socket
@@ -14,7 +14,7 @@ CONFIGURATION: Final = Path(__file__).parents[2] / "deploy" / "nginx.conf"
 
 
 def free_port() -> int:
-    """A port that nobody has at the moment."""
+    """Return a port that is not in use."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port: int = taken.getsockname()[1]
         return port
@@ -22,7 +22,7 @@ def free_port() -> int:
 
 @contextmanager
 def nginx(program: str, folder: Path, ports: Sequence[int]) -> Iterator[int]:
-    """A proxy before the services at these ports; yields its port."""
+    """Run a proxy of the services at ``ports``; yield its port."""
     port = free_port()
     text = CONFIGURATION.read_text(encoding="utf-8")
     for number, replica in enumerate(ports, 1):

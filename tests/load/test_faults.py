@@ -1,6 +1,6 @@
-"""Real faults under load: clients send an attempt again until it is known; none is lost or doubled.
+"""No attempt is lost or recorded twice when real faults happen under load.
 
-A campaign; tests/attempts has short tests of the same faults, and of killed processes.
+Clients send an attempt again until it is recorded. tests/attempts has short tests of these faults.
 """
 
 import os
@@ -21,7 +21,7 @@ from tests.attempts.databases import new_database, new_file, postgresql_server
 from tests.attempts.recorded import NO_TWIST
 from tests.guards import ANSWER
 from tests.load.__main__ import MIXED, misrecorded, replicas
-from tests.load.clients import Mix, Told, submitted
+from tests.load.clients import Mix, Results, submitted
 from tests.load.proxy import nginx
 from tests.server.raw import Service, service
 
@@ -37,7 +37,7 @@ NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
 
 @contextmanager
 def meanwhile(happens: Callable[[], None], after: float = 2.0) -> Iterator[None]:
-    """Have it happen so many seconds from now, beside what is done."""
+    """Call ``happens`` after some seconds, while the body of the ``with`` runs."""
     timer = threading.Timer(after, happens)
     timer.start()
     yield
@@ -46,7 +46,7 @@ def meanwhile(happens: Callable[[], None], after: float = 2.0) -> Iterator[None]
 
 @contextmanager
 def cramped(folder: Path, url: str, most: int) -> Iterator[Service]:
-    """A service of which no file may grow beyond so many bytes, as where a disk is full."""
+    """Run a service whose files may not grow beyond ``most`` bytes, as if the disk were full."""
     limited = (
         "import resource, runpy, sys;"
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most}));"
@@ -82,12 +82,12 @@ def check_grading(port: int) -> None:
 
 def test_a_full_disk(tmp_path: Path) -> None:
     url = new_file(tmp_path)
-    told = Told()
+    results = Results()
     with service(tmp_path, DH_GRADER_DATABASE=url) as running:
-        submitted([running.port], CLIENTS, 1.0, Mix(recorded=1.0), "before", told)
+        submitted([running.port], CLIENTS, 1.0, Mix(recorded=1.0), "before", results)
         assert running.end() == 0
     room = Path(url).stat().st_size + 500_000
-    kept = dict(told.attempts)
+    kept = dict(results.attempts)
     with cramped(tmp_path, url, room) as running:
         address = f"http://127.0.0.1:{running.port}/v1/exercises/scara/attempts"
         with httpx.Client(timeout=ANSWER) as client:
@@ -98,9 +98,9 @@ def test_a_full_disk(tmp_path: Path) -> None:
             assert answer.json()["type"].endswith(":store-down")
         check_grading(running.port)
         assert "The database fails" in running.log
-    assert len(kept) > len(told.attempts)
+    assert len(kept) > len(results.attempts)
     assert misrecorded(url, kept) == []
-    # With room again, the attempt that was refused is recorded under the same key.
+    # With free space again, the refused attempt is recorded under the same key.
     with service(tmp_path, DH_GRADER_DATABASE=url) as running:
         address = f"http://127.0.0.1:{running.port}/v1/exercises/scara/attempts"
         with httpx.Client(timeout=ANSWER) as client:
@@ -119,12 +119,12 @@ def test_a_file_that_another_program_locks(tmp_path: Path) -> None:
             other.close()
 
         with meanwhile(lock):
-            told = submitted([running.port], CLIENTS, SECONDS, MIXED, "locked")
+            results = submitted([running.port], CLIENTS, SECONDS, MIXED, "locked")
         assert running.end() == 0
-    assert told.failures == []
+    assert results.failures == []
     # The service waits for five seconds.
-    assert told.refused > 0
-    assert misrecorded(url, told.attempts) == []
+    assert results.refused > 0
+    assert misrecorded(url, results.attempts) == []
 
 
 def test_a_server_that_stops_and_starts_again(tmp_path: Path) -> None:
@@ -140,15 +140,15 @@ def test_a_server_that_stops_and_starts_again(tmp_path: Path) -> None:
 
             ports = [each.port for each in running]
             with meanwhile(restart):
-                told = submitted(ports, CLIENTS, SECONDS, MIXED, "stopped")
+                results = submitted(ports, CLIENTS, SECONDS, MIXED, "stopped")
             assert [each.end() for each in running] == [0, 0]
-        assert told.failures == []
-        assert told.refused > 0
-        assert misrecorded(url, told.attempts) == []
+        assert results.failures == []
+        assert results.refused > 0
+        assert misrecorded(url, results.attempts) == []
 
 
 @pytest.mark.skipif(NGINX is None, reason="nginx is not installed")
-def test_a_replica_that_is_killed_behind_the_proxy_of_compose(tmp_path: Path) -> None:
+def test_a_replica_behind_the_proxy_of_compose_that_is_killed(tmp_path: Path) -> None:
     assert NGINX
     with postgresql_server() as server:
         url = new_database(server, "attempts")
@@ -161,12 +161,14 @@ def test_a_replica_that_is_killed_behind_the_proxy_of_compose(tmp_path: Path) ->
             named = httpx.get(f"{address}/healthz", headers={"X-Request-ID": "mine"})
             assert named.headers["x-request-id"] == "mine"
             assert httpx.get(f"{address}/metrics").status_code == 404
-            # As many as the proxy lets through.
+            # The pause keeps the clients below the rate limit of the proxy.
             with meanwhile(running[0].process.kill):
-                told = submitted([port], CLIENTS, SECONDS, Mix(recorded=0.5), "killed", pause=0.2)
+                results = submitted(
+                    [port], CLIENTS, SECONDS, Mix(recorded=0.5), "killed", pause=0.2
+                )
             assert running[1].end() == 0
-        # The answers that were under way in the killed one are 502, or their connections end.
-        assert [each for each in told.failures if " 502 " not in each] == []
-        assert len(told.failures) <= CLIENTS
-        assert len(told.attempts) > CLIENTS
-        assert misrecorded(url, told.attempts) == []
+        # Requests in the killed replica are answered with 502, or their connections end.
+        assert [each for each in results.failures if " 502 " not in each] == []
+        assert len(results.failures) <= CLIENTS
+        assert len(results.attempts) > CLIENTS
+        assert misrecorded(url, results.attempts) == []

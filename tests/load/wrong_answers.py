@@ -1,8 +1,8 @@
-"""`python -m tests.load.wrong_answers`: a class of which most answers are wrong, as fast as it can.
+"""`python -m tests.load.wrong_answers`: measure the service with mostly wrong answers.
 
 A course server sends tables with slips over eight connections from one address, then 120 students
-submit in the same instant. Both are compared with the gradings alone, in this process. Exit code 1
-where the service is slower than is promised; let nothing else run.
+submit in the same instant. Both are compared with grading alone, in this process. Exit with 1 if
+the service is slower than promised. Run nothing else meanwhile.
 """
 
 import argparse
@@ -30,23 +30,23 @@ from tests.solutions.solved import solved
 
 CONNECTIONS: Final = 8
 CLASS: Final = 120
-# What is promised: the share of the gradings of one core, the longest wait in gradings, and the
-# time of a class at once in the sum of its gradings.
+# The promises: the least throughput as a share of grading alone on one core; the longest wait as a
+# multiple of the mean grading; the longest time for a class at once as a multiple of its gradings.
 SHARE, LONGEST, AT_ONCE = 0.8, 20.0, 1.5
 _COLUMNS: Final = ("a", "alpha", "d", "theta")
-# What a cell becomes; the last two are entries of other cells.
+# Replacements for a cell.
 _SLIPS: Final = ("-({})", "0", "2*({})", "({})/2", "({}) + 90deg", "l9", "({})*180/pi", "", "{} +")
 
 
 class Body(NamedTuple):
-    """A submission to an exercise."""
+    """The id of an exercise, and the body of a submission to it."""
 
     exercise: str
     content: bytes
 
 
 def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: int) -> Any:
-    """The rows with so many cells changed, each as a student might."""
+    """Return the rows with ``slips`` cells changed, each as a student might."""
     changed = [dict(row) for row in rows]
     for _ in range(slips):
         row, column = choose.choice(changed), choose.choice(_COLUMNS)
@@ -57,7 +57,7 @@ def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: in
 
 @cache
 def _models() -> list[tuple[Exercise, str, Any]]:
-    """The tables of the shipped exercises that get full marks, each with its part."""
+    """Return the shipped exercises with a table, with its part and the rows with full marks."""
     return [
         (exercise, part.id, dict[str, Any](solved(exercise).answers)[part.id]["rows"])
         for exercise in shipped_exercises().values()
@@ -67,19 +67,19 @@ def _models() -> list[tuple[Exercise, str, Any]]:
 
 
 def tables(seed: int, wrong: float) -> Iterator[Body]:
-    """Tables of the shipped exercises without end; a share has one to four slips."""
+    """Yield tables of the shipped exercises without end; a share has one to four slips."""
     choose, models = random.Random(seed), _models()
     while True:
         exercise, part, rows = choose.choice(models)
         slips = choose.randint(1, 4) if choose.random() < wrong else 0
         answers = {part: _with_slips(rows, choose, slips)}
-        # No two bodies are alike.
+        # A random term makes each body different.
         spelled = json.dumps({"answers": answers}).replace('"0"', f'"0*{choose.random():.6f}"', 1)
         yield Body(exercise.id, spelled.encode())
 
 
 def in_process(bodies: Sequence[Body], catalogue: dict[str, Exercise]) -> list[float]:
-    """The processor seconds of each grading, with nothing around it."""
+    """Return the processor seconds of each grading alone, without the server."""
     found = []
     for exercise, content in bodies:
         body = validated(GradeRequest, json.loads(content), ())
@@ -105,7 +105,7 @@ def _processor_time(running: Service) -> float:
 
 
 def in_turn(running: Service, bodies: Sequence[Body]) -> tuple[float, list[float]]:
-    """The seconds for all bodies over eight connections, and how long each waited."""
+    """Send all bodies over eight connections; return the seconds, and each waiting time."""
     left, lock, waits = iter(bodies), threading.Lock(), list[float]()
 
     def send() -> None:
@@ -128,7 +128,7 @@ def in_turn(running: Service, bodies: Sequence[Body]) -> tuple[float, list[float
 
 
 async def _at_once(running: Service, bodies: Sequence[Body]) -> float:
-    """The seconds until all bodies, each sent on a connection of its own, are answered."""
+    """Send each body on a connection of its own; return the seconds until all are answered."""
 
     async def connect() -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
         return await asyncio.open_connection("127.0.0.1", running.port)
@@ -149,7 +149,7 @@ async def _at_once(running: Service, bodies: Sequence[Body]) -> float:
 
 
 def measure(count: int, seed: int) -> list[str]:
-    """Print the figures; what is not as promised."""
+    """Print the figures; return the broken promises."""
     catalogue = dict(shipped_exercises())
     drawn = tables(seed, 1.0)
     warm = [next(drawn) for _ in range(100)]
@@ -184,7 +184,7 @@ def measure(count: int, seed: int) -> list[str]:
 
 
 def main() -> int:
-    """Measure with the options of the command line."""
+    """Measure with the options of the command line; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=3000)
     parser.add_argument("--seed", type=int, default=1)

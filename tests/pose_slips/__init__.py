@@ -1,1 +1,1 @@
-"""Single slips of tables in poses, orientations, positions and link transforms: are they named?"""
+"""Check that slips in a table are named in poses, orientations, positions and link transforms."""

@@ -10,10 +10,10 @@ from tests.pose_slips.robots import robots
 
 
 def main() -> int:
-    """Try all slips, or every n-th; return 1 where fewer than 95 % are named."""
+    """Try all slips, or every n-th; return 1 if fewer than 95 % are named."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--every", type=int, default=1, help="try every n-th slip (1)")
-    parser.add_argument("--robot", help="of this robot alone")
+    parser.add_argument("--robot", help="only this robot")
     parser.add_argument("--show", action="store_true", help="print the slips that were not named")
     options = parser.parse_args()
     console = Console(width=200, highlight=False)

@@ -1,4 +1,4 @@
-"""Each slip of a robot's table, in its pose, orientation, position and link transforms."""
+"""Try each slip of a robot's table in its pose, orientation, position and link transforms."""
 
 import re
 import tempfile
@@ -18,15 +18,15 @@ from tests.pose_slips.robots import SpoiltRobot
 from tests.pose_slips.slips import TableSlip, slips_of
 
 KINDS = ("transform", "rotation", "position", "links")
-# Answers that differ by less at a generic place are the same.
+# The tolerance in which two answers are equal, at generic joint values.
 SAME = 1e-9
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A graded answer: by which slip it is wrong, and whether another slip gives the same answer.
+    """A graded answer: its slip, and whether no other slip gives the same answer (``alone``).
 
-    ``outcome`` is "named", "silent", "several messages" or what was said in place of the slip.
+    ``outcome`` is "named", "silent", "several messages" or the message instead of the slip's.
     """
 
     robot: str
@@ -37,7 +37,7 @@ class Trial:
 
 
 def exercise_of(robot: SpoiltRobot) -> Exercise:
-    """The exercise with a part of each kind."""
+    """Return the exercise of a robot with a part of each kind."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"{robot.name}.toml"
         file.write_text(robot.text, encoding="utf-8")
@@ -45,7 +45,7 @@ def exercise_of(robot: SpoiltRobot) -> Exercise:
 
 
 def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
-    """What a student hands in who has this table."""
+    """Return the answer that follows from a table."""
     if kind == "links":
         return [printed(link(row, robot.convention)) for row in rows]
     reached = pose(rows, robot.convention)
@@ -57,7 +57,7 @@ def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
 
 
 def spoilt(robot: SpoiltRobot, slip: TableSlip | None) -> list[list[sp.Expr]]:
-    """The table with the slip."""
+    """Return the table with the slip."""
     if slip is not None and slip.rows:
         return [list(row) for row in slip.rows]
     rows = [list(row) for row in robot.rows]
@@ -67,7 +67,7 @@ def spoilt(robot: SpoiltRobot, slip: TableSlip | None) -> list[list[sp.Expr]]:
 
 
 class Numbers:
-    """The answers in numbers at one generic place, by which equal ones are known."""
+    """Computes answers in numbers at generic joint values, to find equal ones."""
 
     def __init__(self, robot: SpoiltRobot) -> None:
         self.robot = robot
@@ -78,7 +78,7 @@ class Numbers:
         self.values = dict(zip(symbols, values.tolist(), strict=True))
 
     def of(self, slip: TableSlip | None) -> np.ndarray:
-        """All link transforms ``(rows, 4, 4)``."""
+        """Return all link transforms ``(rows, 4, 4)``."""
         rows = spoilt(self.robot, slip)
         numeric = [[float(cell.subs(self.values)) for cell in row] for row in rows]
         return np.array(
@@ -90,7 +90,7 @@ class Numbers:
 
 
 def asked(kind: str, links: np.ndarray) -> np.ndarray:
-    """What a kind asks for, of link transforms in numbers."""
+    """Return the answer to a kind of part, from link transforms in numbers."""
     if kind == "links":
         return links
     reached: np.ndarray = np.linalg.multi_dot(links) if len(links) > 1 else links[0]
@@ -100,14 +100,14 @@ def asked(kind: str, links: np.ndarray) -> np.ndarray:
 
 
 def trials(robot: SpoiltRobot, chosen: Callable[[int], bool] = lambda _: True) -> Iterator[Trial]:
-    """A trial of each slip in each kind of part, of those whose number is chosen."""
+    """Yield a trial of each chosen slip in each kind of part."""
     exercise, numbers, slips = exercise_of(robot), Numbers(robot), list(slips_of(robot))
     right, found = numbers.of(None), [numbers.of(slip) for slip in slips]
     for kind in KINDS:
         answers = [asked(kind, each) for each in found]
         correct = asked(kind, right)
         for k, slip in enumerate(slips):
-            # Of another table there may be another number of link transforms.
+            # A wrong table may have another number of link transforms.
             has_shape = answers[k].shape == correct.shape
             if not chosen(k) or not has_shape or _is_same(answers[k], correct):
                 continue
@@ -126,7 +126,7 @@ def _is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def outcome(report: PartReport, slip: TableSlip, *, alone: bool) -> str:
-    """How the slip was told."""
+    """Return whether and how the report names the slip."""
     if report.verdict is Verdict.UNREADABLE:
         return "unread"
     said = [m for m, _, _ in messages_of(report) if m.severity is Severity.ERROR]

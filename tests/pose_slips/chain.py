@@ -1,4 +1,4 @@
-"""The forward kinematics of a table in SymPy, multiplied out turn by turn and shift by shift."""
+"""Forward kinematics of a table in SymPy, as a product of rotations and translations."""
 
 from collections.abc import Sequence
 from functools import reduce
@@ -23,7 +23,7 @@ def _along(axis: str, length: sp.Expr) -> Any:
 
 
 def link(row: Row, convention: str) -> Any:
-    """The link transform of a row (a, α, d, θ)."""
+    """Return the link transform of a row (a, α, d, θ)."""
     a, alpha, d, theta = row
     x = _along("x", a) * _about("x", alpha)
     z = _about("z", theta) * _along("z", d)
@@ -31,10 +31,10 @@ def link(row: Row, convention: str) -> Any:
 
 
 def pose(rows: Sequence[Row], convention: str) -> Any:
-    """The product of all link transforms."""
+    """Return the product of all link transforms."""
     return reduce(lambda reached, row: reached * link(row, convention), rows, sp.eye(4))
 
 
 def printed(matrix: Any) -> list[list[str]]:
-    """The entries as a program prints them."""
+    """Return the entries as text, as a program prints them."""
     return [[str(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]

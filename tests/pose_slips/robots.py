@@ -1,4 +1,4 @@
-"""Robots whose poses are spoilt: those of all shipped exercises, and some that are not shipped."""
+"""The robots of the campaign: those of all shipped exercises, and some others."""
 
 import re
 import tomllib
@@ -31,7 +31,7 @@ title = "Link transforms"
 convention = "{convention}"
 """
 HEAD = 'title = "Unseen"\nsource = "none"\nstatement = "Nothing to see."\n'
-# PUMA 560 by Craig, a seven-joint arm like KUKA's, and arms of no book.
+# PUMA 560 by Craig, a seven-joint arm like KUKA's, and invented arms.
 UNSEEN = {
     "puma": (
         "RRRRRR",
@@ -53,8 +53,8 @@ UNSEEN = {
 class SpoiltRobot:
     """A robot: its exercise as TOML, its table in SymPy (a, α, d, θ in radians) and its joints.
 
-    ``joints`` has the number, the variable and whether it slides, for each row; None for a fixed
-    row.
+    For each row, ``joints`` has the number, the variable, and True for a prismatic joint; None for
+    a fixed row.
     """
 
     name: str
@@ -65,7 +65,7 @@ class SpoiltRobot:
 
 
 def robots() -> Iterator[SpoiltRobot]:
-    """All of them."""
+    """Yield all robots."""
     for file in sorted(shipped_folder().glob("*.toml")):
         text = file.read_text(encoding="utf-8")
         if "table = [\n" in text and "[robot]" in text:
@@ -98,7 +98,7 @@ def _degrees(cell: str) -> str:
 
 
 def robot_of(name: str, setting: str) -> SpoiltRobot:
-    """The robot of the beginning of an exercise file, with parts of all kinds put behind it."""
+    """Return the robot of the beginning of an exercise file, to which parts are added."""
     robot = tomllib.loads(setting)["robot"]
     variables = [sp.Symbol(each) for each in robot["joints"]]
     first = int("".join(filter(str.isdigit, robot["joints"][0])))
@@ -113,7 +113,7 @@ def robot_of(name: str, setting: str) -> SpoiltRobot:
 
 
 def _formula(cell: str) -> sp.Expr:
-    """A sum of letters, numbers and numbers of degrees."""
+    """Return the formula of a cell: a sum of letters, numbers and degrees."""
     terms = re.findall(r"([+-]?)\s*([A-Za-z]\w*|[\d.]+(?:deg)?)", cell)
     return sp.Add(*(_term(term) * (-1 if sign == "-" else 1) for sign, term in terms))
 

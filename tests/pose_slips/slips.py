@@ -1,6 +1,6 @@
-"""Slips of a table: in one cell, or in whole rows and columns.
+"""Generate slips of a table: in one cell, or in whole rows and columns.
 
-In a cell: sign, zero, quarter turn, wrong index, standing still, the wrong way.
+In a cell: wrong sign, zero, quarter turn, wrong index, missing or negated joint variable.
 """
 
 from collections.abc import Iterator
@@ -16,10 +16,10 @@ A, ALPHA, D, THETA = range(4)
 
 @dataclass(frozen=True)
 class TableSlip:
-    """A cell that is wrong: its row and column, what stands in it, and the codes of the slip.
+    """A wrong cell: its row, its column, its content, and the codes of the slip.
 
-    ``joint`` is the number of the row's joint or the last, ``label`` that of the row. With ``rows``
-    it is the whole table that is wrong.
+    ``joint`` is the number of the row's joint or of the last one, ``label`` the label of the row.
+    If ``rows`` is set, it is a whole wrong table.
     """
 
     row: int
@@ -32,14 +32,14 @@ class TableSlip:
 
 
 def slips_of(robot: SpoiltRobot) -> Iterator[TableSlip]:
-    """All single slips of a robot's table."""
+    """Yield all single slips of a robot's table."""
     yield from _of_cells(robot)
     for codes, rows in _of_rows(robot):
         yield TableSlip(0, 0, sp.Integer(0), frozenset(codes.split()), 0, "", rows)
 
 
 def _of_rows(robot: SpoiltRobot) -> Iterator[tuple[str, tuple[tuple[sp.Expr, ...], ...]]]:
-    """Whole tables: a and d or two rows exchanged, all α negated, the other convention's."""
+    """Yield whole tables: a and d or two rows exchanged, all α negated, the other convention."""
     rows, none = robot.rows, (sp.Integer(0), sp.Integer(0))
     for i, ((a, alpha, d, theta), joint) in enumerate(zip(rows, robot.joints, strict=True)):
         moving = joint[1] if joint and d.has(joint[1]) else 0

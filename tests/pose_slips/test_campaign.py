@@ -11,7 +11,7 @@ from tests.pose_slips.campaign import KINDS, answer_to, exercise_of, spoilt, tri
 from tests.pose_slips.robots import robots
 
 ROBOTS = {robot.name: robot for robot in robots()}
-# Some slips of some robots: enough to see each code.
+# Every n-th slip of some robots: enough to cover each code.
 SAMPLE = {"scara": 9, "stanford-arm": 29, "planar-rrr": 13, "skew": 17, "sliding": 13}
 
 
@@ -26,7 +26,7 @@ def test_slips_are_named(name: str, every: int, figure: Callable[[str], None]) -
 
 
 @pytest.mark.parametrize("name", ["scara", "stanford-arm", "puma", "polar"])
-def test_a_right_answer_draws_none(name: str) -> None:
+def test_a_right_answer_has_no_message(name: str) -> None:
     robot = ROBOTS[name]
     answers = {kind: answer_to(kind, robot, spoilt(robot, None)) for kind in KINDS}
     report = handed_in(exercise_of(robot), answers)
@@ -35,7 +35,7 @@ def test_a_right_answer_draws_none(name: str) -> None:
         assert each.feedback == ()
 
 
-# The answers that a course's students handed in, and what each of them must be told.
+# Answers of the students of a course, each with the expected code and words of the message.
 SAID = [
     ("spherical-wrist", "position", ["0", "0", "d6"], "home_position", "home position"),
     ("spherical-wrist", "position", ["c4 s5", "s4 s5", "c5"], "quantity", "this contains none"),
@@ -69,7 +69,7 @@ SAID = [
 
 
 @pytest.mark.parametrize(("exercise", "part_id", "answer", "code", "words"), SAID)
-def test_what_students_handed_in(
+def test_slips_of_real_students_are_named(
     exercise: str,
     part_id: str,
     answer: object,
@@ -84,7 +84,7 @@ def test_what_students_handed_in(
     assert words in message.message
 
 
-def test_an_unread_entry_leaves_the_slip_in_sight(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_slip_is_named_although_an_entry_is_unreadable(catalogue: Mapping[str, Exercise]) -> None:
     _, _, pose, code, words = SAID[-1]
     assert isinstance(pose, list)
     spoiled = [["(", *pose[0][1:]], *pose[1:]]

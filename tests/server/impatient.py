@@ -1,7 +1,7 @@
-"""`python -m tests.server.impatient`: the service with little patience, so that tests need none.
+"""`python -m tests.server.impatient`: the service with short timeouts, so that tests are quick.
 
-`GET /hanging` there never comes to an answer, nor does `GET /working`, in a thread. The variable
-``PATIENCE`` lets it wait longer for all but heads; at its end it stays impatient.
+It has two more routes, `GET /hanging` and `GET /working` (in a thread), which never answer. The
+environment variable ``TIMEOUT`` lengthens all timeouts but those of heads and of the shutdown.
 """
 
 import asyncio
@@ -13,14 +13,13 @@ from fastapi import FastAPI
 from service.api.routes import health
 from service.cli import main
 from service.server import start
-from service.server.connections import open_connections as crowd
-from service.server.connections import protocol
+from service.server.connections import open_connections, protocol
 from service.server.installed import installed_app
 from service.server.processes import process
 from service.settings import Settings
 
-PATIENCE = 1.0
-HEAD_PATIENCE = PATIENCE / 2
+TIMEOUT = 1.0
+HEAD_TIMEOUT = TIMEOUT / 2
 
 
 async def _hanging() -> None:
@@ -40,12 +39,12 @@ def _with_hanging(settings: Settings, host: str) -> FastAPI:
 
 if __name__ == "__main__":
     for module, name, seconds in (
-        (protocol, "PATIENCE", float(os.environ.get("PATIENCE", PATIENCE))),
-        (protocol, "HEAD_PATIENCE", HEAD_PATIENCE),
+        (protocol, "TIMEOUT", float(os.environ.get("TIMEOUT", TIMEOUT))),
+        (protocol, "HEAD_TIMEOUT", HEAD_TIMEOUT),
         (protocol, "LINGER", 0.3),
-        (crowd, "SWEEP", 0.05),
-        (process, "GRACE", PATIENCE / 2),
-        (health, "_PATIENCE", PATIENCE / 2),
+        (open_connections, "SWEEP", 0.05),
+        (process, "GRACE", TIMEOUT / 2),
+        (health, "_PATIENCE", TIMEOUT / 2),
     ):
         vars(module)[name] = seconds
     vars(start)["installed_app"] = _with_hanging

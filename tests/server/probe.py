@@ -1,4 +1,4 @@
-"""Seven slow clients against this server and others: `python -m tests.server.probe`.
+"""Compare how servers treat seven slow clients: `python -m tests.server.probe`.
 
 Print the seconds after which each server closes the connection of each client, as a table in
 Markdown. granian and hypercorn are installed into a temporary folder; a server that cannot be
@@ -25,7 +25,7 @@ APP = "service.app:app"
 HALF_A_HEAD = b"GET /healthz HTTP/1.1\r\nHost: x\r\n"
 HALF_A_BODY = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n{"
 LARGE = b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n"
-# Of each client: what it sends at first, and what it then sends each second.
+# For each client: what it sends first, and what it then sends each second.
 CLIENTS: dict[str, tuple[bytes, bytes]] = {
     "sends nothing": (b"", b""),
     "sends half a head": (HALF_A_HEAD, b""),
@@ -35,7 +35,7 @@ CLIENTS: dict[str, tuple[bytes, bytes]] = {
     "sends nothing more after an answer": (HEALTH, b""),
     "does not read its answers": (LARGE * 500, b""),
 }
-# Of each server: the packages to install, and its command.
+# For each server: the packages to install, and its command.
 SERVERS: dict[str, tuple[list[str], list[str]]] = {
     "dh-grader": ([], ["service", "serve", "--port"]),
     "uvicorn, httptools": ([], ["uvicorn", APP, "--http", "httptools", "--port"]),
@@ -76,7 +76,7 @@ def listens(port: int) -> bool:
 
 
 def free_port() -> int:
-    """A port that nothing uses."""
+    """Return a port that is not in use."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
@@ -84,7 +84,7 @@ def free_port() -> int:
 
 
 def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None] | None:
-    """Return the seconds of each client at one server, or None if it cannot be installed."""
+    """Return the seconds until a server closes each client, or None if it cannot be installed."""
     with tempfile.TemporaryDirectory() as folder, (Path(folder) / "log").open("wb") as log:
         pip = [sys.executable, "-m", "pip", "install", "--quiet", "--target", folder]
         if packages and subprocess.run([*pip, *packages], stderr=log, check=False).returncode:
@@ -113,7 +113,7 @@ def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the table of all servers and clients."""
     columns = {name: found for name, how in SERVERS.items() if (found := probed(*how)) is not None}
     lines = [["a client that …", *columns], ["---"] * (1 + len(columns))]
     for client in CLIENTS:

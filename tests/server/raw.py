@@ -1,4 +1,4 @@
-"""Real processes of the service, and bare connections to them."""
+"""Start real processes of the service, and send raw bytes to them."""
 
 import contextlib
 import json
@@ -21,32 +21,32 @@ HEALTH = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
 
 
 def until(holds: Callable[[], bool]) -> None:
-    """Wait for a condition; the test's own timeout bounds that."""
+    """Wait until a condition holds, or until the test's own timeout."""
     while not holds():
         time.sleep(0.02)
 
 
 def preview(body: bytes = TEXT, *headers: bytes) -> bytes:
-    """A small request with a body, as it goes over the wire."""
+    """Return the bytes of a small request with a body."""
     lines = [b"POST /v1/preview HTTP/1.1", b"Host: x", b"Content-Length: %d" % len(body), *headers]
     return b"\r\n".join(lines) + b"\r\n\r\n" + body
 
 
 class Service:
-    """A process that serves, its log, and connections to it."""
+    """A running process of the service, with its log."""
 
     def __init__(self, process: "subprocess.Popen[bytes]", log: Path) -> None:
         self.process = process
         self._log = log
-        self.port = self._announced()
+        self.port = self._wait_for_port()
 
     @property
     def log(self) -> str:
-        """What it has written so far."""
+        """The text of the log so far."""
         return self._log.read_text(encoding="utf-8")
 
-    def _announced(self) -> int:
-        """Wait until it says where it listens; the test's own timeout bounds that."""
+    def _wait_for_port(self) -> int:
+        """Return the port from the log, as soon as the process has logged it."""
         while True:
             if found := re.search(r"running on http://\S+:(\d+)", self.log):
                 return int(found[1])
@@ -55,7 +55,7 @@ class Service:
             time.sleep(0.02)
 
     def connect(self, sent: bytes = b"", source: str = "127.0.0.1") -> socket.socket:
-        """A connection on which something has been sent; tries again until somebody listens."""
+        """Connect and send bytes; retry until a process listens."""
         end = time.monotonic() + ANSWER
         while True:
             try:
@@ -71,25 +71,25 @@ class Service:
                 return connection
 
     def ask(self, sent: bytes, source: str = "127.0.0.1") -> list["Answer"]:
-        """What comes back until the server hangs up, which it is asked to do."""
+        """Send bytes, close the sending end, and return all answers."""
         with self.connect(sent, source) as connection:
             connection.shutdown(socket.SHUT_WR)
             return answers(connection)
 
     def end(self) -> int:
-        """Ask it to end; the exit code."""
+        """Terminate the process; return its exit code."""
         self.process.terminate()
         return self.process.wait(timeout=ANSWER)
 
     def memory(self) -> float:
-        """The memory that it has, in MB."""
+        """Return the resident memory of the process in MB."""
         status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
         found = re.search(r"VmRSS:\s+(\d+)", status)
         return int(found[1]) / 1024 if found else float("nan")
 
 
 class Answer:
-    """One answer, taken apart."""
+    """The status, headers and body of one answer."""
 
     def __init__(self, head: bytes, body: bytes) -> None:
         line, *fields = head.decode("ascii").split("\r\n")
@@ -100,12 +100,12 @@ class Answer:
         self.body = body
 
     def json(self) -> Any:
-        """The body's value."""
+        """Return the body, parsed as JSON."""
         return json.loads(self.body)
 
 
 def received(connection: socket.socket) -> bytes:
-    """All that comes until the server hangs up."""
+    """Return all bytes that come until the server closes the connection."""
     parts = []
     with contextlib.suppress(ConnectionResetError):
         while part := connection.recv(65536):
@@ -114,7 +114,7 @@ def received(connection: socket.socket) -> bytes:
 
 
 def answers(connection: socket.socket) -> list[Answer]:
-    """All whole answers that come until the server hangs up. Fails where one is cut off."""
+    """Return all answers until the server closes the connection. Fails if one is incomplete."""
     stream, found = received(connection), []
     while stream:
         head, end, rest = stream.partition(b"\r\n\r\n")
@@ -130,7 +130,7 @@ def answers(connection: socket.socket) -> list[Answer]:
 def service(
     folder: Path, *options: str, module: str = "service", **settings: str
 ) -> Iterator[Service]:
-    """A process that serves on a free port, with its log in ``folder``."""
+    """Run the service on a free port, with its log in ``folder``."""
     log = folder / "log"
     command = [sys.executable, "-m", module, "serve", "--port", "0", *options]
     environment = os.environ | {"NO_COLOR": "1"} | settings

@@ -1,7 +1,7 @@
-"""A simulation of clients and one process: its time passes by the work that is done, and by waits.
+"""Simulate clients of one process on a simulated clock, which work and waiting advance.
 
-The event loop and the admission are the real ones, the clock is not: so waits are exact, however
-busy the machine is.
+The event loop and the admission are the real ones. So waiting times are exact, however busy the
+machine is.
 """
 
 import asyncio
@@ -22,7 +22,7 @@ WIRE = 0.0003
 
 
 class _Clock(selectors.SelectSelector):
-    """Waits for nothing: the time passes at once."""
+    """A selector that advances the simulated clock instead of waiting."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -34,9 +34,9 @@ class _Clock(selectors.SelectSelector):
 
 
 class Process:
-    """A process behind the admission, in which each request takes the time that it says.
+    """A simulated process with fair admission; each request says how long it takes.
 
-    A grading has checkpoints every ``step`` seconds, so it gives way after some of its steps.
+    A grading has a checkpoint every ``step`` seconds, at which it may be suspended.
     """
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, step: float = 0.001) -> None:
@@ -48,7 +48,7 @@ class Process:
         self._app = FairAdmission(self._work)
 
     def run(self, seconds: float, *clients: Coroutine[Any, Any, None]) -> None:
-        """Run the clients, as long as that."""
+        """Run the clients for a number of simulated seconds."""
 
         async def all_of_them() -> None:
             tasks = [asyncio.ensure_future(client) for client in clients]
@@ -76,13 +76,13 @@ class Process:
                 left -= self._step
 
     async def pause(self, seconds: float) -> None:
-        """Let so much time pass for one client."""
+        """Wait in one client for a number of simulated seconds."""
         await asyncio.sleep(seconds)
 
     async def ask(
         self, address: str, port: int, size: int, *costs: float, trusted: bool = False
     ) -> float:
-        """Send one request; how long its answer took."""
+        """Send one request; return the seconds until its answer."""
         asked = False
 
         async def receive() -> dict[str, Any]:

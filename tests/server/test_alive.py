@@ -1,4 +1,4 @@
-"""The question of the image whether the service answers."""
+"""The health check of the image."""
 
 import json
 import re
@@ -12,7 +12,7 @@ from service.server.alive import main
 from tests.server.raw import ROOT, service
 
 
-def test_it_follows_the_port_and_says_when_nobody_answers(
+def test_the_health_check_uses_the_port_and_fails_if_nobody_answers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("DH_GRADER_OPEN", "until-keys")
@@ -21,14 +21,14 @@ def test_it_follows_the_port_and_says_when_nobody_answers(
         for host in ("0.0.0.0", "127.0.0.1"):
             monkeypatch.setenv("DH_GRADER_HOST", host)
             assert main() == 0
-        assert subprocess.run(question(), cwd=ROOT, check=False).returncode == 0
+        assert subprocess.run(health_check(), cwd=ROOT, check=False).returncode == 0
         assert running.end() == 0
     assert main() == 1
-    assert subprocess.run(question(), cwd=ROOT, check=False).returncode == 1
+    assert subprocess.run(health_check(), cwd=ROOT, check=False).returncode == 1
 
 
-def question() -> list[str]:
-    """The command by which the image asks."""
+def health_check() -> list[str]:
+    """Return the command of the image's health check."""
     text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     [command] = re.findall(r"^HEALTHCHECK .*\\\n +CMD (\[.*\])$", text, re.MULTILINE)
     python, *options = json.loads(command)

@@ -1,4 +1,4 @@
-"""What clients wait beside each other, on the clock of a simulation."""
+"""How long clients wait for each other, in a simulation."""
 
 import itertools
 import random
@@ -19,7 +19,7 @@ WRONG = 10 * WRONG[:-1] + 9 * WRONG[-1:] + [0.050]
 
 
 def cost(choose: random.Random) -> float:
-    """What an answer of a student takes: half are wrong, one in seven of them in many places."""
+    """Return the seconds of a student's grading: half the answers are wrong, some in many cells."""
     right = choose.random() < 0.5
     return 0.001 if right else choose.choice([0.002, 0.003, 0.003, 0.004, 0.004, 0.006, 0.015])
 
@@ -27,9 +27,10 @@ def cost(choose: random.Random) -> float:
 def waits(
     monkeypatch: pytest.MonkeyPatch, pause: float, step: float, *attack: object, apart: bool = False
 ) -> Waits:
-    """The waits of six honest clients, in order; ``attack`` says who attacks and how.
+    """Return the sorted waiting times of six honest clients.
 
-    The honest ones are behind one address, or ``apart``.
+    ``attack`` holds the parameters of ``attacker``, if sixteen of them attack. The honest clients
+    share one address unless ``apart``.
     """
     process = Process(monkeypatch, step)
     ports = itertools.count(1000)
@@ -40,7 +41,7 @@ def waits(
         address = f"student {number}" if apart else "campus"
         for turn in itertools.count():
             seconds = await process.ask(address, number, 600, cost(choose))
-            # A connection that nobody has seen before has no credit.
+            # A new connection has no credit.
             found.extend([seconds] if turn else [])
             await process.pause(pause)
 
@@ -58,8 +59,8 @@ def waits(
 
 
 @pytest.mark.parametrize("apart", [False, True], ids=["one address", "six addresses"])
-@pytest.mark.parametrize("pause", [0.0, 0.1, 3.0], ids=["in a row", "now and then", "seldom"])
-def test_honest_clients_hardly_notice_costly_requests_on_sixteen_connections(
+@pytest.mark.parametrize("pause", [0.0, 0.1, 3.0], ids=["no pause", "short pause", "long pause"])
+def test_costly_requests_on_sixteen_connections_hardly_delay_honest_clients(
     monkeypatch: pytest.MonkeyPatch, pause: float, apart: bool
 ) -> None:
     quiet = waits(monkeypatch, pause, 0.004, apart=apart)
@@ -67,12 +68,12 @@ def test_honest_clients_hardly_notice_costly_requests_on_sixteen_connections(
         ("elsewhere", True, 1), ("elsewhere", False, 32), ("elsewhere {}", True, 1),
         ("elsewhere {}", False, 32), ("campus", True, 32), ("campus", False, 1),
     ):  # fmt: skip
-        beside = waits(monkeypatch, pause, 0.004, address, again, gradings, apart=apart)
-        times = beside[int(0.99 * len(beside))] / quiet[int(0.99 * len(quiet))]
-        assert times <= 5, (address, again, gradings, times)
+        attacked = waits(monkeypatch, pause, 0.004, address, again, gradings, apart=apart)
+        ratio = attacked[int(0.99 * len(attacked))] / quiet[int(0.99 * len(quiet))]
+        assert ratio <= 5, (address, again, gradings, ratio)
 
 
-def test_one_in_a_hundred_wrong_tables_on_eight_connections_waits_for_twenty_gradings(
+def test_99_percent_of_wrong_tables_on_eight_connections_wait_for_at_most_twenty_gradings(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     process = Process(monkeypatch, 0.002)

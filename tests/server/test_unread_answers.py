@@ -1,4 +1,4 @@
-"""Answers that nobody reads: what is kept of them counts as held by the client."""
+"""The bytes of unread answers count towards the limit of the client's connection."""
 
 import asyncio
 import contextlib
@@ -8,29 +8,29 @@ from typing import Any
 import uvicorn
 
 from service.server.connections.guarded_state import GuardedState
-from service.server.connections.open_connections import Crowd, Room
+from service.server.connections.open_connections import ConnectionLimits, OpenConnections
 from service.server.connections.protocol import GuardedProtocol
 from tests.server.raw import HEALTH
 
 MB = 1024 * 1024
 ANSWER = 8 * MB
-ROOM = 24 * MB
+LIMIT = 24 * MB
 
 
 async def large(_scope: Any, _receive: Any, send: Any) -> None:
-    """Give a large answer in one piece."""
+    """Send a large answer in one piece."""
     length = (b"content-length", str(ANSWER).encode())
     await send({"type": "http.response.start", "status": 200, "headers": [length]})
     await send({"type": "http.response.body", "body": bytes(ANSWER)})
 
 
-async def kept_of(clients: int, *, reading: bool) -> tuple[int, int]:
-    """The bytes that a process keeps of the answers to so many clients; how many stay connected."""
+async def unsent_to(clients: int, *, reading: bool) -> tuple[int, int]:
+    """Return the unsent bytes of the answers to ``clients``, and how many stay connected."""
     loop = asyncio.get_running_loop()
     config = uvicorn.Config(large, http=GuardedProtocol, ws="none", log_level="critical")
     config.load()
     state = GuardedState()
-    state.crowd = Crowd(Room(unfinished=ROOM))
+    state.open_connections = OpenConnections(ConnectionLimits(unfinished=LIMIT))
     server = await loop.create_server(lambda: GuardedProtocol(config, state, {}), "127.0.0.1", 0)
     address = server.sockets[0].getsockname()
     lines = [socket.socket() for _ in range(clients)]
@@ -45,8 +45,8 @@ async def kept_of(clients: int, *, reading: bool) -> tuple[int, int]:
                 got += len(await loop.sock_recv(line, MB))
             await asyncio.sleep(0.02)
         connections: Any = list(state.connections)
-        kept = sum(each._raw.get_write_buffer_size() for each in connections)
-        return kept, len(connections)
+        unsent = sum(each._raw.get_write_buffer_size() for each in connections)
+        return unsent, len(connections)
     finally:
         server.close()
         for line in lines:
@@ -57,11 +57,11 @@ async def kept_of(clients: int, *, reading: bool) -> tuple[int, int]:
         await asyncio.sleep(0)
 
 
-def test_answers_that_nobody_reads_have_their_bound() -> None:
-    kept, _ = asyncio.run(kept_of(12, reading=False))
-    # Of the last answer, as much as there is, before others make room for it.
-    assert ANSWER // 4 < kept <= ROOM + ANSWER
+def test_the_bytes_of_unread_answers_are_bounded() -> None:
+    unsent, _ = asyncio.run(unsent_to(12, reading=False))
+    # The last answer may exceed the limit until other connections have been closed.
+    assert ANSWER // 4 < unsent <= LIMIT + ANSWER
 
 
-def test_answers_that_are_read_are_held_against_nobody() -> None:
-    assert asyncio.run(kept_of(12, reading=True)) == (0, 12)
+def test_clients_that_read_their_answers_stay_connected() -> None:
+    assert asyncio.run(unsent_to(12, reading=True)) == (0, 12)

@@ -1,6 +1,6 @@
-"""The server stands on parts of uvicorn that no contract protects: each is named here and checked.
+"""Check the parts of uvicorn that the server uses although they are not documented.
 
-If one changes in a new version, this test names it, before a client meets it.
+If one of them changes in a new version, these tests name it.
 """
 
 import ast
@@ -22,7 +22,7 @@ from service.server.connections.protocol import GuardedProtocol
 from service.server.processes.process import Server
 from tests.together import together
 
-# Of each class of uvicorn: its methods with their parameters, and the attributes of its instances.
+# For each class of uvicorn: its methods with their parameters, and its instances' attributes.
 METHODS: dict[type, dict[str, list[str]]] = {
     HttpToolsProtocol: {
         "__init__": ["self", "config", "server_state", "app_state", "_loop"],
@@ -64,12 +64,12 @@ ATTRIBUTES: dict[type, set[str]] = {
 
 
 def tree_of(of: type) -> ast.AST:
-    """The syntax tree of a class."""
+    """Return the syntax tree of a class."""
     return ast.parse(textwrap.dedent(inspect.getsource(of)))
 
 
 def set_on_self(of: type) -> set[str]:
-    """The attributes that a class gives its instances, or names in its body."""
+    """Return the attributes that a class sets on its instances, or annotates in its body."""
     found = set()
     for node in ast.walk(tree_of(of)):
         match node:
@@ -83,7 +83,7 @@ def set_on_self(of: type) -> set[str]:
 
 
 def read_from(of: type, *owners: str) -> Iterator[str]:
-    """The names that a class reads from one of ``owners``: ``self.name``, ``self.cycle.name``."""
+    """Yield the attributes of ``owners`` that a class uses: ``name`` for ``self.name``."""
     for node in ast.walk(tree_of(of)):
         if isinstance(node, ast.Attribute) and ast.unparse(node.value) in owners:
             yield node.attr
@@ -91,29 +91,29 @@ def read_from(of: type, *owners: str) -> Iterator[str]:
 
 @cache
 def own_names(of: type) -> set[str]:
-    """What a class of this project defines itself."""
+    """Return the attributes that a class of this project defines itself."""
     return set(vars(of)) | (set_on_self(of) - ATTRIBUTES[of.__mro__[1]])
 
 
 @together("of", METHODS)
-def test_the_methods_are_there_with_their_parameters(of: type) -> None:
+def test_uvicorn_has_the_methods_with_their_parameters(of: type) -> None:
     for name, parameters in METHODS[of].items():
         assert list(inspect.signature(getattr(of, name)).parameters) == parameters, name
 
 
 @together("of", ATTRIBUTES)
-def test_the_attributes_are_there(of: type) -> None:
+def test_uvicorn_has_the_attributes(of: type) -> None:
     assert ATTRIBUTES[of] - set_on_self(of) == set()
 
 
 @together("of", [GuardedProtocol, Valve, Server])
-def test_nothing_else_of_uvicorn_is_used(of: type) -> None:
+def test_no_other_part_of_uvicorn_is_used(of: type) -> None:
     base = of.__mro__[1]
     named = METHODS[base].keys() | ATTRIBUTES[base] | own_names(of)
     assert set(read_from(of, "self", "super()")) - named == set()
 
 
-def test_nothing_else_of_a_cycle_or_of_the_state_is_used() -> None:
+def test_no_other_attribute_of_a_cycle_or_of_the_state_is_used() -> None:
     used = set(read_from(GuardedProtocol, "self.cycle", "cycle"))
     assert used == ATTRIBUTES[RequestResponseCycle]
     for of in (GuardedProtocol, Server):
@@ -121,6 +121,6 @@ def test_nothing_else_of_a_cycle_or_of_the_state_is_used() -> None:
         assert used <= ATTRIBUTES[ServerState] | set(vars(GuardedState)) | set_on_self(GuardedState)
 
 
-def test_a_cycle_s_event_wakes_the_application() -> None:
+def test_the_event_of_a_cycle_is_an_asyncio_event() -> None:
     annotation: Any = inspect.signature(RequestResponseCycle.__init__).parameters["message_event"]
     assert annotation.annotation in (asyncio.Event, "asyncio.Event")

@@ -1,1 +1,1 @@
-"""A search for the costliest request: what an attacker would find who has the code."""
+"""Search for the costliest requests, as an attacker with access to the code could."""

@@ -1,6 +1,6 @@
-"""`python -m tests.worst --minutes 10`: the costliest bodies that a search finds and their stages.
+"""`python -m tests.worst --minutes 10`: search for the costliest bodies, and print their stages.
 
-Exit code 1 where one costs more than 400 times the plain-numpy floor of the benchmarks.
+Exit with 1 if a body costs more than 400 times the plain-numpy floor of the benchmarks.
 """
 
 import argparse
@@ -19,7 +19,7 @@ PROMISED = 400
 
 
 def line_of(found: Found, target: Target) -> str:
-    """The cost, the stages and the beginning of a body."""
+    """Return the cost, the stages and the beginning of a body as one line."""
     stages = Stages()
 
     def action() -> None:
@@ -41,7 +41,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--entry", default="", choices=("", *ENTRIES))
-    parser.add_argument("--exercise", default="", help="only exercises whose id begins so")
+    parser.add_argument("--exercise", default="", help="only exercises whose id begins with this")
     parser.add_argument("--most", type=int, default=5, help="bodies of each entry point")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write the bodies here")
     options = parser.parse_args()

@@ -1,4 +1,4 @@
-"""The bodies that were costliest once, by name."""
+"""The costliest bodies found so far, by name."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -19,7 +19,7 @@ from tests.worst.seeds import (
 ARM: Final = "stanford-arm"
 
 
-# Names that are not typed as the symbols that they stand for.
+# Shorthand, which differs from the symbols that it means.
 _SUMS = [["c12 " * 33 + f"+{4 * i + j}" for j in range(4)] for i in range(12)]
 
 

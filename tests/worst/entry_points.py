@@ -1,4 +1,4 @@
-"""The ways into the program, each called with the bytes of a body and measured cold."""
+"""The entry points of the program, called with a body and measured with empty caches."""
 
 import asyncio
 import gc
@@ -43,9 +43,9 @@ _CACHES = (
 
 @dataclass(frozen=True)
 class Attack:
-    """One request: where it goes, the exercise in its path, and its body.
+    """One request: its entry point, the exercise in its path, and its body.
 
-    That of an attempt gets a learner of its own whenever it is sent.
+    Each time an attempt is sent, it has a new learner.
     """
 
     entry: str
@@ -54,18 +54,18 @@ class Attack:
 
     @cached_property
     def content(self) -> bytes:
-        """The body as it is sent."""
+        """The body as bytes."""
         return json.dumps(self.body, ensure_ascii=False).encode("utf-8", "replace")
 
 
 def forget() -> None:
-    """Empty what is remembered of texts: an attacker writes another digit into each body."""
+    """Empty the caches of texts, because an attacker would change each body slightly."""
     for cache in _CACHES:
         cache.cache_clear()
 
 
 def floor_seconds() -> float:
-    """The plain-numpy floor of the benchmarks, in processor time."""
+    """Measure the processor time of the plain-numpy floor of the benchmarks."""
     times = []
     for _ in range(20):
         start = time.process_time()
@@ -86,22 +86,22 @@ class Target:
         self._store.start()
         self._learners = itertools.count()
         self._app: FastAPI = application(exercises, store=self._store)
-        # As the service does at its start.
+        # The service does this at its start.
         gc.collect()
         gc.freeze()
 
     def close(self) -> None:
-        """Drop the loop, the store and the folder."""
+        """Close the loop and the store, and remove the folder."""
         self._loop.close()
         self._store.close()
         self._folder.cleanup()
 
     def answer(self, attack: Attack) -> int:
-        """Send it; the status of the answer, 200 or 201 where the body was accepted."""
+        """Send a request; return the status, which is 200 or 201 if the body was accepted."""
         return self._action(attack)()
 
     def seconds(self, attack: Attack, rounds: int = 2) -> tuple[float, int]:
-        """The least processor time of so many cold answers, and their status."""
+        """Return the least processor time of some answers with empty caches, and their status."""
         action = self._action(attack)
         best, status = float("inf"), 0
         for _ in range(rounds):
@@ -124,7 +124,7 @@ class Target:
         return lambda: self._loop.run_until_complete(self._posted(url, content))
 
     async def _recorded(self, exercise: str, content: bytes) -> int:
-        # Who has tried too often would be refused.
+        # A learner with too many attempts would be refused.
         learner = b'{"learner": "l%d", ' % next(self._learners)
         return await self._posted(f"/v1/exercises/{exercise}/attempts", learner + content[1:])
 
@@ -149,7 +149,7 @@ class Target:
         return status
 
     def _file(self, path: Path, exercise: str) -> int:
-        """As `dh-grader grade` does with a file, told as text."""
+        """Grade a file as `dh-grader grade` does, with the report as text."""
         terms = GradingTerms(of_one(self.exercises[exercise]), pass_mark=0.8)
         [handed_in] = all_handed_in([path])
         submission = graded(handed_in, terms)

@@ -1,4 +1,4 @@
-"""The exercises that may be attacked: the shipped ones, and others that a tutor may write."""
+"""The exercises of the search: the shipped ones, and others that a tutor might write."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -8,12 +8,12 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, exercise
 from tests.shipped import shipped_exercises
 
-# Of the robots that are shipped as no exercise, those with the most joints.
+# Robots that are in no shipped exercise are used if they have this many joints.
 _JOINTS = 6
 
 
 def exercises() -> Mapping[str, Exercise]:
-    """All exercises by id; of those with a table, also one that may be in either convention."""
+    """Return all exercises by id; those with a table also as a variant for both conventions."""
     shipped = shipped_exercises()
     return {**shipped, **dict(_either(shipped)), **dict(_robots())}
 

@@ -1,4 +1,4 @@
-"""Small changes of a body: what an attacker would try next."""
+"""Change bodies at random, as an attacker would."""
 
 import copy
 import json
@@ -10,7 +10,7 @@ from typing import Any
 from tests.grids.writers import FORMATS
 from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
 
-# A step from a list or object to what stands in it.
+# A list or object, and the index or key of one of its items.
 Place = tuple[Any, Any]
 
 PIECES = (
@@ -28,12 +28,12 @@ WRAPS = (
 LENGTHS = (60, 120, 240, 250, 480, 500, 900, 1000, 1500, 2000, 4000, 7900, 15_000, 25_000)
 HUGE = (60_000, 240_000)
 LONGEST = 260_000
-# What is changed in a body that holds no answers; that of frames stands in its table.
+# The field that is changed in a body without answers; that of frames is in its table.
 _ONLY = {PREVIEWS: "entries", FRAMES: "rows"}
 
 
 class Mutator:
-    """Changes bodies; ``cells`` are texts to put in."""
+    """Changes bodies at random; ``cells`` are texts to insert."""
 
     def __init__(self, choose: random.Random, cells: Sequence[str]) -> None:
         self._choose = choose
@@ -44,13 +44,13 @@ class Mutator:
         )  # fmt: skip
 
     def mutated(self, attack: Attack, others: Sequence[Attack]) -> Attack:
-        """A body a few steps away; ``others`` lend their parts."""
+        """Return a body changed in a few steps, which may copy parts of ``others``."""
         body = copy.deepcopy(dict(attack.body))
         for _ in range(self._choose.choice((1, 1, 1, 2, 3))):
             if attack.entry == PREVIEW:
                 body["text"] = self._text(body["text"])
             elif attack.entry in _ONLY:
-                # Nothing of others fits there.
+                # Parts of other bodies do not fit here.
                 holder = body["table"] if attack.entry == FRAMES else body
                 only = {_ONLY[attack.entry]: holder[_ONLY[attack.entry]]}
                 self._answers(only, {})
@@ -109,7 +109,7 @@ class Mutator:
                 value[key] = self._text(found if isinstance(found, str) else json.dumps(found))
 
     def _spread_leaf(self, answers: Any) -> None:
-        """A cell copied to all cells of a part, or of a row, each a little different."""
+        """Copy a cell to all cells of a part or of a row, each time slightly changed."""
         place = self._leaf(answers)
         if place is None:
             return
@@ -143,7 +143,7 @@ class Mutator:
                 )
 
     def _pasted(self, answers: Any) -> None:
-        """A part as one pasted text, in some format."""
+        """Replace a part by one pasted text in a random format."""
         part = self._choose.choice(list(answers))
         answer = answers[part]
         rows = answer.get("rows") if isinstance(answer, dict) else answer
@@ -158,7 +158,7 @@ class Mutator:
         answers[part] = write([[str(cell) for cell in row] for row in rows])
 
     def _numbers_everywhere(self, answers: Any) -> None:
-        """Numbers of three figures in many cells."""
+        """Put numbers with three digits into many cells."""
         share = self._choose.choice((0.2, 0.6, 1.0))
         for value, key in list(self._leaves(answers)):
             if self._choose.random() < share:

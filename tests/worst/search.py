@@ -1,4 +1,4 @@
-"""Evolution of bodies: the costliest live on and are changed."""
+"""Evolutionary search: keep the costliest bodies, and change them at random."""
 
 import random
 import time
@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from tests.worst.entry_points import Attack, Target, floor_seconds
 from tests.worst.mutations import Mutator
 
-# So many of the costliest bodies of an entry point and exercise are kept.
+# The number of bodies kept for each entry point and exercise.
 KEPT = 6
 FLOOR_AFTER = 200
-# A body that costs so much less than the cheapest kept one is not tried twice.
+# A body below this share of the cheapest kept one is not measured again.
 NEARLY = 0.8
 
 
@@ -37,14 +37,14 @@ class Search:
         self._floor = floor_seconds()
 
     def measured(self, attack: Attack, rounds: int = 2) -> Found:
-        """The body with its cost."""
+        """Return the body with its cost."""
         if rounds > 1:
             self._floor = floor_seconds()
         seconds, status = self._target.seconds(attack, rounds)
         return Found(seconds / self._floor, attack, status)
 
     def tried_out(self, attack: Attack) -> None:
-        """Measure a body, and keep it where it is among the costliest."""
+        """Measure a body, and keep it if it is one of the costliest."""
         self.tried += 1
         if self.tried % FLOOR_AFTER == 0:
             self._floor = floor_seconds()
@@ -78,7 +78,7 @@ class Search:
             self.tried_out(self._mutator.mutated(parent.attack, others))
 
     def _place(self) -> tuple[str, str]:
-        """An entry point, and an exercise of it: mostly one of those with the costliest bodies."""
+        """Return a random entry point and exercise, often one with a costly body."""
         entries = sorted({entry for entry, _ in self.kept})
         entry = self._choose.choice(entries)
         places = [place for place in self.kept if place[0] == entry and self.kept[place]]
@@ -88,6 +88,6 @@ class Search:
         return places[min(int(self._choose.expovariate(0.35)), len(places) - 1)]
 
     def costliest(self, entry: str, most: int) -> list[Found]:
-        """The costliest bodies of an entry point, the costliest of each exercise first."""
+        """Return the costliest body of each exercise at an entry point, the costliest first."""
         found = [kept[0] for (name, _), kept in self.kept.items() if name == entry and kept]
         return sorted(found, key=lambda each: -each.ratio)[:most]

@@ -1,4 +1,4 @@
-"""Where the search begins: the bodies that are known to be costly, and what tutors wrote."""
+"""The first bodies of the search: known costly ones, and the checks of exercises."""
 
 import random
 from collections.abc import Iterator, Mapping
@@ -14,23 +14,23 @@ LONG_TABLE = ["=", "=", "=", {}, "=", ["0^-1", "sqrt(q1)", "theta1", "atan2(0,0)
 
 
 def halves(i: int, runs: int = 6) -> str:
-    """A text that nearly repairs; ``i`` makes another of it."""
+    """Return an unreadable text that a repair nearly fits; it differs for each ``i``."""
     return "//".join([HALVES] * runs) + str(i)
 
 
 def grid(rows: int, columns: int, runs: int = 6) -> list[list[str]]:
-    """A matrix of such texts."""
+    """Return a matrix of the texts that ``halves`` returns."""
     return [[halves(columns * i + j, runs) for j in range(columns)] for i in range(rows)]
 
 
 def padded(rows: int, size: int = 16_000, pad: str = "$") -> str:
-    """A pasted matrix of four columns, with much behind it that means nothing."""
+    """Return a pasted matrix of four columns, followed by many meaningless characters."""
     lines = [", ".join(f"c{(i + j) % 3 + 1}" for j in range(4)) for i in range(rows)]
     return "\n".join(lines) + "\n" + pad * (size - sum(map(len, lines)) - rows)
 
 
 def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]]:
-    """Link transforms in which each entry is this text; ``number`` makes others of them."""
+    """Return link transforms whose entries contain a text; they differ for each ``number``."""
     return [
         [[f"{text}+{1000 * number + 16 * k + 4 * i + j}" for j in range(4)] for i in range(4)]
         for k in range(links)
@@ -38,15 +38,15 @@ def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]
 
 
 def previews_of(exercise: str, part: str, text: str) -> Attack:
-    """As many entries to preview as one request may have."""
+    """Return a request with as many previews as allowed."""
     entries = [{"text": f"{text}+{i}", "quantity": "length"} for i in range(192)]
     return Attack(PREVIEWS, exercise, {"exercise": exercise, "part": part, "entries": entries})
 
 
 def frames_of(exercise: str, joints: int, text: str) -> Attack:
-    """A table of long cells and the mechanism, in as many pictures as one request may have.
+    """Return a request for the frames of a table with long cells, and for a figure.
 
-    The first is drawn.
+    It has as many sets of joint values as allowed.
     """
     rows = [dict.fromkeys(KEYS[:3], f"{text}+{i}") | {"theta": f"q{i + 1}"} for i in range(joints)]
     values = [[0.1 * k + 0.01 * i for i in range(joints)] for k in range(30)]
@@ -55,10 +55,10 @@ def frames_of(exercise: str, joints: int, text: str) -> Attack:
 
 
 def free_frames_of(exercise: str, text: str, **other: object) -> Attack:
-    """A free table of long cells with its formulas and its figure, in as many pictures as may be.
+    """Return a request for the frames, formulas and figure of a free table with long cells.
 
-    It is of no exercise: ``exercise`` is where the search keeps it. ``other`` are more of its
-    fields.
+    It belongs to no exercise: ``exercise`` is only its place in the search. ``other`` are further
+    fields of the body.
     """
     rows = [
         {key: f"{text}+{3 * i + j}" for j, key in enumerate(KEYS[:3])} | {"theta": f"q{i + 1}"}
@@ -70,12 +70,12 @@ def free_frames_of(exercise: str, text: str, **other: object) -> Attack:
 
 
 def garbage_table(rows: int, choose: random.Random) -> list[list[str]]:
-    """Rows of cells that are read, mean nothing, and have three figures."""
+    """Return rows of random numbers with three digits."""
     return [[f"{choose.uniform(-3, 3):.3g}" for _ in KEYS] for _ in range(rows)]
 
 
 def cells() -> list[str]:
-    """Cells to put anywhere: every text of the corpora, and known costly ones."""
+    """Return texts for cells: all texts of the corpora, and known costly ones."""
     return [
         *seeds(), *hostile(), HALVES, halves(0), "//" * 200, "=", "sqrt(q1)", "0^-1", "atan2(0,0)",
         "½" * 240, "(" * 120, "x" * 240, "q9 " * 80, "sin" * 80, "1,5 " * 60, "θ₁" * 100, "$" * 240,
@@ -85,13 +85,13 @@ def cells() -> list[str]:
 
 
 def answers_of(exercise: Exercise) -> Iterator[dict[str, Any]]:
-    """The answers that the exercise's own checks hand in."""
+    """Yield the answers of the checks in the exercise file."""
     for check in exercise.checks:
         yield dict(check.answers)
 
 
 def _spread(exercise: Exercise, choose: random.Random) -> Iterator[dict[str, Any]]:
-    """Known costly answers, to each part that may take them."""
+    """Yield known costly answers to the parts that accept them."""
     tables, matrices, links = {}, {}, {}
     joints = max(len(exercise.joints), 3)
     for part in exercise.parts:
@@ -119,7 +119,7 @@ def _free_frames(name: str) -> Iterator[Attack]:
     for text in ("sin(30)" * 60, "a1 " * 60, "c12 " * 30, "√2 " * 30, "a1", halves(0)):
         for convention in ("standard", "modified"):
             yield free_frames_of(name, text, convention=convention)
-    # The longest poses that are printed at all.
+    # The longest poses that are still printed.
     for cell in ("alpha1", "cos(theta1)", "sin(30)" * 20):
         for count in range(2, 6):
             rows = [["a1", cell, "d1", f"q{i + 1}"] for i in range(count)]
@@ -127,7 +127,7 @@ def _free_frames(name: str) -> Iterator[Attack]:
 
 
 def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
-    """The first bodies of the search."""
+    """Yield the first bodies of the search."""
     choose = random.Random(seed)
     for name, exercise in exercises.items():
         bodies = [*answers_of(exercise), *(each for each in _spread(exercise, choose) if each)]

@@ -1,11 +1,11 @@
-"""Where the time of a request goes, by looking at the stack a thousand times a second."""
+"""A sampling profiler: find the stages that take the time of a request."""
 
 import signal
 from collections import Counter
 from collections.abc import Callable
 from types import FrameType
 
-# The first of these that stands anywhere in the stack names the stage.
+# The first of these that is found in the stack names the stage.
 _STAGES = (
     ("service/expressions/repairs/", "repairs"),
     ("service/grading/diagnosis/", "diagnosis"),
@@ -30,7 +30,7 @@ def _path(frame: FrameType) -> str:
 
 
 def _stage(frame: FrameType | None) -> tuple[str, str]:
-    """The stage, and the innermost function of the service."""
+    """Return the stage, and the innermost function of the service."""
     paths: list[str] = []
     innermost = ""
     follows = False
@@ -50,14 +50,14 @@ def _stage(frame: FrameType | None) -> tuple[str, str]:
 
 
 class Stages:
-    """The shares of the stages and of the innermost functions in what is called."""
+    """Counts samples by stage and by innermost function."""
 
     def __init__(self) -> None:
         self.stages: Counter[str] = Counter()
         self.functions: Counter[str] = Counter()
 
     def watch(self, action: Callable[[], object], rounds: int = 3) -> None:
-        """Call ``action`` so often and look at the stack meanwhile."""
+        """Call ``action`` for ``rounds`` times, and take samples of the stack meanwhile."""
 
         def look(_: int, frame: FrameType | None) -> None:
             stage, function = _stage(frame)
@@ -74,7 +74,7 @@ class Stages:
             signal.signal(signal.SIGPROF, before)
 
     def line(self, most: int = 3) -> str:
-        """The largest shares in words."""
+        """Return the largest shares as one line."""
         return "; ".join(
             ", ".join(f"{name} {count / (counts.total() or 1):.0%}" for name, count in largest)
             for counts in (self.stages, self.functions)

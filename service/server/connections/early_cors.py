@@ -1,4 +1,4 @@
-"""Leave for pages of other sites to read what is answered before the application has a say."""
+"""CORS headers for requests that are refused before they reach the application."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -10,15 +10,15 @@ _ORIGIN: Final = re.compile(rb"\r\nOrigin:[ \t]*([^\r\n]*?)[ \t]*\r\n", re.IGNOR
 
 
 def origin_in(head: bytes) -> str:
-    """The origin that a head names, which may be cut off or no head; empty where it names none."""
+    """Return the origin in the head of a request, which may be incomplete or invalid, or ""."""
     found = _ORIGIN.search(head)
     return found[1].decode("latin-1") if found else ""
 
 
-def leave_to_read(origins: Sequence[str], origin: str) -> Mapping[str, str]:
-    """The headers that let a page read the answer if it is of one of ``origins``.
+def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
+    """Return the headers that let a page of ``origin`` read the answer if ``origins`` has it.
 
-    Where the request was refused before its ``origin`` came, the only one there is, is meant.
+    If the request was refused before its ``origin`` was read, the only one of ``origins`` is used.
     """
     if "*" in origins:
         allowed = "*"

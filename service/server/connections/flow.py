@@ -1,4 +1,4 @@
-"""Flow of bytes: when a connection reads, and how it closes."""
+"""Flow control: when a connection reads, and how it closes."""
 
 import asyncio
 from typing import Any
@@ -18,21 +18,21 @@ class LingeringTransport:
 
 
 class Valve(FlowControl):
-    """Flow control that uvicorn cannot reopen while the next request has to wait."""
+    """Flow control that uvicorn cannot resume while the next request has to wait."""
 
     shut = False
 
     def resume_reading(self) -> None:
-        """Read on, unless the next request has to wait."""
+        """Resume reading, unless the next request has to wait."""
         if not self.shut:
             super().resume_reading()
 
     def hold(self) -> None:
-        """Read nothing until ``release``."""
+        """Pause reading until ``release``."""
         self.shut = True
         self.pause_reading()
 
     def release(self) -> None:
-        """Read on."""
+        """Resume reading."""
         self.shut = False
         self.resume_reading()

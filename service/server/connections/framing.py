@@ -1,8 +1,8 @@
-"""Cutting what comes in over a connection into pieces that never reach beyond one request.
+"""Cut the bytes of a connection into pieces that each belong to one request.
 
-The parser reads on as long as it is given bytes, remembers a head of any size, and begins the next
-request of a pipeline before the last is answered. So it is given no more than it should read. It
-alone judges whether the pieces are right: this only looks for where they end (RFC 9112).
+The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
+a pipeline before the last is answered. So it gets only as much as it should read now. The parser
+alone decides whether the pieces are valid; this module only finds where they end (RFC 9112).
 """
 
 import re
@@ -10,14 +10,14 @@ from enum import Enum, auto
 from typing import Final
 
 from service.server.limits import MAX_FRAME, MAX_HEADERS, MAX_URL
-from service.server.refusals import large_frame, long_address, malformed, many_headers
+from service.server.refusals import large_frame, long_address, malformed, too_many_headers
 
 _END: Final = b"\r\n"
 _BARE_NEWLINE: Final = re.compile(rb"(?<!\r)\n")
 _CHUNK_SIZE: Final = re.compile(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
-# A line of a chunked body counts as this many bytes at least: each costs work, however short it is.
+# The least number of bytes that a line of a chunked body counts: even a short line costs work.
 _LEAST_LINE: Final = 64
-# Method and version beside the address.
+# The most bytes of a request line besides its address: the method and the version.
 _REST_OF_LINE: Final = 64
 
 
@@ -30,49 +30,53 @@ class _Expected(Enum):
 
 
 class Framing:
-    """The requests of one connection, piece by piece; ``whole`` once the last piece is out."""
+    """Cuts the requests of one connection into pieces.
+
+    ``whole`` is True once the last piece of a request has been returned; ``content`` is the number
+    of bytes of its body so far.
+    """
 
     def __init__(self) -> None:
-        self._came = bytearray()
+        self._buffer = bytearray()
         self._expected = _Expected.HEAD
-        # Bytes that are still to come of the body, or of a chunk and its line end.
+        # Bytes still missing from the body, or from a chunk and its line end.
         self._left = 0
-        # Bytes of the request that are no content.
-        self._frame = 0
+        # Bytes of the request that are not content.
+        self._overhead = 0
         self._searched = 0
         self.content = 0
         self.whole = False
 
     def __len__(self) -> int:
-        """How many bytes have come and are in no piece yet."""
-        return len(self._came)
+        """The number of bytes received that are in no piece yet."""
+        return len(self._buffer)
 
     @property
-    def came(self) -> bytes:
-        """What has come and is in no piece yet."""
-        return bytes(self._came)
+    def pending(self) -> bytes:
+        """The bytes received that are in no piece yet."""
+        return bytes(self._buffer)
 
     @property
     def begun(self) -> bool:
-        """Whether anything of a request has come."""
-        return self._expected is not _Expected.HEAD or len(self._came) > 0
+        """True if any byte of a request has been received."""
+        return self._expected is not _Expected.HEAD or len(self._buffer) > 0
 
     @property
     def in_head(self) -> bool:
-        """Whether the head is still incomplete."""
+        """True if the head is still incomplete."""
         return self._expected is _Expected.HEAD and not self.whole
 
     def receive(self, data: bytes) -> None:
-        """Take what has come."""
-        self._came += data
+        """Add received bytes."""
+        self._buffer += data
 
     def start_next(self) -> None:
-        """Go on to the next request of the connection."""
-        self._expected, self._frame, self._searched = _Expected.HEAD, 0, 0
+        """Begin with the next request of the connection."""
+        self._expected, self._overhead, self._searched = _Expected.HEAD, 0, 0
         self.content, self.whole = 0, False
 
     def expect_body(self, length: int | None) -> None:
-        """Say, after the head, how long the body is; None where it comes in chunks."""
+        """Set the length of the body, after its head; None if it comes in chunks."""
         if length is None:
             self._expected = _Expected.CHUNK_SIZE
         else:
@@ -80,20 +84,20 @@ class Framing:
             self.whole = length == 0
 
     def piece(self) -> bytes | None:
-        """The next piece for the parser, or None where more has to come first.
+        """Return the next piece for the parser, or None if more bytes are needed first.
 
-        Raises ProblemError where the frame is too large, or is none.
+        Raises ProblemError if the head, a chunk size or a trailer is too large or invalid.
         """
         match self._expected:
             case _Expected.HEAD:
                 return self._head()
             case _Expected.BODY:
-                piece = self._some()
+                piece = self._part_of_body()
                 self.whole = self._left == 0
             case _Expected.CHUNK_SIZE:
                 return self._chunk_size()
             case _Expected.CHUNK:
-                piece = self._some()
+                piece = self._part_of_body()
                 if self._left == 0:
                     self._expected = _Expected.CHUNK_SIZE
             case _:
@@ -102,26 +106,26 @@ class Framing:
         return piece
 
     def _head(self) -> bytes | None:
-        came = self._came
-        if not came[:2].strip(b"\r\n"):
-            # An empty line before a request is to be ignored.
-            self._spend(len(came) - len(came.lstrip(b"\r\n")))
-            self._came = came = came.lstrip(b"\r\n")
-        if came and not 65 <= came[0] <= 90:
+        pending = self._buffer
+        if not pending[:2].strip(b"\r\n"):
+            # Empty lines before a request are ignored.
+            self._count_overhead(len(pending) - len(pending.lstrip(b"\r\n")))
+            self._buffer = pending = pending.lstrip(b"\r\n")
+        if pending and not 65 <= pending[0] <= 90:
             raise malformed("The request does not begin with a method, such as GET.")
-        end = came.find(b"\r\n\r\n", max(self._searched - 3, 0))
-        if _BARE_NEWLINE.search(came, self._searched, len(came) if end < 0 else end):
+        end = pending.find(b"\r\n\r\n", max(self._searched - 3, 0))
+        if _BARE_NEWLINE.search(pending, self._searched, len(pending) if end < 0 else end):
             raise malformed("A line of the head ends without a carriage return.")
-        self._searched = len(came)
-        size = len(came) if end < 0 else end + 4
-        self._check_line(came[: MAX_URL + _REST_OF_LINE + 1])
-        if self._frame + size > MAX_FRAME:
+        self._searched = len(pending)
+        size = len(pending) if end < 0 else end + 4
+        self._check_line(pending[: MAX_URL + _REST_OF_LINE + 1])
+        if self._overhead + size > MAX_FRAME:
             raise large_frame("The head of a request may hold 64 kB; this one is larger.")
         if end < 0:
             return None
-        if came.count(_END, 0, end + 2) > MAX_HEADERS + 1:
-            raise many_headers()
-        self._spend(size)
+        if pending.count(_END, 0, end + 2) > MAX_HEADERS + 1:
+            raise too_many_headers()
+        self._count_overhead(size)
         return self._take(size)
 
     def _check_line(self, begin: bytearray) -> None:
@@ -146,27 +150,27 @@ class Framing:
         return line
 
     def _line(self) -> bytes | None:
-        end = self._came.find(_END, max(self._searched - 1, 0))
-        size = len(self._came) if end < 0 else end + 2
-        if self._frame + size > MAX_FRAME:
+        end = self._buffer.find(_END, max(self._searched - 1, 0))
+        size = len(self._buffer) if end < 0 else end + 2
+        if self._overhead + size > MAX_FRAME:
             raise large_frame("Sizes of chunks and trailers may hold 64 kB; these are larger.")
         if end < 0:
             self._searched = size
             return None
-        self._spend(max(size, _LEAST_LINE))
+        self._count_overhead(max(size, _LEAST_LINE))
         return self._take(size)
 
-    def _some(self) -> bytes | None:
-        piece = self._take(min(self._left, len(self._came)))
+    def _part_of_body(self) -> bytes | None:
+        piece = self._take(min(self._left, len(self._buffer)))
         self._left -= len(piece)
         self.content += len(piece)
         return piece or None
 
     def _take(self, size: int) -> bytes:
-        piece = bytes(self._came[:size])
-        del self._came[:size]
+        piece = bytes(self._buffer[:size])
+        del self._buffer[:size]
         self._searched = 0
         return piece
 
-    def _spend(self, size: int) -> None:
-        self._frame += size
+    def _count_overhead(self, size: int) -> None:
+        self._overhead += size

@@ -1,4 +1,4 @@
-"""What all connections of a server share, and the refusals that the application does not see."""
+"""The state that all connections of a server share; it also answers refused requests."""
 
 from collections.abc import Sequence
 
@@ -8,30 +8,30 @@ from uvicorn.server import ServerState
 
 from service.api.http.problems import ProblemError
 from service.api.monitor import Monitor
-from service.server.connections.early_cors import leave_to_read
-from service.server.connections.open_connections import Crowd, room_here
-from service.server.refusals import named
+from service.server.connections.early_cors import cors_headers
+from service.server.connections.open_connections import OpenConnections, allowed_here
+from service.server.refusals import refusal_response
 
 
 class GuardedState(ServerState):
-    """What all connections of a server share; pages of ``origins`` may read refusals, too."""
+    """The state that all connections of a server share. Pages of ``origins`` may read refusals."""
 
     def __init__(self, origins: Sequence[str] = (), monitor: Monitor | None = None) -> None:
         super().__init__()
-        self.crowd = Crowd(room_here())
+        self.open_connections = OpenConnections(allowed_here())
         self._origins = origins
         self._monitor = monitor
 
     def note_refusal(self, answer: str) -> None:
-        """Count a request, or a connection, that is refused with this answer."""
+        """Count a refused request or connection; ``answer`` is the status code, or "none"."""
         if self._monitor is not None:
             self._monitor.refused(answer)
 
     def refusal(
         self, problem: ProblemError, path: str, origin: str, headers: Headers | None = None
     ) -> Response:
-        """The answer to a request of a page of ``origin``, which is counted."""
+        """Count a refused request; return the answer for it, which a page of ``origin`` sent."""
         self.note_refusal(str(problem.status.value))
-        answer = named(problem, path, headers)
-        answer.headers.update(leave_to_read(self._origins, origin))
+        answer = refusal_response(problem, path, headers)
+        answer.headers.update(cors_headers(self._origins, origin))
         return answer

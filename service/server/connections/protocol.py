@@ -1,7 +1,7 @@
-"""HTTP/1.1 with limits: uvicorn's protocol, fed one request at a time and only as much as it may.
+"""HTTP/1.1 with limits: uvicorn's protocol, which gets one request at a time.
 
-uvicorn's own reads a head of any size, waits for its end for ever, and reads on while a pipeline of
-requests is being answered.
+uvicorn's own protocol reads a head of any size, waits for its end for ever, and reads on while a
+pipeline of requests is being answered.
 """
 
 import asyncio
@@ -26,29 +26,29 @@ from service.server.connections.early_cors import origin_in
 from service.server.connections.flow import LingeringTransport, Valve
 from service.server.connections.framing import Framing
 from service.server.connections.guarded_state import GuardedState
-from service.server.connections.open_connections import Crowd
+from service.server.connections.open_connections import OpenConnections
 from service.server.limits import (
-    HEAD_PATIENCE,
+    HEAD_TIMEOUT,
     HEALTH,
     LINGER,
     MAX_DISCARDED,
     MAX_UNREAD,
-    PATIENCE,
+    TIMEOUT,
 )
 from service.server.refusals import late, malformed, too_busy
 from service.submissions.strict_json import MAX_BODY_SIZE
 
-# A server may ignore the wish for another protocol (RFC 9110, 7.8). The parser would stop at it.
+# A server may ignore an Upgrade header (RFC 9110, 7.8). The parser would stop at it.
 _UPGRADE: Final = re.compile(rb"\r\n(?=upgrade:)", re.IGNORECASE)
 _HOST: Final = re.compile(rb"\r\nhost[ \t]*:", re.IGNORECASE)
-# The parser takes zeros before a length by the thousand; int() refuses more than 4,300 digits.
+# The parser accepts thousands of leading zeros; int() refuses more than 4,300 digits.
 _LONG_LENGTH: Final = re.compile(rb"\r\ncontent-length:[ \t]*[0-9]{20}", re.IGNORECASE)
-# Whether to linger, and for how many seconds: a close is then a reset.
-_AT_ONCE: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
+# The value of SO_LINGER with which closing a socket resets the connection: on, for 0 seconds.
+_NO_LINGER: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
 
 
 class GuardedProtocol(HttpToolsProtocol):
-    """One connection."""
+    """One connection of a client."""
 
     server_state: GuardedState
     flow: Valve
@@ -73,51 +73,51 @@ class GuardedProtocol(HttpToolsProtocol):
         self.url = b""
         self.address = ""
         self.unfinished = 0
-        self._wait(HEAD_PATIENCE)
+        self._wait(HEAD_TIMEOUT)
 
     @property
-    def crowd(self) -> Crowd:
-        """All connections of this process."""
-        return self.server_state.crowd
+    def open_connections(self) -> OpenConnections:
+        """The open connections of this process."""
+        return self.server_state.open_connections
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Begin, or hang up at once where there is no room."""
+        """Register the connection, or close it at once if there are too many."""
         super().connection_made(transport)
         self._raw = transport
         transport.set_write_buffer_limits(high=MAX_UNREAD)
         self.flow = Valve(transport)
         self.transport = LingeringTransport(transport, self.finish)  # type: ignore[assignment]
         self.address = client_key(self.client[0]) if self.client else ""
-        if not self.crowd.enter(self, self.loop):
+        if not self.open_connections.enter(self, self.loop):
             self.server_state.note_refusal("none")
             transport.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End."""
-        self.crowd.leave(self)
+        """Unregister the connection."""
+        self.open_connections.leave(self)
         self._finishing = True
         super().connection_lost(exc)
 
     def eof_received(self) -> bool:  # type: ignore[override]
-        """Answer what has come whole; the client sends no more, but may listen."""
+        """Keep the connection open if a complete request is still to be answered."""
         self._ended = True
         return self._framing.whole and not self._finishing
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come."""
+        """Take received bytes, and parse as many of them as allowed now."""
         if self._finishing:
             self._discarded += len(data)
             if self._discarded > MAX_DISCARDED:
                 self._raw.abort()
             return
-        # Empty lines before a request do not begin it.
+        # Empty lines before a request do not count as its beginning.
         if not self._framing.begun and self.waiting_since is not None and data.strip(b"\r\n"):
-            self._wait(HEAD_PATIENCE)
+            self._wait(HEAD_TIMEOUT)
         self._framing.receive(data)
         self._advance()
 
     def _advance(self) -> None:
-        """Give the parser what it may read now."""
+        """Give the parser the bytes that it may read now."""
         framing = self._framing
         try:
             while not framing.whole and not self._finishing:
@@ -140,10 +140,10 @@ class GuardedProtocol(HttpToolsProtocol):
             self.flow.hold()
 
     def _note_held(self) -> None:
-        """Tell the crowd how many bytes are kept because the client does not get on."""
+        """Report the bytes held for unfinished requests and unread answers of this client."""
         framing = self._framing
         unfinished = 0 if framing.whole else len(framing) + framing.content
-        self.crowd.hold(self, unfinished + self._unread)
+        self.open_connections.set_unfinished(self, unfinished + self._unread)
 
     def _parse(self, piece: bytes) -> None:
         framing = self._framing
@@ -161,14 +161,14 @@ class GuardedProtocol(HttpToolsProtocol):
         if framing.whole and not self._finishing:
             self._arrived()
         elif head and self.waiting_since is not None:
-            self.deadline = self.waiting_since + PATIENCE
+            self.deadline = self.waiting_since + TIMEOUT
         if not framing.whole and self.cycle.response_complete and framing.content > MAX_BODY_SIZE:
             self.finish()
 
     def _check_head(self, head: bytes) -> None:
-        """Refuse a head that the parser would accept or fail on. Raises ProblemError."""
+        """Check a head more strictly than the parser does. Raises ProblemError."""
         line = head.partition(b"\r\n")[0]
-        # The parser also accepts RTSP and ICE.
+        # The parser also accepts the protocols RTSP and ICE.
         if not line.endswith((b" HTTP/1.0", b" HTTP/1.1")):
             raise malformed("The request line does not end with HTTP/1.1.")
         self._origin = origin_in(head)
@@ -180,7 +180,7 @@ class GuardedProtocol(HttpToolsProtocol):
             raise malformed("The Content-Length has more than 19 digits.")
 
     def _length(self) -> int | None:
-        """How long the body is by the head, which the parser has found right."""
+        """Return the length of the body by the parsed head, or None if it comes in chunks."""
         length = 0
         for name, value in self.scope["headers"]:
             if name == b"transfer-encoding":
@@ -193,30 +193,30 @@ class GuardedProtocol(HttpToolsProtocol):
         return self.url.partition(b"?")[0].decode("latin-1")
 
     def _arrived(self) -> None:
-        """A request has come whole. From now on, the client waits for this process."""
+        """Stop the client's time limit: its request is complete, and it waits for this process."""
         if self.cycle.response_complete:
-            self._go_on()
+            self._start_next()
         else:
             self.waiting_since = None
             self.deadline = float("inf")
 
-    def _wait(self, patience: float) -> None:
-        """Wait for the client from now on, for so many seconds at most."""
+    def _wait(self, timeout: float) -> None:
+        """Start a time limit for the client, in seconds from now."""
         self.waiting_since = self.loop.time()
-        self.deadline = self.waiting_since + patience
+        self.deadline = self.waiting_since + timeout
 
-    def _go_on(self) -> None:
-        """Turn to the next request of this connection."""
+    def _start_next(self) -> None:
+        """Begin with the next request of this connection."""
         self._complete = False
         self._framing.start_next()
         head_has_begun = self._framing.begun and not self.flow.write_paused
-        self._wait(HEAD_PATIENCE if head_has_begun else PATIENCE)
+        self._wait(HEAD_TIMEOUT if head_has_begun else TIMEOUT)
         if self._stopping or self._ended:
             self.finish()
             return
         if len(self._framing):
-            # Others come first, and whoever does not read answers gets none. Nothing more is read
-            # until what has come is used up.
+            # Other connections come first, and a client that does not read its answers gets no
+            # more. The socket is read again when all received bytes have been parsed.
             self.loop.call_soon(self._advance_if_read)
         else:
             self.flow.release()
@@ -228,45 +228,45 @@ class GuardedProtocol(HttpToolsProtocol):
         elif not self._finishing and not self._framing.whole:
             self._advance()
 
-    # What the parser and the answer call.
+    # Callbacks of the parser and of the answer.
 
     def on_headers_complete(self) -> None:
-        """Begin with the answer."""
-        full = self.crowd.full and self._path() not in HEALTH
-        self.app = self._no_room if full else self._answered
+        """Start the answer, which may read the body as it arrives."""
+        full = self.open_connections.full and self._path() not in HEALTH
+        self.app = self._answer_busy if full else self._answer
         super().on_headers_complete()
-        # What stands behind the body says nothing to the application, which has the list before.
+        # The application has the list of headers already; trailers are not added to it.
         self.headers = []
         if self._stopping:
             self.cycle.keep_alive = False
 
     def on_message_complete(self) -> None:
-        """Note that the request is whole."""
+        """Note that the request is complete."""
         self._complete = True
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Go on, where the request has been read to its end."""
+        """Begin with the next request if this one has been read to its end."""
         self.server_state.total_requests += 1
         if self.transport.is_closing() or self._finishing:
             return
         if self._framing.whole:
-            self._go_on()
+            self._start_next()
         elif self._framing.content > MAX_BODY_SIZE:
             self.finish()
         else:
             self.flow.resume_reading()
 
     def pause_writing(self) -> None:
-        """The client does not read its answers: from now on, this process waits for it."""
+        """Start a time limit for the client, because it does not read its answers."""
         super().pause_writing()
         self._unread = self._raw.get_write_buffer_size()
         if self.waiting_since is None:
-            self._wait(PATIENCE)
+            self._wait(TIMEOUT)
         self._note_held()
 
     def resume_writing(self) -> None:
-        """The client reads."""
+        """Stop the time limit, because the client reads its answers again."""
         super().resume_writing()
         self._unread = 0
         self._note_held()
@@ -278,15 +278,15 @@ class GuardedProtocol(HttpToolsProtocol):
         elif len(self._framing):
             self.loop.call_soon(self._advance_if_read)
 
-    # Ends.
+    # Closing.
 
     def _refuse(self, problem: ProblemError) -> None:
-        """Answer what is no request, or none that may be sent, and hang up."""
+        """Answer an invalid or late request with a problem, and close the connection."""
         if self._give_up() and self.cycle.response_started:
             self.reset()
             return
         path = "" if self._framing.in_head else self._path()
-        origin = origin_in(framing.came) if (framing := self._framing).in_head else self._origin
+        origin = origin_in(framing.pending) if (framing := self._framing).in_head else self._origin
         answer = self.server_state.refusal(problem, path, origin)
         date = formatdate(usegmt=True).encode()
         headers = [(b"date", date), (b"x-content-type-options", b"nosniff"), *answer.raw_headers]
@@ -295,13 +295,13 @@ class GuardedProtocol(HttpToolsProtocol):
         self._raw.write(b"\r\n".join([*lines, b"", bytes(answer.body)]))
         if self.access_log:
             peer = "{}:{}".format(*self.client) if self.client else ""
-            said = (peer, "-", path or "-", "1.1", problem.status.value)
-            self.access_logger.info('%s - "%s %s HTTP/%s" %d', *said)
+            values = (peer, "-", path or "-", "1.1", problem.status.value)
+            self.access_logger.info('%s - "%s %s HTTP/%s" %d', *values)
         end_request()
         self.finish()
 
     def finish(self) -> None:
-        """Hang up as soon as the client has had the answer."""
+        """Close the connection as soon as the client has received the answer."""
         if self._finishing:
             return
         self._finishing = True
@@ -309,17 +309,17 @@ class GuardedProtocol(HttpToolsProtocol):
         self.waiting_since = now
         framing = self._framing
         if not len(framing) and (framing.whole or not framing.begun):
-            self.deadline = now + PATIENCE
+            self.deadline = now + TIMEOUT
             self._raw.close()
             return
-        # A connection that is closed while it has unread bytes is reset, and the answer with it.
+        # Closing a connection that has unread bytes resets it, and the client loses the answer.
         self.deadline = now + LINGER
         self.flow.release()
         if self._raw.can_write_eof():
             self._raw.write_eof()
 
     def expire(self) -> None:
-        """End what has lasted too long: a request, an answer that nobody takes, an idle line."""
+        """Close the connection because a request, an unread answer or a pause took too long."""
         unread = self._raw.get_write_buffer_size() > 0
         if self._finishing or unread or self.waiting_since is None:
             self.reset()
@@ -330,19 +330,19 @@ class GuardedProtocol(HttpToolsProtocol):
             self._raw.close()
 
     def reset(self) -> None:
-        """Hang up at once; what has not been sent is lost."""
+        """Close the connection at once; unsent bytes are lost."""
         self._finishing = True
-        self.crowd.leave(self)
+        self.open_connections.leave(self)
         connection = self._raw.get_extra_info("socket")
         if connection is not None and (self._framing.begun or self._raw.get_write_buffer_size()):
-            # The client is told that it has no answer, and the system keeps nothing of it.
-            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _AT_ONCE)
+            # A reset tells the client that no answer comes, and the system frees its buffers.
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _NO_LINGER)
         self._give_up()
         self._raw.abort()
 
     def _give_up(self) -> bool:
-        """Tell the application, if it is at work on an answer, that nobody will read it."""
-        # uvicorn's annotation leaves out that there is none before the first request.
+        """Tell the application that the client has gone; return False if it is not answering."""
+        # uvicorn's annotation omits that this is None before the first request.
         cycle: RequestResponseCycle | None = self.cycle
         if cycle is None or cycle.response_complete:
             return False
@@ -351,7 +351,7 @@ class GuardedProtocol(HttpToolsProtocol):
         return True
 
     def shutdown(self) -> None:
-        """Take no further request; one whose head has come is answered."""
+        """Accept no further request; still answer one whose head has been read."""
         self._stopping = True
         if self._framing.in_head:
             if self._raw.get_write_buffer_size():
@@ -361,17 +361,17 @@ class GuardedProtocol(HttpToolsProtocol):
         else:
             self.cycle.keep_alive = False
 
-    async def _answered(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Have the application answer."""
+    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Have the application answer a request."""
         try:
             await self.config.loaded_app(scope, receive, send)
         except asyncio.CancelledError:
-            # At the end of the process, when all have been hung up on: no failure of the program.
+            # The process ends, and all connections have been closed: this is no error.
             if not self._finishing:
                 raise
 
-    async def _no_room(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer while as many connections as there is room for are being answered."""
+    async def _answer_busy(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer that the service is too busy, because too many connections are open."""
         headers = Headers(scope=scope)
         answer = self.server_state.refusal(too_busy(1), scope["path"], self._origin, headers)
         await answer(scope, receive, send)

@@ -1,4 +1,4 @@
-"""One process that serves: uvicorn with connections under limits, and an end in good order."""
+"""One server process: uvicorn with limits for connections, and an orderly shutdown."""
 
 import asyncio
 import contextlib
@@ -17,21 +17,21 @@ import uvicorn
 from service.api.monitor import Monitor
 from service.server.connections.guarded_state import GuardedState
 from service.server.connections.protocol import GuardedProtocol
-from service.server.limits import GRACE, LAST
+from service.server.limits import FORCED_EXIT, GRACE
 from service.server.processes.shared_port import Acceptor, SharedPort
 
 _log = logging.getLogger("uvicorn.error")
 
-# Who waits for the end must not send the second signal by mistake.
-ENDING: Final = (
-    f"Ending: requests that have come are answered, for {GRACE:g} s at most. "
-    "A second signal ends at once."
+# The log line after the first signal, so that nobody sends a second one by mistake.
+SHUTTING_DOWN: Final = (
+    f"Shutting down: open requests are still answered, for at most {GRACE:g} s. "
+    "A second signal ends the process at once."
 )
 _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 class Server(uvicorn.Server):
-    """A server that ends by a signal: it answers what it has, for ten seconds at most."""
+    """A server that, after a signal, answers open requests and exits within ten seconds."""
 
     def __init__(
         self,
@@ -43,13 +43,13 @@ class Server(uvicorn.Server):
         super().__init__(config)
         self.server_state: GuardedState = GuardedState(origins, monitor)
         self._port = port
-        # The supervisor of this worker, which alone sends signals and must not die before it.
+        # The process id of this worker's supervisor. The worker ends if the supervisor dies.
         self._parent = port.supervisor if port else None
         self._acceptor: Acceptor | None = None
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """End in good order by the first signal; the exit code is then 0."""
+        """Handle signals while the server runs: after one, it shuts down with exit code 0."""
         before = {number: signal.signal(number, self.handle_exit) for number in _SIGNALS}
         try:
             yield
@@ -58,27 +58,27 @@ class Server(uvicorn.Server):
                 signal.signal(number, handler)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002
-        """Begin to end; by a second signal at once."""
+        """Begin to shut down; at a second signal, end at once."""
         if self._parent is not None:
-            # The terminal's Ctrl+C goes to the workers as well; the supervisor counts.
+            # A worker ignores Ctrl+C, which also reaches the supervisor; that ends the workers.
             self.should_exit = self.should_exit or sig == signal.SIGTERM
         elif self.should_exit:
             signal.signal(sig, signal.SIG_DFL)
             signal.raise_signal(sig)
         else:
             self.should_exit = True
-            # The signal belongs to no request, whichever it has interrupted.
-            Context().run(_log.info, ENDING)
+            # An empty context: the log line must not name the request that was interrupted.
+            Context().run(_log.info, SHUTTING_DOWN)
 
     async def on_tick(self, counter: int) -> bool:
-        """Whether to end: by a signal, or because nobody is left to send one."""
+        """True if the server has to end: after a signal, or because the supervisor has died."""
         if self._acceptor is not None:
-            self._acceptor.note()
+            self._acceptor.publish_count()
         orphaned = self._parent is not None and os.getppid() != self._parent
         return await super().on_tick(counter) or orphaned
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Listen, on a port that others share or on one of its own."""
+        """Listen on the shared port of the workers, or on a port of its own."""
         if self._port is None:
             await super().startup(sockets)
             return
@@ -91,8 +91,8 @@ class Server(uvicorn.Server):
         return GuardedProtocol(self.config, self.server_state, self.lifespan.state)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002
-        """Answer what has come whole, wait a while for the rest, and hang up on what is left."""
-        _end_at_last()
+        """Answer open requests for a while, then close all connections."""
+        _force_exit_later()
         for server in self.servers:
             server.close()
         if self._acceptor is not None:
@@ -107,7 +107,7 @@ class Server(uvicorn.Server):
         for connection in self._guarded():
             connection.reset()
         if tasks := list(self.server_state.tasks):
-            # They find that nobody listens any more.
+            # They notice that their clients have gone.
             _, hanging = await asyncio.wait(tasks, timeout=0.5)
             for task in hanging:
                 task.cancel()
@@ -118,18 +118,19 @@ class Server(uvicorn.Server):
         return [connection for connection in found if isinstance(connection, GuardedProtocol)]
 
 
-def _end_at_last() -> None:
-    """End the process after the promised time, also if a thread is still at work.
+def _force_exit_later() -> None:
+    """Exit after the promised time, even if a thread is still running.
 
-    Python waits for its threads, and nothing ends one. What the database has confirmed is recorded.
+    Python waits for its threads and cannot stop one. Attempts that the database has confirmed are
+    recorded.
     """
 
     def end() -> None:
         _log.warning(
-            "Something does not react, such as the database: ended without waiting for it."
+            "Something does not react, for example the database: exiting without waiting for it."
         )
         os._exit(0)
 
-    timer = threading.Timer(GRACE + LAST, end)
+    timer = threading.Timer(GRACE + FORCED_EXIT, end)
     timer.daemon = True
     timer.start()

@@ -1,7 +1,7 @@
-"""A port that several processes share: each connection goes to a process that has few.
+"""Balance the connections of a shared port between worker processes.
 
-The system wakes all of them, and the first to come would take all that wait. So one that has more
-than another leaves the port alone for a moment, in which the other may take its share.
+The system wakes all workers, and the first one awake would accept all waiting connections. So a
+worker that has more connections than another one pauses for a moment, and the other accepts some.
 """
 
 import asyncio
@@ -13,54 +13,55 @@ from typing import Any, Final
 
 # The number of connections of a process that does not listen.
 _AWAY: Final = 2**31 - 1
-# How many connections more than another one may have: one, and a share of what the other has.
+# A worker with n connections more than another one pauses if n is at least _MORE plus one for each
+# _PER connections of the other.
 _MORE: Final = 1
-_SHARE: Final = 8
-# Seconds until one that has more takes a connection all the same: the other is busy.
+_PER: Final = 8
+# Seconds of this pause; after it the worker accepts a connection, because the other one is busy.
 _MOMENT: Final = 0.005
-# Seconds until the next try where no connection can be opened.
+# Seconds until the next attempt if no connection can be opened.
 _PAUSE: Final = 1.0
-# How many the system keeps until they are taken.
+# How many connections the system queues until they are accepted.
 _BACKLOG: Final = 2048
-# How many are taken until those that have come are heard.
+# How many connections are accepted before the accepted ones are read.
 _AT_ONCE: Final = 32
 
 
 @dataclass(frozen=True)
-class Seats:
-    """How many connections each process has, in memory that all share."""
+class ConnectionCounts:
+    """The number of connections of each process, in shared memory."""
 
     # An array of the C type int.
-    counts: Any
+    numbers: Any
 
     @classmethod
-    def of(cls, number: int) -> "Seats":
-        """Seats of so many processes, none of which listens yet."""
+    def of(cls, number: int) -> "ConnectionCounts":
+        """Return the counts for ``number`` processes, none of which listens yet."""
         return cls(multiprocessing.get_context("spawn").RawArray("i", [_AWAY] * number))
 
     @property
-    def any_taken(self) -> bool:
-        """Whether a process listens."""
-        return any(count != _AWAY for count in self.counts)
+    def any_listening(self) -> bool:
+        """True if at least one process listens."""
+        return any(count != _AWAY for count in self.numbers)
 
-    def leave(self, place: int) -> None:
-        """Note that the process of this place does not listen."""
-        self.counts[place] = _AWAY
+    def stop_listening(self, index: int) -> None:
+        """Note that the process with this index does not listen."""
+        self.numbers[index] = _AWAY
 
 
 @dataclass(frozen=True)
 class SharedPort:
-    """A port as one of its processes has it."""
+    """A shared port, as one worker process gets it."""
 
     listener: socket.socket
-    seats: Seats
-    place: int
-    # The process that looks after this one.
+    counts: ConnectionCounts
+    index: int
+    # The process id of the supervisor.
     supervisor: int
 
 
 class Acceptor:
-    """Takes connections from a shared port, as many as other processes do."""
+    """Accepts connections from a shared port, about as many as other processes do."""
 
     def __init__(
         self,
@@ -79,40 +80,40 @@ class Acceptor:
         self._listen()
 
     def close(self) -> None:
-        """Take no more."""
+        """Stop accepting connections."""
         self._loop.remove_reader(self._port.listener)
         self._port.listener.close()
         if self._waiting is not None:
             self._waiting.cancel()
-        self._port.seats.leave(self._port.place)
+        self._port.counts.stop_listening(self._port.index)
 
-    def note(self) -> int:
-        """Tell the others how many connections there are here; the least that another has."""
-        here, counts = self._port.place, self._port.seats.counts
+    def publish_count(self) -> int:
+        """Publish the number of connections; return the least number of another process."""
+        here, counts = self._port.index, self._port.counts.numbers
         counts[here] = self._count()
-        return min((n for place, n in enumerate(counts) if place != here), default=_AWAY)
+        return min((n for index, n in enumerate(counts) if index != here), default=_AWAY)
 
     def _count(self) -> int:
         return self._connections() + len(self._tasks)
 
     def _listen(self) -> None:
-        self.note()
-        self._loop.add_reader(self._port.listener, self._take_turn)
+        self.publish_count()
+        self._loop.add_reader(self._port.listener, self._accept_some)
 
     def _has_more(self) -> bool:
-        least = self.note()
-        return self._count() >= least + _MORE + least // _SHARE
+        least = self.publish_count()
+        return self._count() >= least + _MORE + least // _PER
 
-    def _take_turn(self) -> None:
+    def _accept_some(self) -> None:
         for _ in range(_AT_ONCE):
             if self._has_more():
                 self._wait(_MOMENT)
                 return
-            if not self._take():
+            if not self._accept():
                 return
 
-    def _take(self) -> bool:
-        """Take one connection; false where there is none, or no room for it."""
+    def _accept(self) -> bool:
+        """Accept one connection; return False if none waits or none can be opened."""
         try:
             connection, _ = self._port.listener.accept()
         except (BlockingIOError, InterruptedError, ConnectionAbortedError):
@@ -129,11 +130,11 @@ class Acceptor:
 
     def _wait(self, seconds: float) -> None:
         self._loop.remove_reader(self._port.listener)
-        self._waiting = self._loop.call_later(seconds, self._go_on)
+        self._waiting = self._loop.call_later(seconds, self._resume)
 
-    def _go_on(self) -> None:
-        """Take one, which nobody else did; then again as many as others."""
+    def _resume(self) -> None:
+        """Accept one connection that no other process has accepted; then listen again."""
         self._waiting = None
-        self._take()
+        self._accept()
         if self._waiting is None:
             self._listen()

@@ -1,4 +1,4 @@
-"""Several processes that serve one port, and the process that looks after them."""
+"""Several worker processes that serve one port, and their supervisor."""
 
 import logging
 import multiprocessing
@@ -12,21 +12,21 @@ from multiprocessing.process import BaseProcess
 from typing import Final
 
 from service.server.limits import GRACE
-from service.server.processes.process import ENDING
-from service.server.processes.shared_port import Seats, SharedPort
+from service.server.processes.process import SHUTTING_DOWN
+from service.server.processes.shared_port import ConnectionCounts, SharedPort
 
-# Seconds beyond the grace of a worker until it is killed.
+# Seconds after the grace period until a worker is killed.
 _MARGIN: Final = 1.5
-# Seconds until a worker that has ended is started anew.
+# Seconds until a worker that has ended is replaced.
 _PAUSE: Final = 1.0
-# Seconds between two looks whether the first worker listens.
-_LOOK: Final = 0.05
+# Seconds between two checks whether the first worker listens.
+_POLL: Final = 0.05
 
 _log = logging.getLogger("uvicorn.error")
 
 
 class Supervisor:
-    """Keeps so many workers at work until a signal comes."""
+    """Keeps ``number`` workers running until a signal comes."""
 
     def __init__(
         self,
@@ -36,33 +36,33 @@ class Supervisor:
         announce: Callable[[], None],
         lost: Callable[[int], None] = lambda _: None,
     ) -> None:
-        # It says that the port answers, as soon as a worker listens.
+        # Called as soon as a worker listens; logs that the service is running.
         self._announce = announce
-        # It is told the number of a process that has ended.
+        # Called with the process id of a worker that has ended.
         self._lost = lost
         self._work = work
         self._listener = listener
-        self._seats = Seats.of(number)
+        self._counts = ConnectionCounts.of(number)
         self._workers: list[BaseProcess] = []
         self._signals = 0
         self._last = signal.SIGTERM.value
 
     def run(self) -> bool:
-        """Run until a signal comes; false where no worker could start."""
-        # What is written here wakes the process from its wait.
+        """Run until a signal comes; return False if no worker could start."""
+        # A signal writes to this socket, which wakes the process.
         awake, alarm = socket.socketpair()
         with awake, alarm:
             alarm.setblocking(False)
             signal.set_wakeup_fd(alarm.fileno())
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, self._note)
-            self._workers = [self._start(place) for place in range(len(self._seats.counts))]
+            self._workers = [self._start(index) for index in range(len(self._counts.numbers))]
             started = self._watch(awake)
             self._listener.close()
             self._end(awake)
             signal.set_wakeup_fd(-1)
         if self._signals > 1:
-            # As without workers: this process ends by the signal.
+            # As without workers, the second signal ends this process.
             signal.signal(self._last, signal.SIG_DFL)
             signal.raise_signal(self._last)
         return started
@@ -71,25 +71,25 @@ class Supervisor:
         self._signals += 1
         self._last = number
 
-    def _start(self, place: int) -> BaseProcess:
-        # A fresh interpreter: a fork would take over locks that another thread holds.
+    def _start(self, index: int) -> BaseProcess:
+        # A new interpreter: a fork would copy locks that another thread holds.
         context = multiprocessing.get_context("spawn")
-        port = SharedPort(self._listener, self._seats, place, os.getpid())
+        port = SharedPort(self._listener, self._counts, index, os.getpid())
         worker = context.Process(target=self._work, args=(port,))
         worker.start()
         return worker
 
     def _watch(self, awake: socket.socket) -> bool:
-        """Start anew whoever ends, until a signal comes; false where all end at their start."""
+        """Replace workers that end, until a signal comes; return False if none could start."""
         announced = False
         while True:
             wait(
                 [awake, *(worker.sentinel for worker in self._workers)],
-                None if announced else _LOOK,
+                None if announced else _POLL,
             )
             if self._stopped():
                 return True
-            if not announced and self._seats.any_taken:
+            if not announced and self._counts.any_listening:
                 announced = True
                 self._announce()
             gone = [worker for worker in self._workers if not worker.is_alive()]
@@ -99,22 +99,22 @@ class Supervisor:
                 continue
             for worker in gone:
                 _log.error("Worker %s has ended (exit code %s)", worker.pid, worker.exitcode)
-                self._seats.leave(self._workers.index(worker))
+                self._counts.stop_listening(self._workers.index(worker))
                 self._lost(worker.pid or 0)
             wait([awake], _PAUSE)
             if self._stopped():
                 return True
             self._workers = [
-                self._start(place) if worker in gone else worker
-                for place, worker in enumerate(self._workers)
+                self._start(index) if worker in gone else worker
+                for index, worker in enumerate(self._workers)
             ]
 
     def _stopped(self) -> bool:
         return self._signals > 0
 
     def _end(self, awake: socket.socket) -> None:
-        """Have the workers end in good order; by a second signal, or in the end, at once."""
-        _log.info(ENDING)
+        """End the workers; kill them after a second signal, or if they take too long."""
+        _log.info(SHUTTING_DOWN)
         for worker in self._workers:
             worker.terminate()
         end = time.monotonic() + GRACE + _MARGIN

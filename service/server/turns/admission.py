@@ -1,9 +1,9 @@
-"""Fair turns between clients, which never leave the processor idle while a request waits.
+"""Give clients fair turns, without leaving the processor idle while a request waits.
 
-A request runs until it is answered or its slice of time is over; then the process reads what has
-arrived at its sockets, and the next step is one of the client that has used the least processor
-time. So a request waits for steps of a few milliseconds, whatever else is asked at the same time.
-Small requests share a slice, for to read the sockets costs as much as they do.
+A request runs until it is answered or its time slice is over. Then the process reads its sockets,
+and the next step belongs to the connection that has used the least processor time. So a request
+waits for steps of a few milliseconds, however costly other requests are. Small requests share a
+slice, because reading the sockets costs as much as answering one of them.
 """
 
 import asyncio
@@ -26,14 +26,14 @@ from service.server.turns.fair_queue import FairQueue, Ticket
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.time_slices import SLICE
 
-# The requests, and their bytes, that may wait of one client and of all. A class behind one address
-# sends 400 submissions in the same second before a deadline.
+# How many requests, and how many bytes of them, may wait: of one client, and of all. A class behind
+# one address sends 400 submissions in the same second before a deadline.
 OF_ONE: Final = (512, 16 * 1024 * 1024)
 OF_ALL: Final = (1024, 32 * 1024 * 1024)
-# How many answers on health, and how many refusals, are given each time the sockets are read.
-# On a thousand connections, they alone would keep the process busy.
+# How many health checks, and how many refusals, are answered after each reading of the sockets.
+# Without this limit, a thousand connections could keep the process busy with them alone.
 SMALL: Final = 4
-# The share of the last request in the mean time of a request.
+# The weight of the last request in the moving average of the time of a request.
 _RECENT: Final = 0.1
 _LONGEST_RETRY: Final = 30
 
@@ -48,7 +48,7 @@ class Metered:
 
     @property
     def spent(self) -> float:
-        """The seconds so far, those of an unfinished step included."""
+        """The seconds so far, including those of an unfinished step."""
         return self._spent + (0.0 if self._began is None else thread_time() - self._began)
 
     def __await__(self) -> Generator[Any, Any, None]:
@@ -65,14 +65,14 @@ class Metered:
                 self._spent, self._began = self.spent, None
             try:
                 value = yield awaited
-            except BaseException as error:  # noqa: BLE001 - handed on to where it belongs
+            except BaseException as error:  # noqa: BLE001 - passed on to the awaitable
                 resume = partial(steps.throw, error)
             else:
                 resume = partial(steps.send, value)
 
 
 class _Lane:
-    """Small answers of one kind: those given since the sockets were read, and those that wait."""
+    """Counts the small answers given since the sockets were read, and queues further ones."""
 
     def __init__(self) -> None:
         self.given = 0
@@ -85,12 +85,12 @@ class FairAdmission:
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
         self._queue = FairQueue()
-        # Processor time since the sockets were read; whether they will be.
+        # Processor time since the sockets were read; True if the next reading is scheduled.
         self._spent = 0.0
         self._reading = False
         # The mean processor time of a request.
         self._mean = 0.0
-        # One lane each: a thousand refusals must not make a question about health wait.
+        # Two lanes: a thousand refusals must not delay a health check.
         self._health, self._refusals = _Lane(), _Lane()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -121,7 +121,7 @@ class FairAdmission:
             self._queue.leave(ticket)
 
     async def _serve(self, ticket: Ticket, scope: Scope, body: "_Replayed", send: Send) -> None:
-        """Serve a request in its turns."""
+        """Have the application answer a request, one turn for each time slice."""
         charged = 0.0
 
         async def give_way() -> None:
@@ -148,7 +148,7 @@ class FairAdmission:
 
     @property
     def _must_wait(self) -> bool:
-        """Whether others wait, or the sockets have to be read first."""
+        """True if other requests wait, or the sockets have to be read first."""
         return self._queue.length > 0 or self._spent >= SLICE
 
     def _charge(self, ticket: Ticket, seconds: float) -> None:
@@ -157,7 +157,7 @@ class FairAdmission:
         self._read_soon()
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
-        """Return the problem of a request that finds no place in the queue, or None."""
+        """Return the problem of a request for which the queue is too full, or None."""
         requests, size = self._queue.waiting(ticket.client)
         is_beyond = requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]
         if is_beyond and not ticket.client.is_trusted:
@@ -167,7 +167,7 @@ class FairAdmission:
         return None
 
     def _seconds(self, requests: int) -> int:
-        """Return the seconds after which a refused client should come again."""
+        """Return the seconds after which a refused client should try again."""
         return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
 
     async def _turn(self, ticket: Ticket, body: "_Replayed") -> None:
@@ -180,7 +180,7 @@ class FairAdmission:
                 await ticket.turn
             except asyncio.CancelledError:
                 self._queue.remove(ticket)
-                # At the end of the process, when all connections have been closed.
+                # The process ends, and all connections have been closed.
                 if body.is_unwanted():
                     raise ClientDisconnect from None
                 raise
@@ -188,7 +188,7 @@ class FairAdmission:
                 raise ClientDisconnect
 
     async def _small_turn(self, lane: _Lane) -> None:
-        """Wait if too many small answers are asked for at once."""
+        """Wait if too many small answers are given at once."""
         if lane.given >= SMALL:
             turn = asyncio.get_running_loop().create_future()
             lane.waiting.append(turn)
@@ -198,10 +198,10 @@ class FairAdmission:
             self._read_soon()
 
     def _read_soon(self) -> None:
-        """Go on as soon as the sockets have been read."""
+        """Schedule the next step for the time when the sockets have been read."""
         if not self._reading:
             self._reading = True
-            # Twice: what is called soon once comes before the requests at the sockets.
+            # Twice: a callback that is scheduled once runs before the sockets are read.
             loop = asyncio.get_running_loop()
             loop.call_soon(loop.call_soon, self._next)
 
@@ -221,7 +221,7 @@ class FairAdmission:
 
 
 def _wake(turn: asyncio.Future[None]) -> bool:
-    """Let the request go on that waits for this, unless it has been given up."""
+    """Resume the request that awaits this future; return False if it has been given up."""
     if turn.done():
         return False
     turn.set_result(None)
@@ -229,9 +229,10 @@ def _wake(turn: asyncio.Future[None]) -> bool:
 
 
 async def _body(receive: Receive) -> tuple[bytes | None, bool]:
-    """Return the body, no more of it than the application takes, and whether it is whole.
+    """Return the body, and True if it is complete.
 
-    The body is None if the client has gone.
+    A body beyond the application's limit is not read to its end. The body is None if the client
+    has gone.
     """
     parts: list[bytes] = []
     size = 0
@@ -247,7 +248,7 @@ async def _body(receive: Receive) -> tuple[bytes | None, bool]:
 
 
 class _Replayed:
-    """A body that has been read, to be received once more, and then what comes after it."""
+    """Lets the application receive a body that has already been read."""
 
     def __init__(self, body: bytes, ended: bool, receive: Receive) -> None:
         self._first: Message | None = {
@@ -264,16 +265,16 @@ class _Replayed:
         return message
 
     def is_unwanted(self) -> bool:
-        """True if the client has gone, without waiting for what it does next.
+        """True if the client has gone. It does not wait for the client.
 
-        Starlette's question after it lets the loop run on, and the next request would be begun.
+        Starlette's ``is_disconnected`` would let the event loop begin the next request.
         """
         if not self._ended:
             return False
         asking = self._receive().__await__()
         try:
             next(asking)
-        except StopIteration as told:
-            return bool(told.value["type"] == "http.disconnect")
+        except StopIteration as received:
+            return bool(received.value["type"] == "http.disconnect")
         asking.close()
         return False

@@ -1,13 +1,13 @@
-"""The queue of the requests that wait, in which all connections have equal shares.
+"""The queue of waiting requests, in which all connections have equal shares of the processor.
 
-Start-time fair queueing (Goyal, Vin and Cheng, 1996) between connections: the next request is one
-of the connection that has used the least processor time. An address may be that of a whole class,
-so each of its connections has a share of its own; but together they have a limited number.
+Start-time fair queueing (Goyal, Vin and Cheng, 1996) between connections: the next request belongs
+to the connection that has used the least processor time. A whole class may share one address, so
+each connection of an address has a share of its own; but the shares of one address are limited.
 
-If all take turns after each slice, a request that takes ten times as long as the mean waits for all
-the others ten times. So what a request uses counts later if the connection has an allowance for it:
-ordinary requests run in the order in which they came. Connections that send costly requests one
-after the other have no allowance.
+If all requests took turns after each slice, a request ten times as long as the mean would wait for
+all the others ten times. So each connection has an allowance: time within it is charged only when
+the connection's next request comes. Thus ordinary requests run in the order of their arrival.
+Connections that send one costly request after the other use up their allowance.
 """
 
 from collections import deque
@@ -18,29 +18,30 @@ from typing import Any, Final
 from service.api.turns import Client
 from service.time_slices import SLICE
 
-# Seconds that a step of a request counts at least: about what HTTP takes around it.
+# The least number of seconds charged for a step of a request: about the cost of HTTP.
 LEAST: Final = 0.0003
-# Seconds that a connection may have used less than others and still make up for it: an answer that
-# takes long to explain need not wait for clients that send one request after the other.
+# The most seconds of unused share that a connection may use later: so a costly answer need not wait
+# for clients that send one request after the other.
 CREDIT: Final = 0.1
-# Seconds that a connection may have used more than others when its next request comes; what is
-# beyond that is forgiven.
+# The most seconds above its share that a connection still owes when its next request comes; the
+# rest is forgiven.
 DEBT: Final = SLICE
-# The share of a connection's fair share that gives no credit. Below 1, connections that are always
-# busy have none and are served in the order of their requests; above 0, no request waits for ever.
+# How fast the common clock runs, compared with the fair share of a connection. Below 1, connections
+# that are always busy get no credit and are served in the order of their requests; above 0, no
+# request waits for ever.
 PACE: Final = 0.6
-# Seconds of a request that count only at the next one: of the first request; what each later one
-# adds, about twice the mean; and the most that a connection can save, or owe.
+# Allowance in seconds: of the first request; what each later request adds (about twice the mean);
+# and the most that a connection can save, or owe.
 FIRST, ALLOWANCE, SAVED = 0.006, 0.016, 0.1
-# The number of accounts that are kept of connections without a request.
+# The number of accounts kept for connections that have no request.
 _ACCOUNTS: Final = 1000
 
 
 @dataclass(eq=False, slots=True)
 class Ticket:
-    """One request that waits, or is being answered, and the future that it waits for.
+    """One request that waits or is being answered; ``turn`` is the future that it awaits.
 
-    ``connection`` is 0 if the connections of the client are not told apart.
+    ``connection`` is 0 if the connections of the client cannot be distinguished.
     """
 
     client: Client
@@ -56,7 +57,7 @@ class Ticket:
 
 @dataclass(slots=True)
 class _Requests:
-    """The requests of one client: all that are here, and those that wait, with their bytes."""
+    """The requests of one client: the number present, the number waiting, the bytes waiting."""
 
     present: int = 0
     waiting: int = 0
@@ -65,10 +66,11 @@ class _Requests:
 
 @dataclass(slots=True)
 class _Account:
-    """The time that a connection has used, its requests, and those of them that wait.
+    """The time that a connection has used, and its requests.
 
-    ``spent`` is the time of its last request, of which ``allowed`` did not count in ``used``, and
-    ``excess`` how many times as much it pays.
+    ``spent`` is the time of its last request; up to ``allowed`` of it is not yet charged to
+    ``used``. ``excess`` is the factor by which its time is charged. ``queue`` holds its waiting
+    requests.
     """
 
     used: float
@@ -80,34 +82,35 @@ class _Account:
 
 
 class FairQueue:
-    """The requests that are here, and the order of those that wait.
+    """The requests present, and the order of the waiting ones.
 
-    Times are on a scale that goes on with the time that all have used: a connection that was away
-    has a small credit, and a new one has none.
+    Times are on a common clock that advances with the time that all connections use. A connection
+    that was idle has a small credit, and a new one has none.
     """
 
     def __init__(self) -> None:
         self._now = 0.0
         self._accounts: dict[tuple[str, int], _Account] = {}
         self._clients: dict[str, _Requests] = {}
-        # The connections of which a request waits.
+        # The accounts of connections with a waiting request.
         self._waiting: dict[tuple[str, int], _Account] = {}
-        # The number of requests that wait, and their bytes.
+        # The number of waiting requests, and their bytes.
         self.length = 0
         self.size = 0
 
     def waiting(self, client: Client) -> tuple[int, int]:
-        """Return the number of requests of a client that wait, and their bytes."""
+        """Return the number of waiting requests of a client, and their bytes."""
         requests = self._clients.get(client.name)
         return (requests.waiting, requests.size) if requests else (0, 0)
 
     def enter(self, ticket: Ticket) -> None:
-        """Note that a request has come."""
+        """Note that a request has arrived."""
         requests = self._clients.setdefault(ticket.client.name, _Requests())
         requests.present += 1
         account = self._accounts.pop(ticket.key, None)
         if account is None:
-            # Of many new connections that come at once, one for each share of a client is first.
+            # Many new connections of a client that come at once start one after the other, as many
+            # at a time as the client has shares.
             later = SLICE * requests.waiting / ticket.client.most_shares
             account = _Account(self._now + later)
         elif not account.present:
@@ -121,7 +124,7 @@ class FairQueue:
                 del self._accounts[key]
 
     def _settle(self, account: _Account) -> None:
-        """Charge what did not count in the last request, and give an allowance for the next."""
+        """Charge the uncharged time of the last request, and grant an allowance for the next."""
         due = min(account.spent, max(0.0, account.allowed))
         used = max(account.used + due * account.excess, self._now - CREDIT)
         account.used = min(used, self._now + DEBT * account.excess)
@@ -137,21 +140,21 @@ class FairQueue:
             del self._clients[ticket.client.name]
 
     def push(self, ticket: Ticket) -> None:
-        """Let a request wait that has come."""
+        """Add a request to the queue, which has arrived before."""
         account = self._accounts[ticket.key]
         account.queue.append(ticket)
         self._waiting[ticket.key] = account
         self._count(ticket, 1)
 
     def pop(self) -> Ticket:
-        """Take the request whose turn it is. Raises ValueError if none waits."""
+        """Remove and return the request whose turn it is. Raises ValueError if none waits."""
         account = min(self._waiting.values(), key=attrgetter("used"))
         ticket = account.queue[0]
         self.remove(ticket)
         return ticket
 
     def remove(self, ticket: Ticket) -> None:
-        """Let a request wait no longer, because it has its turn or is given up."""
+        """Remove a request from the queue, because it has its turn or is given up."""
         queue = self._accounts[ticket.key].queue
         if ticket in queue:
             queue.remove(ticket)

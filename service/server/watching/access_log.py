@@ -1,17 +1,17 @@
-"""The lines of the log on requests: without query strings, and without addresses if so wished."""
+"""Remove query strings, and optionally client addresses, from the access log."""
 
 import logging
 
 
-class _Discreet(logging.Filter):
-    """Leaves out of uvicorn's lines what says more than which route was asked and how it went."""
+class _AccessLogFilter(logging.Filter):
+    """Removes the query string, and optionally the client's address, from uvicorn's lines."""
 
     def __init__(self, *, addresses: bool) -> None:
         super().__init__()
         self.addresses = addresses
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Shorten the line; it is always written."""
+        """Shorten the line; return True, so that it is written."""
         if isinstance(record.args, tuple) and len(record.args) == 5:
             client, method, path, version, status = record.args
             path = str(path).partition("?")[0]
@@ -20,8 +20,8 @@ class _Discreet(logging.Filter):
 
 
 def set_up_access_log(*, addresses: bool) -> None:
-    """Shorten the lines on requests from now on."""
+    """Shorten the lines of the access log from now on."""
     logger = logging.getLogger("uvicorn.access")
-    for old in [f for f in logger.filters if isinstance(f, _Discreet)]:
+    for old in [f for f in logger.filters if isinstance(f, _AccessLogFilter)]:
         logger.removeFilter(old)
-    logger.addFilter(_Discreet(addresses=addresses))
+    logger.addFilter(_AccessLogFilter(addresses=addresses))

@@ -1,4 +1,4 @@
-"""The lines of the log: text for people, or JSON objects; those on a request name its id."""
+"""The format of the log: text or JSON objects. Lines about a request contain its id."""
 
 import json
 import logging
@@ -18,16 +18,15 @@ _TEXT: Final = {
         "fmt": '%(levelprefix)s %(client_addr)s - "%(request_line)s" %(status_code)s%(of_request)s',
     },
 }
-# uvicorn passes its formatters this word; see its Config.
 _JSON: Final = {name: {"()": "service.server.watching.logs.JsonLines"} for name in _STREAMS}
 
 
 def log_config(form: Literal["text", "json"]) -> dict[str, Any]:
-    """The set-up of the log, as ``logging.config`` takes it: requests go to standard output."""
+    """Return the configuration for ``logging.config``; requests are logged to standard output."""
     return {
         "version": 1,
         "disable_existing_loggers": False,
-        "filters": {"requests": {"()": "service.server.watching.logs.RequestNames"}},
+        "filters": {"requests": {"()": "service.server.watching.logs.RequestIds"}},
         "formatters": _JSON if form == "json" else _TEXT,
         "handlers": {
             name: {
@@ -43,16 +42,16 @@ def log_config(form: Literal["text", "json"]) -> dict[str, Any]:
             "uvicorn.error": {"level": "INFO"},
             "uvicorn.access": {"handlers": ["access"], "level": "INFO", "propagate": False},
         },
-        # What other parts of the program have to say.
+        # All other parts of the program.
         "root": {"handlers": ["default"], "level": "WARNING"},
     }
 
 
-class RequestNames(logging.Filter):
-    """Adds to a line the id of the request that was being answered."""
+class RequestIds(logging.Filter):
+    """Adds to a line the id of the request that is being answered."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Add it; the line is always written."""
+        """Add the request id; return True, so that the line is written."""
         request = current_request()
         record.request = request
         record.of_request = f" [{request.id}]" if request else ""
@@ -60,10 +59,10 @@ class RequestNames(logging.Filter):
 
 
 class JsonLines(logging.Formatter):
-    """One JSON object for each line."""
+    """Formats each line as a JSON object."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """The line: when, how grave, who says it, what, and of which request."""
+        """Return the line as a JSON object; it contains the request id if there is a request."""
         line: dict[str, Any] = {
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),

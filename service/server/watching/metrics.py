@@ -1,7 +1,7 @@
-"""What happens in the service, counted for Prometheus. Loaded only where it is asked for.
+"""Metrics for Prometheus. This module is imported only if metrics are switched on.
 
 Every label has few values: patterns of paths, statuses, kinds, verdicts, codes of the program.
-Nothing that a client writes becomes one.
+Text from a client never becomes a label.
 """
 
 import os
@@ -36,23 +36,22 @@ from service.version import VERSION
 PATH: Final = "/metrics"
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "OPTIONS", "PUT", "PATCH", "DELETE"})
 _OTHER: Final = "other"
-# The codes of messages are those of the program, which has about 250: this holds if one day a code
-# is made from something else.
+# A bound in case a message code is ever made from other text; the program has about 250 codes.
 _MOST_CODES: Final = 1000
-# Seconds. A right table takes 1 ms, the costliest body 50.
+# Histogram buckets in seconds. A correct table takes 1 ms, the costliest body 50 ms.
 _GRADING: Final = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 1.0)
 _REQUESTS: Final = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0)
 _STORE: Final = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0)
 
 
 class Metrics:
-    """The counts of one process, or of all that share a folder.
+    """The metrics of one process, or of all processes that share a folder.
 
-    Where it does not ``tell_all``, it tells whoever asks from this machine itself.
+    Unless ``is_public``, only clients on this machine may read them.
     """
 
-    def __init__(self, *, tells_all: bool = False) -> None:
-        self._tells_all = tells_all
+    def __init__(self, *, is_public: bool = False) -> None:
+        self._is_public = is_public
         self._registry = registry = CollectorRegistry()
         if not _is_shared():
             ProcessCollector(registry=registry)
@@ -130,18 +129,18 @@ class Metrics:
         self._admission: FairAdmission | None = None
 
     def fair_admission(self, app: ASGIApp) -> ASGIApp:
-        """The turns between clients, of which the waiting requests are counted."""
+        """Wrap the application in fair admission, whose waiting requests are counted."""
         self._admission = FairAdmission(app)
         return self._admission
 
     def watched(self, app: ASGIApp) -> ASGIApp:
-        """The application with a layer around it that counts requests."""
+        """Wrap the application in a layer that counts requests."""
 
         async def watching(scope: Scope, receive: Receive, send: Send) -> None:
             if scope["type"] != "http":
                 await app(scope, receive, send)
                 return
-            # Of a request that nobody waits for any more; nginx writes it so.
+            # The status for a client that has gone before the answer, as in nginx.
             status = 499
 
             async def noting(message: Message) -> None:
@@ -178,17 +177,17 @@ class Metrics:
             self._request_seconds.labels(route).observe(request.seconds)
 
     def graded(self, report: Report, seconds: float) -> None:
-        """Count a report that took so long."""
+        """Count a report, and the seconds that grading took."""
         self._grading_seconds.observe(seconds)
-        told = set()
+        codes = set()
         for part in report.parts:
             self._parts.labels(part.kind, str(part.verdict)).inc()
-            told |= {found.code for found, *_ in messages_of(part) if found.severity != "info"}
-        for name in told:
+            codes |= {found.code for found, *_ in messages_of(part) if found.severity != "info"}
+        for name in codes:
             self._codes.labels(self._bounded(name)).inc()
 
     def refused(self, answer: str) -> None:
-        """Count what is refused before the application sees it: with a status, or "none"."""
+        """Count a request refused before the application; ``answer`` is its status, or "none"."""
         self._refusals.labels(answer).inc()
 
     def _bounded(self, name: str) -> str:
@@ -198,7 +197,7 @@ class Metrics:
 
     @contextmanager
     def store(self, operation: str) -> Iterator[None]:
-        """Measure an operation on the database."""
+        """Measure the time of a database operation, and count its failures."""
         began = time.perf_counter()
         try:
             yield
@@ -209,13 +208,13 @@ class Metrics:
             self._store_seconds.labels(operation).observe(time.perf_counter() - began)
 
     def routes(self) -> APIRouter:
-        """The route that Prometheus asks."""
+        """Return the router with the route that Prometheus reads."""
         router = APIRouter()
 
-        # No part of the interface for courses: its names may change with any version.
+        # Not part of the documented API: its names may change with any version.
         @router.get(PATH, include_in_schema=False)
         async def metrics(request: Request) -> Response:
-            if not (self._tells_all or is_at_the_machine(request)):
+            if not (self._is_public or is_at_the_machine(request)):
                 raise _not_shown()
             return Response(generate_latest(self._readable()), media_type=CONTENT_TYPE_LATEST)
 
@@ -236,8 +235,8 @@ def _is_shared() -> bool:
 def _not_shown() -> ProblemError:
     return ProblemError(
         HTTPStatus.FORBIDDEN,
-        "Metrics are shown to whoever asks from this machine. To have them shown to whoever can "
-        "reach the service, start it with DH_GRADER_METRICS=all.",
+        "Metrics can be read only from the machine of the service. To let every client read them, "
+        "start the service with DH_GRADER_METRICS=all.",
         "metrics-off",
         "Metrics are not shown here",
     )

@@ -1,4 +1,4 @@
-"""Where several processes count together, so that each can tell the sum. Loads no metrics."""
+"""The folder in which several processes share their metrics. Does not import the metrics."""
 
 import os
 import tempfile
@@ -9,17 +9,18 @@ from typing import Final
 
 from service.settings import Settings, SettingsError
 
-# The variable by which prometheus_client finds the folder, in every process that inherits it.
+# The environment variable in which prometheus_client looks for the folder.
 FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
-# In memory, and writable in a container whose root is not.
+# A folder in memory, which is writable even in a container with a read-only file system.
 _MEMORY: Final = Path("/dev/shm")
 
 
 @contextmanager
-def counting_together(settings: Settings) -> Iterator[Callable[[int], None]]:
-    """Have processes that are started meanwhile count together; yields what forgets one's gauges.
+def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]:
+    """Create a metrics folder for the processes started meanwhile, and remove it in the end.
 
-    Raises SettingsError where no folder can be written.
+    Yields a function that removes the gauges of a process which has ended. Raises SettingsError if
+    no folder can be written.
     """
     if settings.metrics == "off" or settings.workers == 1:
         yield lambda _: None
@@ -41,7 +42,7 @@ def counting_together(settings: Settings) -> Iterator[Callable[[int], None]]:
 
 
 def _forget(process: int) -> None:
-    """Count what a process is doing no more; what it has done stays counted."""
+    """Remove the gauges of a process that has ended; its counters stay."""
     from prometheus_client.multiprocess import mark_process_dead
 
     mark_process_dead(process)  # type: ignore[no-untyped-call]

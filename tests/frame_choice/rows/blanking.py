@@ -1,7 +1,7 @@
-"""``python -m tests.frame_choice.rows.blanking --tries 20000``: no cell is better left empty.
+"""``python -m tests.frame_choice.rows.blanking --tries 20000``: an empty cell earns no more.
 
-In wrong tables of all sorts, under each policy, a row or a cell is emptied: that should never raise
-the points. It still does in a few tables: the search misses a better reading of some tables with
+Empty a row or a cell in wrong tables of all kinds, under each policy: that should never raise the
+points. It still does in a few tables: the search misses a better reading of some tables with
 several wrong rows, or with a wrong first or last row if the base or the tool is free.
 """
 
@@ -25,9 +25,9 @@ from tests.frame_choice.rows.shipped_robots import shipped_robots
 from tests.frame_choice.rows.student_rows import Texts, wrong_row
 from tests.frame_choice.trials import grade_rows
 
-# The share of tries that may gain; the aim is none.
+# The largest share of tries that may raise the points; the aim is 0.
 MOST = 0.01
-# What rounding to hundredths leaves.
+# Tolerance for points that are rounded to hundredths.
 DUST = 1e-9
 PLACES = 4
 
@@ -43,7 +43,7 @@ SYSTEMATIC = (
 
 @dataclass
 class Found:
-    """Tries by sort, gains by sort, and the tables in which an empty place earned more."""
+    """Tries and gains by kind of table, and the tables in which an empty place earned more."""
 
     tries: Counter[str] = field(default_factory=Counter)
     gains: Counter[str] = field(default_factory=Counter)
@@ -56,7 +56,7 @@ class Found:
 
 
 def spoiled(robot: Robot, texts: Texts, rng: np.random.Generator) -> Iterator[tuple[str, Texts]]:
-    """The table made wrong in each way."""
+    """Yield the table with slips of each kind."""
     rows = len(texts)
     for count in (1, 2, 3, 4):
         one = wrong_row(robot, texts, int(rng.integers(rows)), count, rng)
@@ -115,7 +115,7 @@ def judge(
 def places(
     report: PartReport, rows: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, Sequence[int]]]:
-    """Rows and cells, half of them blamed: row and columns."""
+    """Yield random rows and cells as row and columns; half of them are blamed."""
     blamed = [
         (i, j)
         for i, row in enumerate(report.rows)
@@ -140,7 +140,7 @@ def described(
     report: PartReport,
     written: PartReport,
 ) -> str:
-    """The table, and what it earns with and without the empty place."""
+    """Return the table as text, with its points with and without the empty place."""
     pairs = zip(texts, empty, strict=True)
     return "\n".join(
         [
@@ -163,13 +163,13 @@ def run(
     unseen: int = UNSEEN,
     policies: Sequence[Policy] = POLICIES,
 ) -> Found:
-    """What is found in so many tries with each of the robots of these numbers."""
+    """Return the results of ``tries`` tries with each of the robots."""
     found = Found()
     for number in numbers:
         robot, rng = all_robots(unseen, seed)[number], np.random.default_rng([seed, number, 2])
         enough, failed = found.tries.total() + tries, 0
         while found.tries.total() < enough and failed < 10:
-            # Base, tool and directions are given in every other table.
+            # In half of the tables, base, tool and directions are given.
             chosen = policies[0 if rng.random() < 0.5 else int(rng.integers(len(policies)))]
             names = conventions(robot, chosen)
             name = names[int(rng.integers(len(names)))]
@@ -190,13 +190,13 @@ def _task(task: tuple[Sequence[int], int, int, int]) -> Found:
 
 
 def main() -> int:
-    """Run and print; 1 if too many empty places earned more."""
+    """Run the campaign and print the figures; return 1 if too many empty places earned more."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.blanking")
     parser.add_argument("--tries", type=int, default=20_000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--misses", type=int, default=5, help="print so many")
+    parser.add_argument("--misses", type=int, default=5, help="misses to print")
     options = parser.parse_args()
     robots = len(shipped_robots()) + options.unseen
     each = -(-options.tries // robots)

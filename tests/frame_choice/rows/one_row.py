@@ -1,9 +1,9 @@
-"""``python -m tests.frame_choice.rows.one_row --tables 5000``: tables with one wrong row.
+"""``python -m tests.frame_choice.rows.one_row --tables 5000``: grade tables with one wrong row.
 
 One row of a valid table is wrong in one to four cells, as students write them. The right cells of
-the other rows must stay right, and no frames may be praised that only the wrong row implies. That
-holds unless fewer wrong cells explain the table as well, or as many in another row: the oracle
-tells by the cells that were blamed.
+the other rows must stay right, and frames that only the wrong row implies must not be praised. An
+exception is a table that fewer wrong cells explain as well, or as many in another row: the oracle
+checks this for the blamed cells.
 """
 
 import argparse
@@ -37,7 +37,7 @@ PRAISE = "own_frame_choice"
 class WrongRow:
     """A table with ``count`` wrong cells in one row.
 
-    ``valid`` is the table without them; ``usual`` says that its frames were the reference's.
+    ``valid`` is the table without them; ``usual`` is True if its frames are the reference's.
     """
 
     robot: Robot
@@ -63,7 +63,7 @@ class WrongRow:
 
 @dataclass
 class Found:
-    """Counts by name, and the tables that were misjudged."""
+    """Counts by name, and the misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -73,7 +73,7 @@ class Found:
         self.misses += other.misses
 
     def judge(self, table: WrongRow) -> None:
-        """Grade a table and count what it finds."""
+        """Grade a table and count the judgement."""
         compiled = exercise(table.robot, table.policy)
         report = grade_rows(compiled, table.texts, table.convention)
         name = f"{'usual' if table.usual else 'own'} frames, {table.count} wrong"
@@ -97,12 +97,12 @@ class Found:
 
 
 def praises(report: PartReport) -> set[str]:
-    """The remarks on frames of the student's own choice."""
+    """Return the remarks on the student's own choice of frames."""
     return {message.message for message in report.feedback if message.code == PRAISE}
 
 
 def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
-    """The cells that are not right, by the rows of the answer; (-1, -1) if rows were mistaken."""
+    """Return the cells that are not right; (-1, -1) if the rows were read in another order."""
     labels = [row.label for row in report.rows]
     if table.robot.labels(len(labels)) != labels:
         return {(-1, -1)}
@@ -115,9 +115,9 @@ def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
 
 
 def is_as_good(table: WrongRow, blamed: set[Place]) -> bool:
-    """Whether other values in the blamed cells make the table valid, and they are fewer.
+    """True if other values in the blamed cells repair the table, and these cells are fewer.
 
-    As many do if they are all in one row, or if the other rows are not the reference's own.
+    An equal number counts as fewer if all are in one row, or if the frames are the student's own.
     """
     rows = {row for row, _ in blamed}
     most = table.count - (len(rows) > 1 and table.usual)
@@ -129,7 +129,7 @@ def is_as_good(table: WrongRow, blamed: set[Place]) -> bool:
 def tables(
     robot: Robot, policies: Sequence[Policy], rng: np.random.Generator
 ) -> Iterator[WrongRow]:
-    """Tables of a robot without end, in the reference's frames and in others in turn."""
+    """Yield tables of a robot without end, alternately in the reference's frames and in others."""
     kinds = [
         (policy, convention, boldness)
         for policy in policies
@@ -152,7 +152,7 @@ def tables(
 
 @cache
 def all_robots(unseen: int, seed: int) -> tuple[Robot, ...]:
-    """The robots of the shipped exercises, and random ones."""
+    """Return the robots of the shipped exercises, and random ones."""
     drawn = (random_robot(i, np.random.default_rng([seed, i])) for i in range(unseen))
     return (*shipped_robots(), *drawn)
 
@@ -164,7 +164,7 @@ def run(
     unseen: int = UNSEEN,
     policies: Sequence[Policy] = (GIVEN,),
 ) -> Found:
-    """What is found in ``count`` tables of each of the robots of these numbers."""
+    """Return the results of ``count`` tables of each of the robots."""
     found = Found()
     for number in numbers:
         robot = all_robots(unseen, seed)[number]
@@ -179,7 +179,7 @@ def _task(task: tuple[Sequence[int], int, int, int]) -> Found:
 
 
 def total(found: Found, said: str) -> int:
-    """How many tables something was said of; all of them for the empty text."""
+    """Return the number of tables with a judgement ``said``; of all tables if it is empty."""
     return sum(
         count
         for name, count in found.counts.items()
@@ -188,7 +188,7 @@ def total(found: Found, said: str) -> int:
 
 
 def lines(found: Found) -> list[str]:
-    """The counts, and the figures that must hold."""
+    """Return the counts and the figures as lines."""
     graded, told = total(found, ""), [f"{name}: {n}" for name, n in sorted(found.counts.items())]
     for said, most in (("accepted", 0.0), ("reddened", MOST), ("praised", MOST)):
         count = total(found, said)
@@ -199,13 +199,13 @@ def lines(found: Found) -> list[str]:
 
 
 def main() -> int:
-    """Run and print; 1 if a figure does not hold."""
+    """Run the campaign and print the figures; return 1 if one is beyond its limit."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.one_row")
     parser.add_argument("--tables", type=int, default=5000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--misses", type=int, default=5, help="print so many")
+    parser.add_argument("--misses", type=int, default=5, help="misses to print")
     options = parser.parse_args()
     shipped = len(shipped_robots())
     # Half of the tables are of shipped exercises.

@@ -12,7 +12,7 @@ _DEGREES = re.compile(r"(\d+(?:\.\d+)?)\s*deg")
 
 @cache
 def shipped_robots() -> tuple[Robot, ...]:
-    """The robots, each once: several exercises may ask for the same one."""
+    """Return each robot once, because several exercises may ask for the same one."""
     found: dict[tuple[str, tuple[TextRow, ...]], Robot] = {}
     for exercise in shipped_exercises().values():
         if any(part.kind == "dh_table" for part in exercise.parts):

@@ -1,6 +1,6 @@
-"""Wrong rows as students write them: another row's entries, zeros, signs, the other convention …
+"""Generate wrong rows as students write them: entries of another row, zeros, wrong signs, ….
 
-An entry is a text. Nothing of it is drawn from ``edits``: this is a second, independent generator.
+It is independent of the generator ``edits``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,12 +21,12 @@ DRAWS = 40
 
 
 def entries(robot: Robot, texts: Texts, row: int, column: int) -> Iterator[str]:
-    """What a student may write in a cell, right or wrong."""
+    """Yield what a student may write in a cell, right or wrong."""
     written = texts[row][column]
     for other in (row - 1, row + 1, row + 2):
         if 0 <= other < len(texts):
             yield texts[other][column]
-    # The entry beside it, and that of the other convention.
+    # The entry that belongs into the neighbouring column.
     yield texts[row][{A: D, D: A, ALPHA: THETA, THETA: ALPHA}[column]]
     if column in (A, ALPHA) and row > 0:
         yield texts[row - 1][column]
@@ -46,7 +46,7 @@ def entries(robot: Robot, texts: Texts, row: int, column: int) -> Iterator[str]:
 def wrong_row(
     robot: Robot, texts: Texts, row: int, count: int, rng: np.random.Generator
 ) -> Texts | None:
-    """The table with ``count`` other entries in a row; None where none come up."""
+    """Return the table with ``count`` wrong entries in a row, or None if none are found."""
     columns = rng.permutation(4)[:count].tolist()
     for _ in range(DRAWS):
         spoiled = [list(each) for each in texts]
@@ -61,7 +61,7 @@ def wrong_row(
 def differs(
     robot: Robot, one: Sequence[Sequence[str]], other: Texts, row: int, column: int
 ) -> bool:
-    """Whether a cell has other values in two tables."""
+    """True if a cell has different values in two tables."""
     values = samples(robot)
     error: Numbers = evaluate(one[row][column], values) - evaluate(other[row][column], values)
     if column in ANGLES:

@@ -1,4 +1,4 @@
-"""No cell is better left empty: a sample of ``blanking``, and tables of it that once gained."""
+"""An empty cell earns no more than a wrong one: a sample of ``blanking``, and known tables."""
 
 import pytest
 
@@ -12,8 +12,8 @@ EACH = 22
 
 FREE = {policy.name: policy for policy in POLICIES}
 JOINTS = ("q1", "q2", "q3", "q4")
-# A number in the place of a joint variable; a wrong cell in a row of zeros, which is worth less
-# than a fifth besides where few cells decide.
+# Tables in which an empty cell once earned more: a number in place of a joint variable, and a wrong
+# cell in a row of zeros.
 ONCE_GAINED = [
     (
         Robot(
@@ -68,7 +68,7 @@ def test_an_empty_row_or_cell_earns_no_more() -> None:
 @pytest.mark.parametrize(
     ("robot", "policy", "texts", "empty"), ONCE_GAINED, ids=[case[0].name for case in ONCE_GAINED]
 )
-def test_what_once_gained_gains_no_more(
+def test_an_empty_place_earns_no_more_in_known_tables(
     robot: Robot, policy: Policy, texts: Texts, empty: Texts
 ) -> None:
     compiled = exercise(robot, policy)

@@ -1,4 +1,4 @@
-"""One wrong row is blamed on itself: a sample of ``one_row``, and the tables of the issue."""
+"""A wrong row does not make other rows wrong: a sample of ``one_row``, and known tables."""
 
 from collections.abc import Mapping
 
@@ -57,7 +57,7 @@ def test_the_figures_fail_beyond_their_limits() -> None:
     assert [line.split(":")[0] for line in lines(found) if "FAILS" in line] == ["reddened"]
 
 
-def test_frames_that_a_wrong_row_beside_a_missing_one_implies_are_not_praised() -> None:
+def test_frames_implied_by_a_wrong_row_next_to_a_missing_one_are_not_praised() -> None:
     rows = (
         ("0", "-pi/2", "l1", "q1"),
         ("0", "-pi/2", "0", "q2"),
@@ -76,7 +76,7 @@ def test_frames_that_a_wrong_row_beside_a_missing_one_implies_are_not_praised() 
     WRONG_ROWS,
     ids=[f"{case[0]} {' '.join(case[3])}" for case in WRONG_ROWS],
 )
-def test_a_row_that_is_wholly_wrong_is_blamed_on_itself(
+def test_a_wholly_wrong_row_does_not_make_other_rows_wrong(
     exercise_id: str,
     right: list[Row],
     number: int,

@@ -1,1 +1,1 @@
-"""Slips behind the poses of random arms, worked out without any of the program's own kinematics."""
+"""Slips in tables of random arms, with kinematics that are independent of the program."""

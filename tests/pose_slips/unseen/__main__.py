@@ -9,12 +9,12 @@ from tests.pose_slips.unseen.arms import arms
 from tests.pose_slips.unseen.slips import CLASSES
 from tests.pose_slips.unseen.trials import KINDS, ArmTrial, trials, two_slips
 
-# What a report says of one entry by itself.
+# The codes of messages about single entries.
 OF_ENTRIES = {"value", "independent_of", "joint_variable_extra", "term_sign", "quantity"}
 
 
 class Counts:
-    """How many trials there are, and how many are named and placed."""
+    """The number of trials, and the numbers of those that are named and placed."""
 
     def __init__(self) -> None:
         self.all = self.named = self.placed = 0
@@ -27,7 +27,7 @@ class Counts:
 
 
 def main() -> int:
-    """Try some slips of each class; return 1 where fewer than 95 % are named."""
+    """Try some slips of each class; return 1 if fewer than 95 % are named."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--arms", type=int, default=60, help="the number of arms (60)")
     parser.add_argument("--seed", type=int, default=1)
@@ -60,7 +60,7 @@ def main() -> int:
                 f"place), with others {others.named} of {others.all}"
             )
     console.print(f"alone: {total.named} of {total.all} named")
-    console.print(f"two slips, told as one: {explained.total()} of {unrelated.all}, {explained}")
+    console.print(f"two slips, named as one: {explained.total()} of {unrelated.all}, {explained}")
     return int(total.named < 0.95 * total.all)
 
 

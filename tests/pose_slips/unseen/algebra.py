@@ -10,7 +10,7 @@ from functools import reduce
 
 import numpy as np
 
-# A cell: how often it contains each symbol; under "" a number, for angles of quarter turns.
+# A cell: the factor of each symbol; under "" a number, which counts quarter turns in an angle.
 Cell = Mapping[str, float]
 Row = tuple[Cell, Cell, Cell, Cell]
 Table = tuple[Row, ...]
@@ -71,7 +71,7 @@ def _minus(entry: Entry) -> Entry:
 
 
 def link(row: Row, convention: str) -> Matrix:
-    """The link transform of a row (a, α, d, θ)."""
+    """Return the link transform of a row (a, α, d, θ)."""
     a, alpha, d, theta = row
     (ca, sa), (ct, st) = _cosine_and_sine(alpha), _cosine_and_sine(theta)
     x: Matrix = [[ONE, {}, {}, _length(a)], [{}, ca, _minus(sa), {}], [{}, sa, ca, {}], [{}] * 3]
@@ -81,12 +81,12 @@ def link(row: Row, convention: str) -> Matrix:
 
 
 def product(links: list[Matrix]) -> Matrix:
-    """The product of link transforms."""
+    """Return the product of link transforms."""
     return reduce(_product, links)
 
 
 def text(entry: Entry) -> str:
-    """The entry as somebody might type it: ``0.5*a2*cos(q1 + q2) - d4``."""
+    """Return the entry as text, such as ``0.5*a2*cos(q1 + q2) - d4``."""
     terms = []
     for (letters, turns), factor in sorted(entry.items(), key=str):
         opposite = tuple((name, -count) for name, count in turns)
@@ -111,7 +111,7 @@ def _term(factor: float, letters: tuple[str, ...], function: str) -> str:
 
 
 def numeric_link(row: Row, convention: str, values: Mapping[str, float]) -> np.ndarray:
-    """The link transform in numbers, multiplied out from turns and shifts."""
+    """Return the link transform in numbers, as a product of rotations and translations."""
 
     def size(cell: Cell, unit: float) -> float:
         return sum(

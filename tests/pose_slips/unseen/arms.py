@@ -49,18 +49,18 @@ class Arm:
 
     @property
     def labels(self) -> list[str]:
-        """The labels of the rows, as a report has them."""
+        """The labels of the rows, as in a report."""
         fixed = ["e", "e2"][: len(self.table) - len(self.structure)]
         return [str(i + 1) for i in range(len(self.structure))] + fixed
 
     @property
     def symbols(self) -> set[str]:
-        """All letters."""
+        """All symbols of the table."""
         return {name for row in self.table for cell in row for name in cell if name}
 
     @property
     def text(self) -> str:
-        """The exercise file."""
+        """The text of the exercise file."""
         joints = [f"q{i + 1}" for i in range(len(self.structure))]
         rows = [
             [written(cell, column % 2 == 1) for column, cell in enumerate(r)] for r in self.table
@@ -77,7 +77,7 @@ class Arm:
 
 
 def written(cell: Cell, is_angle: bool) -> str:
-    """The cell as text, angles in degrees."""
+    """Return the cell as text, with angles in degrees."""
 
     def term(name: str, factor: float) -> str:
         if not name:
@@ -88,7 +88,7 @@ def written(cell: Cell, is_angle: bool) -> str:
 
 
 def arms(seed: int, count: int) -> Iterator[Arm]:
-    """So many arms; in one of two the lengths are letters, in the others numbers."""
+    """Yield ``count`` arms; the lengths are letters in one half of them, and else numbers."""
     random = Random(seed)
     found = 0
     while found < count:
@@ -130,7 +130,7 @@ def _arm(random: Random, joints: int, *, letters: bool) -> Arm | None:
 
 
 def _moves_freely(arm: Arm, random: Random) -> bool:
-    """Whether each joint moves the arm in a way of its own, and no two turn about one line."""
+    """True if the joints move the arm independently, and no two turn about one line."""
     if not arm.table[-1][0] and len(arm.table) > len(arm.structure) and not arm.table[-1][2]:
         return False
     values = {name: random.uniform(0.3, 1.2) for name in sorted(arm.symbols)}
@@ -146,5 +146,5 @@ def _moves_freely(arm: Arm, random: Random) -> bool:
 
 
 def links_at(arm: Arm, values: dict[str, float]) -> list[np.ndarray]:
-    """The link transforms in numbers."""
+    """Return the link transforms in numbers."""
     return [numeric_link(row, arm.convention, values) for row in arm.table]

@@ -18,7 +18,7 @@ from tests.pose_slips.unseen.trials import (
 )
 
 SAMPLE = tuple(arms(7, 10))
-# Of each class as many are found at least, so that the sample says something.
+# The least number of trials of each class, so that the sample is large enough.
 LEAST = 10
 
 
@@ -32,15 +32,15 @@ def test_slips_in_rows_and_columns_are_named(figure: Callable[[str], None]) -> N
         assert len(named) >= 0.95 * len(alone)
 
 
-def test_where_several_slips_fit_one_of_them_is_named() -> None:
+def test_if_several_slips_fit_one_of_them_is_named() -> None:
     found = [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
     shared = [trial for trial in found if not trial.is_alone]
     assert len(shared) > LEAST
     assert sum(trial.is_named for trial in shared) >= 0.95 * len(shared)
 
 
-def test_two_slips_at_once_are_not_told_as_one_in_rows_or_columns() -> None:
-    """One slip of a cell may lead to what two others do; of rows and columns, none may."""
+def test_two_slips_are_not_explained_by_one_slip_of_rows_or_columns() -> None:
+    """A slip of one cell may explain two slips; a slip of rows or columns must not."""
     found = [trial for i, arm in enumerate(SAMPLE) for trial in two_slips(arm, i)]
     of_many = {code for arm in SAMPLE for slip in slips_of(arm) for code in slip.codes}
     of_many -= {code for arm in SAMPLE for s in slips_of(arm) if s.kind == CELL for code in s.codes}
@@ -50,7 +50,7 @@ def test_two_slips_at_once_are_not_told_as_one_in_rows_or_columns() -> None:
 
 
 @pytest.mark.parametrize("arm", SAMPLE[:5], ids=lambda arm: arm.structure)
-def test_a_right_answer_draws_none(arm: Arm) -> None:
+def test_a_right_answer_has_no_message(arm: Arm) -> None:
     exercise = exercise_of(arm)
     answers = {kind: answer_to(kind, right_answer(arm)) for kind in KINDS}
     for part in grade(exercise, Submission(answers)).parts:
@@ -59,7 +59,7 @@ def test_a_right_answer_draws_none(arm: Arm) -> None:
             assert list(messages_of(part)) == []
 
 
-def test_hints_hold_no_correction() -> None:
+def test_hints_contain_no_correction() -> None:
     [arm] = SAMPLE[2:3]
     exercise, told = exercise_of(arm), 0
     for slip in slips_of(arm):

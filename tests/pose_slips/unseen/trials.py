@@ -1,4 +1,4 @@
-"""Hand in what follows from slips of an arm's table, and say whether the report names the slip."""
+"""Grade the answers that follow from slips in an arm's table, and check the named slips."""
 
 import tempfile
 from collections import defaultdict
@@ -26,7 +26,7 @@ from tests.pose_slips.unseen.slips import (
 
 KINDS = ("transform", "rotation", "position", "links")
 SAME = 1e-9
-# An entry of more terms is no answer that anybody types.
+# Nobody types an entry with more terms.
 MOST_TERMS = 120
 Said = tuple[tuple[str, str], ...]
 
@@ -45,27 +45,27 @@ class ArmTrial:
 
     @property
     def is_alone(self) -> bool:
-        """Whether slips with other codes give another answer."""
+        """True if no slip with other codes gives the same answer."""
         return self.codes == self.slip.codes
 
     @property
     def is_named(self) -> bool:
-        """Whether the one message names the slip, or where several fit, one of them."""
+        """True if there is one message, and it names a slip that gives this answer."""
         return len(self.said) == 1 and self.said[0][0] in self.codes
 
     @property
     def is_placed(self) -> bool:
-        """Whether it says where, in the words of the slip."""
+        """True if the message names the slip and its place, in the words of the slip."""
         return self.is_named and all(word in self.said[0][1] for word in self.slip.words)
 
 
 def exercise_of(arm: Arm) -> Exercise:
-    """The exercise with a part of each kind."""
+    """Return the exercise of an arm with a part of each kind."""
     return loaded(arm.text)
 
 
 def loaded(text: str) -> Exercise:
-    """The exercise of a file with this text."""
+    """Return the exercise of a file with this text."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "unseen.toml"
         file.write_text(text, encoding="utf-8")
@@ -73,12 +73,12 @@ def loaded(text: str) -> Exercise:
 
 
 def right_answer(arm: Arm) -> ArmSlip:
-    """The arm without a slip."""
+    """Return the table of the arm without a slip."""
     return ArmSlip("", frozenset(), arm.table, arm.convention, tuple(range(len(arm.table))))
 
 
 def answer_to(kind: str, slip: ArmSlip) -> Any:
-    """The answer as text; None where it is too long."""
+    """Return the answer as text, or None if it is too long."""
     links = [link(slip.table[i], slip.convention) for i in slip.order]
     if kind == "links":
         return [_printed(matrix) for matrix in links]
@@ -95,7 +95,7 @@ def _printed(matrix: Matrix) -> list[list[str]]:
 
 
 def said_of(exercise: Exercise, kind: str, answer: Any) -> Said:
-    """The codes and messages of the errors that the answer to one part draws."""
+    """Return the codes and messages of the errors in the answer to one part."""
     report = grade(exercise, Submission({kind: answer}))
     part = next(part for part in report.parts if part.part == kind)
     messages = [m for m, _, _ in messages_of(part) if m.severity is Severity.ERROR]
@@ -103,7 +103,7 @@ def said_of(exercise: Exercise, kind: str, answer: Any) -> Said:
 
 
 class Slipped:
-    """The slips of an arm with the numbers that they lead to in one kind of part."""
+    """The slips of an arm, and the numbers of the answers to one kind of part."""
 
     def __init__(self, kind: str, arm: Arm, slips: Sequence[ArmSlip]) -> None:
         self.kind, self.arm, self.slips = kind, arm, slips
@@ -115,7 +115,7 @@ class Slipped:
         self.right, *self.found = (self.of(slip) for slip in every)
 
     def of(self, slip: ArmSlip, shift: float = 0.0) -> np.ndarray:
-        """The answer in numbers, with all joints moved by ``shift``."""
+        """Return the answer in numbers, with all joints moved by ``shift``."""
         at = {n: v + shift if n.startswith("q") else v for n, v in self.values.items()}
         links = [numeric_link(slip.table[i], slip.convention, at) for i in slip.order]
         if self.kind == "links":
@@ -126,20 +126,20 @@ class Slipped:
         return reached if self.kind == "transform" else reached[:3, :3]
 
     def is_answer(self, slip: ArmSlip) -> bool:
-        """Whether it is a wrong answer of the right shape, of an arm that moves."""
+        """True if the answer is wrong, has the right shape, and depends on the joints."""
         found = self.of(slip)
         if found.shape != self.right.shape or (self.kind == "links" and slip.kind == PRODUCT):
             return False
         return not _is_same(found, self.of(slip, 0.2)) and not _is_same(found, self.right)
 
     def alike(self, slip: ArmSlip) -> list[ArmSlip]:
-        """The slips that lead to the same answer."""
+        """Return the slips that lead to the same answer."""
         wanted = self.of(slip)
         pairs = zip(self.slips, self.found, strict=True)
         return [each for each, found in pairs if _is_same(found, wanted)]
 
     def codes(self, slip: ArmSlip) -> frozenset[str]:
-        """The codes of all slips that lead to the same answer, and those of its numbers alone."""
+        """Return the codes of all slips with the same answer, and those of its numbers."""
         of_slips: frozenset[str] = frozenset().union(*(each.codes for each in self.alike(slip)))
         if self.kind != "links" or slip.kind == CELL:
             return of_slips | of_numbers(self.of(slip), self.right)
@@ -153,7 +153,7 @@ def _is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def of_numbers(found: np.ndarray, right: np.ndarray) -> frozenset[str]:
-    """The codes that the answer may have as numbers alone, whatever they follow from."""
+    """Return the codes that fit the numbers of an answer, such as the wrong sign of one entry."""
     differs = np.abs(found - right) > SAME
     is_opposite = np.abs(found + right) < SAME
     codes = {"sign"} if differs.sum() == 1 and is_opposite[differs].all() else set()
@@ -174,7 +174,7 @@ def of_numbers(found: np.ndarray, right: np.ndarray) -> frozenset[str]:
 
 
 def trials(arm: Arm, seed: int, each: int = 2) -> Iterator[ArmTrial]:
-    """Trials of each kind: ``each`` slips of each class, drawn at random."""
+    """Yield trials of each kind of part: ``each`` random slips of each class."""
     random, exercise, slips = Random(seed), exercise_of(arm), list(slips_of(arm))
     for kind in KINDS:
         slipped = Slipped(kind, arm, slips)
@@ -189,13 +189,13 @@ def trials(arm: Arm, seed: int, each: int = 2) -> Iterator[ArmTrial]:
 def _trial(slipped: Slipped, exercise: Exercise, slip: ArmSlip) -> Iterator[ArmTrial]:
     answer = answer_to(slipped.kind, slip)
     said = () if answer is None else said_of(exercise, slipped.kind, answer)
-    # An answer that is cut off has not the slip that it was made with.
+    # A truncated answer no longer has the slip.
     if answer is not None and "too_long" not in dict(said):
         yield ArmTrial(slipped.kind, slip, slipped.codes(slip), said)
 
 
 def two_slips(arm: Arm, seed: int, each: int = 3) -> Iterator[ArmTrial]:
-    """Trials with unrelated slips in two rows at once, which no single slip explains."""
+    """Yield trials with unrelated slips in two rows, which no single slip explains."""
     random, exercise, slips = Random(seed), exercise_of(arm), list(slips_of(arm))
     of_row = [slip for slip in slips if slip.kind in (CELL, SWAPPED_ROW)]
     for kind in KINDS:
@@ -207,7 +207,7 @@ def two_slips(arm: Arm, seed: int, each: int = 3) -> Iterator[ArmTrial]:
                 for first, second, right in zip(one.table, other.table, arm.table, strict=True)
             )
             slip = ArmSlip("two slips", frozenset(), both, arm.convention, one.order)
-            # The two may be in one row, or one may undo the other or change nothing.
+            # Skip two slips in one row, and slips that cancel each other or change nothing.
             is_single = _is_same(slipped.of(one), slipped.of(slip))
             if slipped.is_answer(slip) and not is_single and not slipped.codes(slip):
                 yield from _trial(slipped, exercise, slip)

@@ -1,8 +1,8 @@
-"""Pages of the origins that are set may read what is answered before the application."""
+"""Pages of the configured origins may read refusals."""
 
 import pytest
 
-from service.server.connections.early_cors import leave_to_read, origin_in
+from service.server.connections.early_cors import cors_headers, origin_in
 
 COURSE, OTHER = "https://course.example.edu", "https://other.example.edu"
 
@@ -19,8 +19,10 @@ COURSE, OTHER = "https://course.example.edu", "https://other.example.edu"
         (("*",), OTHER, "*"),
     ],
 )
-def test_who_may_read(origins: tuple[str, ...], origin: str, allowed: str | None) -> None:
-    assert leave_to_read(origins, origin).get("Access-Control-Allow-Origin") == allowed
+def test_only_configured_origins_are_allowed(
+    origins: tuple[str, ...], origin: str, allowed: str | None
+) -> None:
+    assert cors_headers(origins, origin).get("Access-Control-Allow-Origin") == allowed
 
 
 @pytest.mark.parametrize(
@@ -32,5 +34,5 @@ def test_who_may_read(origins: tuple[str, ...], origin: str, allowed: str | None
         (b"", ""),
     ],
 )
-def test_the_origin_is_found_in_what_has_come(head: bytes, origin: str) -> None:
+def test_the_origin_is_found_in_an_incomplete_head(head: bytes, origin: str) -> None:
     assert origin_in(head) == origin

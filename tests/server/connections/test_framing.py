@@ -1,4 +1,4 @@
-"""Where the requests of a connection end, however the network cuts them."""
+"""The ends of requests are found, however the network cuts the bytes."""
 
 from http import HTTPStatus
 
@@ -13,7 +13,7 @@ from service.server.limits import MAX_FRAME, MAX_HEADERS, MAX_URL
 GET = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
 SIZED = b"POST /v1/preview HTTP/1.1\r\nContent-Length: 5\r\n\r\n"
 CHUNKED = b"POST /v1/preview HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n"
-# Head, then how long the body is by the head, then all that follows the head.
+# Each: the head, the length of the body by the head, and all bytes after the head.
 REQUESTS: list[tuple[bytes, int | None, bytes]] = [
     (GET, 0, b""),
     (SIZED, 5, b"{}\r\n\r"),
@@ -24,7 +24,7 @@ REQUESTS: list[tuple[bytes, int | None, bytes]] = [
 
 
 def read(framing: Framing, data: bytes, lengths: list[int | None]) -> list[bytes]:
-    """The whole requests that come out for what comes in, each as its bytes."""
+    """Feed bytes to the framing; return the requests, of which the last may be incomplete."""
     requests: list[bytes] = []
     taken = b""
     framing.receive(data)
@@ -70,7 +70,7 @@ def test_a_request_ends_at_the_same_place_however_it_is_cut(
 
 
 def refused(data: bytes, length: int | None = 0) -> HTTPStatus | None:
-    """The status that the bytes are refused with, in one go and byte by byte, or None."""
+    """Return the status with which bytes are refused, whole and in parts, or None."""
     statuses: set[HTTPStatus | None] = set()
     for step in (len(data), 997):
         framing = Framing()
@@ -85,7 +85,7 @@ def refused(data: bytes, length: int | None = 0) -> HTTPStatus | None:
 
 
 def head(size: int) -> bytes:
-    """A head of so many bytes."""
+    """Return a head of ``size`` bytes."""
     begin, end = b"GET / HTTP/1.1\r\nCookie: ", b"\r\n\r\n"
     return begin + b"x" * (size - len(begin) - len(end)) + end
 
@@ -128,7 +128,7 @@ def test_a_request_may_have_100_headers() -> None:
     ],
     ids=["an extension", "a trailer", "many trailers", "tiny chunks"],
 )
-def test_what_is_no_content_counts_with_the_head(rest: bytes) -> None:
+def test_chunk_sizes_and_trailers_count_with_the_head(rest: bytes) -> None:
     assert refused(CHUNKED + rest, None) is HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
 
 
@@ -148,7 +148,7 @@ def test_chunks_of_a_usual_size_are_read() -> None:
     ],
     ids=["TLS", "no method", "small letters", "newlines", "one newline"],
 )
-def test_what_is_no_request_is_refused_at_once(data: bytes) -> None:
+def test_bytes_that_are_no_request_are_refused_at_once(data: bytes) -> None:
     assert refused(data) is HTTPStatus.BAD_REQUEST
 
 

@@ -3,7 +3,7 @@ from service.server.refusals import too_busy
 from service.server.watching.metrics import Metrics
 
 
-def test_a_refusal_for_want_of_room_may_be_read_by_a_page_and_is_counted() -> None:
+def test_a_refusal_is_counted_and_a_page_may_read_it() -> None:
     metrics = Metrics()
     state = GuardedState(["https://course.example.edu"], metrics)
     answer = state.refusal(too_busy(1), "/v1/preview", "https://course.example.edu")

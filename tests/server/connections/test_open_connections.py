@@ -1,4 +1,4 @@
-"""Who makes room when there are too many connections, or when they hold too much."""
+"""Which connections are closed when there are too many, or when they hold too many bytes."""
 
 import asyncio
 import resource
@@ -7,13 +7,17 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from service.server.connections import open_connections as crowd_module
-from service.server.connections.open_connections import Crowd, Room, room_here
+from service.server.connections import open_connections as module
+from service.server.connections.open_connections import (
+    ConnectionLimits,
+    OpenConnections,
+    allowed_here,
+)
 from service.server.limits import RESERVE
 
 
 @dataclass(eq=False)
-class Line:
+class FakeConnection:
     """A connection that has been waiting since ``waiting_since``."""
 
     address: str
@@ -38,66 +42,71 @@ def loop() -> Iterator[asyncio.AbstractEventLoop]:
         loop.close()
 
 
-def ended(lines: list[Line]) -> list[int]:
+def closed(lines: list[FakeConnection]) -> list[int]:
     return [i for i, line in enumerate(lines) if line.ended]
 
 
-def test_those_of_whom_there_are_most_make_room_the_longest_waiting_first(
+def test_the_address_with_most_connections_loses_its_longest_waiting_ones(
     loop: asyncio.AbstractEventLoop,
 ) -> None:
-    crowd = Crowd(Room(connections=16))
-    honest = [Line("a", 0.0), Line("b", 25.0)]
-    many = [Line("c", float(20 - i)) for i in range(14)]
+    connections = OpenConnections(ConnectionLimits(connections=16))
+    honest = [FakeConnection("a", 0.0), FakeConnection("b", 25.0)]
+    many = [FakeConnection("c", float(20 - i)) for i in range(14)]
     for line in [*honest, *many]:
-        assert crowd.enter(line, loop)
-    assert ended([*honest, *many]) == []
-    assert crowd.enter(Line("d", 30.0), loop)
-    # A sixteenth of 16 more than needed; the last two of the many have waited longest.
-    assert (ended(honest), ended(many)) == ([], [12, 13])
-    assert len(crowd) == 15
+        assert connections.enter(line, loop)
+    assert closed([*honest, *many]) == []
+    assert connections.enter(FakeConnection("d", 30.0), loop)
+    # One more than needed is closed; the last two of the many have waited longest.
+    assert (closed(honest), closed(many)) == ([], [12, 13])
+    assert len(connections) == 15
 
 
-def test_whole_requests_are_not_dropped_and_the_reserve_is_for_questions_about_health(
+def test_complete_requests_are_not_dropped_and_the_reserve_is_for_health_checks(
     loop: asyncio.AbstractEventLoop,
 ) -> None:
-    crowd = Crowd(Room(connections=4))
-    lines = [Line("a", None) for _ in range(4 + RESERVE)]
+    connections = OpenConnections(ConnectionLimits(connections=4))
+    lines = [FakeConnection("a", None) for _ in range(4 + RESERVE)]
     for i, line in enumerate(lines):
-        assert crowd.enter(line, loop)
-        assert crowd.full == (i >= 4)
-    assert not crowd.enter(Line("b", 0.0), loop)
-    assert ended(lines) == []
-    crowd.leave(lines[0])
-    assert crowd.enter(Line("b", 0.0), loop)
+        assert connections.enter(line, loop)
+        assert connections.full == (i >= 4)
+    assert not connections.enter(FakeConnection("b", 0.0), loop)
+    assert closed(lines) == []
+    connections.leave(lines[0])
+    assert connections.enter(FakeConnection("b", 0.0), loop)
 
 
-def test_whoever_holds_most_makes_room_for_more_bytes(loop: asyncio.AbstractEventLoop) -> None:
-    crowd = Crowd(Room(unfinished=1000))
-    large = [Line("a", 1.0), Line("a", 2.0), Line("a", None)]
-    small = Line("b", 0.0)
-    idle = Line("a", 0.0)
+def test_the_address_that_holds_most_bytes_loses_its_longest_waiting_connection(
+    loop: asyncio.AbstractEventLoop,
+) -> None:
+    connections = OpenConnections(ConnectionLimits(unfinished=1000))
+    large = [FakeConnection("a", 1.0), FakeConnection("a", 2.0), FakeConnection("a", None)]
+    small = FakeConnection("b", 0.0)
+    idle = FakeConnection("a", 0.0)
     for line in [*large, small, idle]:
-        crowd.enter(line, loop)
+        connections.enter(line, loop)
     for line, size in [(large[0], 400), (large[1], 300), (small, 200), (large[2], 0)]:
-        crowd.hold(line, size)
-    assert ended([*large, small, idle]) == []
-    crowd.hold(small, 301)
-    assert ended([*large, small, idle]) == [0]
-    # What has gone holds nothing: 601 bytes are left.
-    crowd.hold(large[1], 699)
-    assert ended([*large, small, idle]) == [0]
-    crowd.hold(large[1], 700)
-    assert ended([*large, small, idle]) == [0, 1]
+        connections.set_unfinished(line, size)
+    assert closed([*large, small, idle]) == []
+    connections.set_unfinished(small, 301)
+    assert closed([*large, small, idle]) == [0]
+    # A closed connection holds no bytes: 601 bytes are left.
+    connections.set_unfinished(large[1], 699)
+    assert closed([*large, small, idle]) == [0]
+    connections.set_unfinished(large[1], 700)
+    assert closed([*large, small, idle]) == [0, 1]
 
 
-def test_time_is_up_for_whoever_is_late(
+def test_a_connection_expires_at_its_deadline(
     loop: asyncio.AbstractEventLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(crowd_module, "SWEEP", 0.001)
-    crowd = Crowd(Room())
-    late, early = Line("a", 0.0, deadline=loop.time()), Line("a", 0.0, deadline=loop.time() + 99)
+    monkeypatch.setattr(module, "SWEEP", 0.001)
+    connections = OpenConnections(ConnectionLimits())
+    late, early = (
+        FakeConnection("a", 0.0, deadline=loop.time()),
+        FakeConnection("a", 0.0, deadline=loop.time() + 99),
+    )
     for line in (late, early):
-        crowd.enter(line, loop)
+        connections.enter(line, loop)
 
     async def until_expired() -> None:
         while not late.ended:
@@ -107,12 +116,14 @@ def test_time_is_up_for_whoever_is_late(
     assert (late.ended[0], early.ended) == ("expired", [])
 
 
-def test_there_is_room_for_as_many_as_files_may_be_open(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_limit_of_connections_follows_the_limit_of_open_files(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     limits = [256, 1024]
     monkeypatch.setattr(resource, "getrlimit", lambda _: tuple(limits))
     monkeypatch.setattr(resource, "setrlimit", lambda _, new: limits.__setitem__(0, new[0]))
-    assert (room_here().connections, limits[0]) == (1024 - 96, 1024)
+    assert (allowed_here().connections, limits[0]) == (1024 - 96, 1024)
     limits[:] = [256, resource.RLIM_INFINITY]
-    assert (room_here().connections, limits[0]) == (1000, 1096)
+    assert (allowed_here().connections, limits[0]) == (1000, 1096)
     limits[:] = [20000, 20000]
-    assert (room_here().connections, limits[0]) == (1000, 20000)
+    assert (allowed_here().connections, limits[0]) == (1000, 20000)

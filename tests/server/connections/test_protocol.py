@@ -1,4 +1,4 @@
-"""Bare connections to a real process: what it reads, how long it waits, what it answers."""
+"""Raw connections to a real process: what it reads, how long it waits, what it answers."""
 
 import contextlib
 import socket
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.server.impatient import HEAD_PATIENCE, PATIENCE
+from tests.server.impatient import HEAD_TIMEOUT, TIMEOUT
 from tests.server.raw import HEALTH, HOST, TEXT, Service, answers, preview, received, service, until
 from tests.server.watching.test_metrics import asked, value
 
@@ -60,8 +60,10 @@ def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         (CHUNKED.replace(b"chunked", b"chunked, gzip") + b"0\r\n\r\n", 400),
     ],
 )
-def test_what_may_not_be_sent_is_a_problem(impatient: Service, sent: bytes, status: int) -> None:
-    # Nothing more is sent, and the sending end stays open: the server must know by itself.
+def test_an_invalid_request_is_answered_with_a_problem(
+    impatient: Service, sent: bytes, status: int
+) -> None:
+    # Nothing more is sent, but the sending end stays open: the server must refuse by itself.
     with impatient.connect(sent) as connection:
         (answer,) = answers(connection)
     assert answer.status == status
@@ -70,7 +72,7 @@ def test_what_may_not_be_sent_is_a_problem(impatient: Service, sent: bytes, stat
     assert answer.headers["x-content-type-options"] == "nosniff"
     assert "date" in answer.headers
     assert "server" not in answer.headers
-    # A page may read it, though nothing may have come but half of the address.
+    # A page may read it, even if only half of the address has been received.
     assert answer.headers["access-control-allow-origin"] == COURSE
     problem = answer.json()
     assert problem["status"] == status
@@ -89,7 +91,7 @@ def test_what_may_not_be_sent_is_a_problem(impatient: Service, sent: bytes, stat
     ],
     ids=["sized", "upgrade", "plain", "chunked", "tiny chunks and a trailer", "an empty line"],
 )
-def test_what_may_be_sent_is_answered_and_the_next_as_well(impatient: Service, sent: bytes) -> None:
+def test_a_valid_request_and_the_next_one_are_answered(impatient: Service, sent: bytes) -> None:
     first, second = impatient.ask(sent + HEALTH)
     assert (first.status, second.status) == (200, 200)
     assert first.json()["ok"] is True
@@ -105,7 +107,7 @@ def test_a_request_may_come_byte_by_byte(impatient: Service) -> None:
         assert [answer.status for answer in answers(connection)] == [200, 200]
 
 
-def test_a_client_that_waits_for_leave_is_given_it(impatient: Service) -> None:
+def test_a_client_that_waits_for_100_continue_receives_it(impatient: Service) -> None:
     with impatient.connect(preview(b"", b"Expect: 100-continue").replace(b": 0", b": 42")) as line:
         assert line.recv(100) == b"HTTP/1.1 100 Continue\r\n\r\n"
         line.sendall(TEXT)
@@ -113,7 +115,7 @@ def test_a_client_that_waits_for_leave_is_given_it(impatient: Service) -> None:
         assert received(line).startswith(b"HTTP/1.1 200 OK\r\n")
 
 
-def test_an_old_client_is_answered_and_hung_up_on(impatient: Service) -> None:
+def test_an_http_1_0_client_is_answered_and_its_connection_is_closed(impatient: Service) -> None:
     with impatient.connect(b"GET http://x/healthz HTTP/1.0\r\n\r\n") as connection:
         (answer,) = answers(connection)
     assert (answer.status, answer.headers["connection"]) == (200, "close")
@@ -143,7 +145,7 @@ def test_an_early_answer_does_not_end_the_connection(impatient: Service) -> None
         assert [answer.status for answer in answers(connection)] == [404, 200]
 
 
-# How long the server waits. The guards above are of the clock, the lower bounds are its own.
+# Timeouts of the server. The tests check their lower bounds; upper bounds are only guards.
 
 
 def seconds_until_closed(connection: socket.socket) -> tuple[float, bytes]:
@@ -164,7 +166,7 @@ def test_an_unfinished_request_is_given_up(impatient: Service, sent: bytes) -> N
     assert answer.headers["content-type"] == "application/problem+json"
 
 
-def test_refusals_are_counted_which_the_application_never_sees(impatient: Service) -> None:
+def test_refusals_before_the_application_are_counted(impatient: Service) -> None:
     begun = (b"GET / HTTP/1.1\r\nHost: x\r\n", 408)
     broken = (CHUNKED + b"two\r\n", 400)
     long = (b"GET /" + b"x" * 9000, 414)
@@ -185,7 +187,7 @@ def test_refusals_are_counted_which_the_application_never_sees(impatient: Servic
     assert more("requests_total", "POST", "/v1/preview", "413") == 1
 
 
-def test_a_body_that_drips_is_given_up_all_the_same(impatient: Service) -> None:
+def test_a_body_that_comes_too_slowly_is_given_up(impatient: Service) -> None:
     with impatient.connect(preview(b" " * 1000)[:-1000]) as connection:
         connection.settimeout(0.05)
         began = time.monotonic()
@@ -197,27 +199,27 @@ def test_a_body_that_drips_is_given_up_all_the_same(impatient: Service) -> None:
             except TimeoutError:
                 continue
     assert said.startswith(b"HTTP/1.1 408 ")
-    assert time.monotonic() - began >= PATIENCE * 0.9
+    assert time.monotonic() - began >= TIMEOUT * 0.9
 
 
 @pytest.mark.parametrize(
-    ("sent", "patience"),
-    [(b"", HEAD_PATIENCE), (HEALTH, PATIENCE)],
+    ("sent", "timeout"),
+    [(b"", HEAD_TIMEOUT), (HEALTH, TIMEOUT)],
     ids=["nothing", "an answered request"],
 )
-def test_an_idle_connection_is_closed_without_a_word(
-    impatient: Service, sent: bytes, patience: float
+def test_an_idle_connection_is_closed_without_an_answer(
+    impatient: Service, sent: bytes, timeout: float
 ) -> None:
     with impatient.connect(sent) as connection:
         seconds, said = seconds_until_closed(connection)
-    assert seconds >= patience * 0.9
+    assert seconds >= timeout * 0.9
     assert said.count(b"HTTP/1.1") == (1 if sent else 0)
 
 
 def test_a_head_has_less_time_than_a_body(tmp_path: Path) -> None:
     head = b"GET /healthz HTTP/1.1\r\n"
     with (
-        service(tmp_path, module="tests.server.impatient", PATIENCE="600") as running,
+        service(tmp_path, module="tests.server.impatient", TIMEOUT="600") as running,
         running.connect(preview()[:-5]) as body,
         running.connect(b"") as silent,
         running.connect(head) as first_head,
@@ -231,10 +233,10 @@ def test_a_head_has_less_time_than_a_body(tmp_path: Path) -> None:
             body.recv(100)
 
 
-def test_empty_lines_keep_no_connection(impatient: Service) -> None:
+def test_empty_lines_do_not_keep_a_connection_open(impatient: Service) -> None:
     with impatient.connect(b"\r\n") as connection:
-        connection.settimeout(PATIENCE / 5)
-        end = time.monotonic() + 5 * PATIENCE
+        connection.settimeout(TIMEOUT / 5)
+        end = time.monotonic() + 5 * TIMEOUT
         with pytest.raises((ConnectionResetError, BrokenPipeError)):  # noqa: PT012 - until closed
             while time.monotonic() < end:
                 connection.sendall(b"\r\n")
@@ -242,30 +244,32 @@ def test_empty_lines_keep_no_connection(impatient: Service) -> None:
                     assert connection.recv(100) == b""
 
 
-def test_answers_that_nobody_reads_stop_the_reading(impatient: Service) -> None:
-    # The exercises take 5 kB each time; a client that reads nothing soon has none more begun.
+def test_a_client_that_reads_no_answers_is_not_read_any_further(impatient: Service) -> None:
+    # Each answer has 5 kB; soon no further request of a client that reads none is begun.
     request = b"GET /v1/exercises HTTP/1.1\r\nHost: x\r\n\r\n" * 1000
     line = socket.socket()
     line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
     with line:
         line.connect(("127.0.0.1", impatient.port))
-        line.settimeout(PATIENCE / 2)
+        line.settimeout(TIMEOUT / 2)
         sent = 0
         with contextlib.suppress(TimeoutError, ConnectionResetError, BrokenPipeError):
             while sent < 10**9:
                 sent += line.send(request)
-    # What the system's own buffers take; the answers would be a hundred times as much.
+    # About the size of the system's buffers; the answers would have a hundred times as many bytes.
     assert sent < 20_000_000
     (answer,) = impatient.ask(HEALTH)
     assert answer.status == 200
 
 
 @pytest.mark.parametrize("sent", [b"", b"GET /heal", preview()[:-3]], ids=["", "head", "body"])
-def test_whoever_gives_up_is_let_go_at_once(impatient: Service, sent: bytes) -> None:
+def test_a_connection_that_the_client_closes_early_is_closed_at_once(
+    impatient: Service, sent: bytes
+) -> None:
     assert impatient.ask(sent) == []
 
 
-def test_a_client_that_only_listens_gets_its_answer(impatient: Service) -> None:
+def test_a_client_that_closes_its_sending_end_gets_its_answer(impatient: Service) -> None:
     (answer,) = impatient.ask(preview())
     assert answer.json()["ok"] is True
 

@@ -1,4 +1,4 @@
-"""How a real process ends, alone and with workers, and what it does when one of them is lost."""
+"""How a real process shuts down, alone and with workers, and how it replaces a killed worker."""
 
 import json
 import os
@@ -33,7 +33,7 @@ def refuses(running: Service) -> bool:
 
 
 def runs(process: int) -> bool:
-    """Whether a process runs: it may have ended, and nobody has asked for its exit code yet."""
+    """True if a process runs; False for one that has ended but still has an entry (zombie)."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
@@ -42,7 +42,7 @@ def runs(process: int) -> bool:
 
 
 def workers(running: Service) -> set[int]:
-    """The processes whose parent is the service, without the tracker of multiprocessing."""
+    """Return the child processes of the service, without multiprocessing's resource tracker."""
     found = set()
     for folder in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
@@ -55,13 +55,13 @@ def workers(running: Service) -> set[int]:
 
 
 def check_end(running: Service) -> None:
-    """Ask it to end while one request is half there, and others are not begun."""
+    """Terminate the service while one request is incomplete and two connections have none."""
     with (
         running.connect(preview()[:HALF]) as half,
         running.connect(b"GET /healthz HTT") as head,
         running.connect() as idle,
     ):
-        # Answers on other connections say that these have been accepted.
+        # Answers on other connections show that these have been accepted.
         for _ in range(5):
             running.ask(HEALTH)
         running.process.terminate()
@@ -75,17 +75,17 @@ def check_end(running: Service) -> None:
     assert running.process.wait(ANSWER) == 0
 
 
-def test_what_is_under_way_is_finished_and_what_is_not_begun_is_hung_up_on(
+def test_a_begun_request_is_answered_and_idle_connections_are_closed(
     tmp_path: Path,
 ) -> None:
     with service(tmp_path) as running:
         check_end(running)
 
 
-def test_half_a_body_does_not_keep_it_and_is_reset(tmp_path: Path) -> None:
-    # On a busy machine, its usual patience may be over before it is asked to end.
+def test_an_incomplete_body_does_not_delay_the_shutdown_and_is_reset(tmp_path: Path) -> None:
+    # On a busy machine, its usual timeout may be over before it is asked to end.
     with (
-        service(tmp_path, module=IMPATIENT, PATIENCE="600") as running,
+        service(tmp_path, module=IMPATIENT, TIMEOUT="600") as running,
         running.connect(preview()[:HALF]) as half,
     ):
         running.ask(HEALTH)
@@ -106,12 +106,12 @@ def test_a_second_signal_ends_it_at_once(tmp_path: Path, options: tuple[str, ...
         began = time.monotonic()
         running.process.terminate()
         assert running.process.wait(ANSWER) == -signal.SIGTERM
-        # Without it, the half body would keep it for eight seconds.
+        # Without the second signal, the incomplete body would keep it running for eight seconds.
         assert time.monotonic() - began < 5
         until(lambda: not any(map(runs, staff)))
 
 
-def test_answers_are_whole_when_it_ends_in_the_midst_of_them(tmp_path: Path) -> None:
+def test_answers_are_complete_if_the_service_ends_while_sending_them(tmp_path: Path) -> None:
     pipelined = 200
     with service(tmp_path, module=IMPATIENT) as running:
         with ExitStack() as stack:
@@ -119,13 +119,13 @@ def test_answers_are_whole_when_it_ends_in_the_midst_of_them(tmp_path: Path) -> 
             for line in lines:
                 line.recv(1, socket.MSG_PEEK)
             assert running.end() == 0
-            # Fails where one is cut off.
+            # `answers` fails if one is incomplete.
             found = [answer.status for line in lines for answer in answers(line)]
         assert set(found) == {200}
         assert len(found) < 20 * pipelined
 
 
-def test_answers_that_the_end_cuts_short_are_no_failures(tmp_path: Path) -> None:
+def test_answers_that_the_shutdown_interrupts_log_no_error(tmp_path: Path) -> None:
     hanging = b"GET /hanging HTTP/1.1\r\nHost: x\r\n\r\n"
     with service(tmp_path, module=IMPATIENT) as running:
         with ExitStack() as stack:
@@ -134,11 +134,11 @@ def test_answers_that_the_end_cuts_short_are_no_failures(tmp_path: Path) -> None
             until(lambda: not running.ask(HEALTH)[0].status - 200)
             assert running.end() == 0
             assert [received(line) for line in lines].count(b"")
-        # The fixture finds a traceback in the log, if there is one.
+        # `service` checks that the log has no traceback.
         assert "Exception" not in running.log
 
 
-def test_a_thread_that_works_on_does_not_keep_it(tmp_path: Path) -> None:
+def test_a_running_thread_does_not_delay_the_shutdown(tmp_path: Path) -> None:
     working = b"GET /working HTTP/1.1\r\nHost: x\r\n\r\n"
     with service(tmp_path, module=IMPATIENT) as running, running.connect(working) as line:
         running.ask(HEALTH)
@@ -147,9 +147,9 @@ def test_a_thread_that_works_on_does_not_keep_it(tmp_path: Path) -> None:
         assert "Something does not react" in running.log
 
 
-# While the process of the checks starts, and while it is at work.
+# The shutdown comes while the process of the check starts, and while it works.
 @pytest.mark.parametrize("seconds", [0.0, 4.0])
-def test_a_check_of_the_editor_does_not_keep_it(tmp_path: Path, seconds: float) -> None:
+def test_a_check_of_the_editor_does_not_delay_the_shutdown(tmp_path: Path, seconds: float) -> None:
     body = json.dumps({"id": "arm", "text": COSTLY}).encode()
     head = b"POST /tutor/check HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n"
     head %= len(body)
@@ -163,13 +163,13 @@ def test_a_check_of_the_editor_does_not_keep_it(tmp_path: Path, seconds: float) 
 
 
 def connections(process: int) -> int:
-    """How many sockets a process has open."""
+    """Return the number of open sockets of a process."""
     files = Path(f"/proc/{process}/fd").iterdir()
     return sum(str(file.readlink()).startswith("socket:") for file in files)
 
 
 def check_shares(running: Service, staff: set[int]) -> None:
-    """Open connections, and see that no worker has most of them."""
+    """Open 40 connections, and check that each worker accepts at least ten of them."""
     before = {worker: connections(worker) for worker in staff}
     with ExitStack() as lines:
         for _ in range(40):
@@ -179,11 +179,11 @@ def check_shares(running: Service, staff: set[int]) -> None:
     assert min(more) >= 10
 
 
-def test_workers_share_connections_out_a_lost_one_is_replaced_and_all_end_in_good_order(
+def test_workers_balance_connections_and_a_killed_one_is_replaced(
     tmp_path: Path,
 ) -> None:
     with service(tmp_path, "--workers", "2") as running:
-        # It has said that it is running: nobody is refused any more.
+        # It has logged that it is running: it accepts connections.
         assert not refuses(running)
         until(lambda: running.log.count("startup complete") == 2)
         assert running.log.count("running on") == 1
@@ -198,7 +198,7 @@ def test_workers_share_connections_out_a_lost_one_is_replaced_and_all_end_in_goo
         check_end(running)
 
 
-def test_workers_end_when_nobody_looks_after_them(tmp_path: Path) -> None:
+def test_workers_end_when_their_supervisor_is_killed(tmp_path: Path) -> None:
     with service(tmp_path, "--workers", "2") as running:
         until(lambda: running.log.count("startup complete") == 2)
         staff = workers(running)
@@ -209,14 +209,16 @@ def test_workers_end_when_nobody_looks_after_them(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="session")
 def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A process for tests that do not end it; it writes no address into its log."""
+    """A process that several tests share; it writes no address into its log."""
     folder = tmp_path_factory.mktemp("lasting")
     with service(folder, DH_GRADER_LOG_ADDRESSES="false") as running:
         yield running
         assert running.end() == 0
 
 
-def test_many_open_connections_leave_room_and_little_memory(lasting: Service) -> None:
+def test_many_open_connections_do_not_prevent_answers_and_take_little_memory(
+    lasting: Service,
+) -> None:
     more = MAX_CONNECTIONS + 300
     lasting.ask(preview())
     before = lasting.memory()
@@ -247,7 +249,7 @@ def test_addresses_can_be_left_out_of_the_log(lasting: Service) -> None:
     assert "Ada" not in lasting.log
 
 
-def test_a_port_that_is_taken_is_a_reason(lasting: Service, tmp_path: Path) -> None:
+def test_a_port_in_use_is_reported(lasting: Service, tmp_path: Path) -> None:
     with (
         pytest.raises(AssertionError, match=r"(?i)address already in use"),
         service(tmp_path, "--port", str(lasting.port), "--workers", "2"),

@@ -1,4 +1,4 @@
-"""Requests are let through in turn by client, and nobody's queue is endless."""
+"""Clients take fair turns, and the queue of each client is bounded."""
 
 import asyncio
 import itertools
@@ -21,7 +21,7 @@ Messages = list[dict[str, Any]]
 
 
 class Client:
-    """One connection that sends one request, and what it got."""
+    """A connection that sends one request and records the answer."""
 
     def __init__(
         self, address: str, port: int = 1, body: bytes = b"{}", path: str = "/v1/preview"
@@ -55,7 +55,7 @@ class Client:
 
 
 class Application:
-    """Notes whose request it answers, with its body, and keeps the process busy meanwhile."""
+    """An application that records the client and the body of each request that it answers."""
 
     def __init__(self, work: Callable[[Any], None] = lambda _: None) -> None:
         self.served: list[str] = []
@@ -79,7 +79,7 @@ class Application:
 
 
 def busy(seconds: float) -> None:
-    """Take so much processor time."""
+    """Use a number of seconds of processor time."""
     end = time.thread_time() + seconds
     while time.thread_time() < end:
         pass
@@ -102,13 +102,13 @@ async def passes(number: int) -> None:
 
 @pytest.fixture
 def alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let all requests take the same time: a slice each."""
+    """Let each request take the same time: one slice."""
     clock = itertools.count()
     monkeypatch.setattr(admission, "thread_time", lambda: next(clock) * 1.01 * SLICE)
 
 
 @pytest.mark.usefixtures("alike")
-def test_a_client_that_comes_after_many_connections_of_another_is_served_soon() -> None:
+def test_a_client_does_not_wait_for_all_connections_of_another_one() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
@@ -144,14 +144,14 @@ def test_learners_take_turns_and_a_course_site_has_a_turn_for_each_request() -> 
 
 
 @pytest.mark.usefixtures("alike")
-def test_what_arrives_while_another_is_answered_is_heard_before_the_next_is_begun() -> None:
+def test_requests_that_arrive_during_an_answer_are_read_before_the_next_one_begins() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
         waiting = begin(app, *(Client("attacker", port) for port in range(16)))
         served_between = []
         for _ in range(5):
-            # As a socket would be read, once in a pass of the loop.
+            # A socket would also be read once in a pass of the event loop.
             before = len(inner.served)
             client = Client("honest")
             await asyncio.gather(*begin(app, client))
@@ -164,7 +164,7 @@ def test_what_arrives_while_another_is_answered_is_heard_before_the_next_is_begu
 
 
 class ManyGradings(Application):
-    """Gives way after each of the gradings that an attacker's request asks for."""
+    """An application that gives way after each of ten gradings in an attacker's request."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         if scope["client"][0] == "attacker":
@@ -175,7 +175,7 @@ class ManyGradings(Application):
         await super().__call__(scope, receive, send)
 
 
-def test_a_request_of_many_gradings_waits_after_each_for_many_small_ones() -> None:
+def test_small_requests_go_before_the_next_grading_of_a_large_one() -> None:
     async def story() -> None:
         inner = ManyGradings()
         app = FairAdmission(inner)
@@ -193,7 +193,7 @@ def test_a_request_of_many_gradings_waits_after_each_for_many_small_ones() -> No
     run(story())
 
 
-def test_a_request_of_many_gradings_is_given_up_with_its_client() -> None:
+def test_a_request_of_many_gradings_ends_when_its_client_has_gone() -> None:
     async def story() -> None:
         inner = ManyGradings()
         app = FairAdmission(inner)
@@ -209,7 +209,7 @@ def test_a_request_of_many_gradings_is_given_up_with_its_client() -> None:
 
 
 @pytest.mark.usefixtures("alike")
-def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
+def test_a_client_with_too_many_waiting_requests_is_refused() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
@@ -217,7 +217,7 @@ def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
         other = Client("other")
         await asyncio.gather(*begin(app, *many, other))
         statuses = [client.status for client in many]
-        # One is begun at once, and so many may wait.
+        # One is begun at once, and OF_ONE[0] may wait.
         assert statuses.count(200) == OF_ONE[0] + 1
         assert statuses.count(429) == 10
         assert other.status == 200
@@ -233,7 +233,7 @@ def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
 @pytest.mark.parametrize(
     ("gradings", "each", "seconds"), [(1, 0.003, 2), (10, 0.003, 11), (20, 0.015, 30)]
 )
-def test_whoever_waits_for_more_work_is_told_to_come_again_later(
+def test_retry_after_grows_with_the_work_that_waits(
     monkeypatch: pytest.MonkeyPatch, gradings: int, each: float, seconds: int
 ) -> None:
     """A grading takes ``each`` seconds, and 512 requests wait."""
@@ -263,7 +263,7 @@ def test_whoever_waits_for_more_work_is_told_to_come_again_later(
 
 @pytest.mark.usefixtures("alike")
 @pytest.mark.parametrize("size", [0, 1])
-def test_the_bytes_that_wait_are_bounded_as_well(
+def test_the_bytes_of_waiting_requests_are_bounded(
     monkeypatch: pytest.MonkeyPatch, size: int
 ) -> None:
     monkeypatch.setattr(admission, "OF_ONE", (1000, 3000))
@@ -278,7 +278,7 @@ def test_the_bytes_that_wait_are_bounded_as_well(
 
 
 @pytest.mark.usefixtures("alike")
-def test_beyond_the_queue_of_all_the_service_is_busy() -> None:
+def test_the_service_refuses_requests_when_too_many_wait() -> None:
     async def story() -> None:
         app = FairAdmission(Application())
         clients = [Client(f"10.0.0.{i}") for i in range(OF_ALL[0] + 2)]
@@ -291,7 +291,7 @@ def test_beyond_the_queue_of_all_the_service_is_busy() -> None:
 
 
 @pytest.mark.usefixtures("alike")
-def test_questions_about_health_wait_for_nobody() -> None:
+def test_health_checks_do_not_wait_for_other_requests() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
@@ -305,7 +305,7 @@ def test_questions_about_health_wait_for_nobody() -> None:
 
 
 @pytest.mark.usefixtures("alike")
-def test_small_answers_leave_room_for_others(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_small_answers_do_not_delay_other_requests(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(admission, "OF_ONE", (1, 10**6))
 
     async def story() -> None:
@@ -317,8 +317,8 @@ def test_small_answers_leave_room_for_others(monkeypatch: pytest.MonkeyPatch) ->
         tasks = begin(app, *many, *asking, *other)
         while other[1].status is None:
             await passes(1)
-        # Three submissions are served, one after the other; four small answers of each kind beside
-        # each: who asks for health does not wait for those who are refused.
+        # Three submissions are served, one after the other, and with each of them four health
+        # checks and four refusals: health checks do not wait for refusals.
         for clients in (many, asking):
             answered = sum(client.status is not None for client in clients)
             assert 2 * 4 <= answered <= 5 * 4
@@ -330,7 +330,7 @@ def test_small_answers_leave_room_for_others(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.usefixtures("alike")
-def test_whoever_has_gone_is_not_served() -> None:
+def test_a_client_that_has_gone_is_not_served() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
@@ -357,7 +357,7 @@ def test_a_cancelled_request_does_not_stop_the_others() -> None:
 
 
 @pytest.mark.usefixtures("alike")
-def test_who_waits_at_the_end_of_the_process_is_given_up_without_an_error() -> None:
+def test_a_request_that_waits_when_the_process_ends_is_given_up_without_an_error() -> None:
     async def story() -> None:
         inner = Application()
         clients = [Client(name) for name in "abc"]
@@ -384,7 +384,7 @@ def test_the_application_reads_the_body_as_it_was_sent(size: int) -> None:
     run(story())
 
 
-def test_an_error_of_the_application_passes_and_the_next_is_served() -> None:
+def test_an_error_of_the_application_is_raised_and_the_next_request_is_served() -> None:
     class Broken(Application):
         async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
             if scope["client"][0] == "broken":
@@ -401,7 +401,7 @@ def test_an_error_of_the_application_passes_and_the_next_is_served() -> None:
     run(story())
 
 
-def test_only_the_time_of_a_request_s_own_steps_is_measured() -> None:
+def test_only_the_time_of_the_request_itself_is_measured() -> None:
     async def steps() -> None:
         busy(0.02)
         await asyncio.sleep(0)

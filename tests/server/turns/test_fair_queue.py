@@ -1,4 +1,4 @@
-"""The order of the requests that wait."""
+"""The order of waiting requests."""
 
 import math
 from collections import Counter
@@ -15,7 +15,7 @@ STEP = 0.004
 def come(
     queue: FairQueue, client: str, connection: int = 1, size: int = 1, shares: float = SHARES
 ) -> Ticket:
-    """A request that has come and waits."""
+    """Add a waiting request to the queue; return it."""
     ticket = Ticket(Client(client, shares), connection, size)
     queue.enter(ticket)
     queue.push(ticket)
@@ -23,7 +23,7 @@ def come(
 
 
 def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
-    """Serve clients that go on after each of so many steps; whose turns they were."""
+    """Serve a number of turns to clients that always wait again; return the client of each turn."""
     served = []
     for _ in range(turns):
         ticket = queue.pop()
@@ -33,7 +33,7 @@ def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
     return served
 
 
-def test_clients_alike_come_in_turn() -> None:
+def test_clients_with_equal_costs_take_turns() -> None:
     queue = FairQueue()
     for client in "abc":
         come(queue, client)
@@ -64,7 +64,7 @@ def test_a_client_has_a_share_for_each_connection_up_to_a_number(
     assert served["many"] / served["one"] == pytest.approx(expected, rel=0.1)
 
 
-def test_connections_that_are_not_told_apart_have_their_shares_together() -> None:
+def test_indistinguishable_connections_share_their_shares() -> None:
     queue = FairQueue()
     for _ in range(4):
         come(queue, "behind a proxy", 0)
@@ -73,7 +73,7 @@ def test_connections_that_are_not_told_apart_have_their_shares_together() -> Non
     assert served["behind a proxy"] / served["one"] == pytest.approx(4, rel=0.1)
 
 
-def test_a_connection_that_was_away_makes_up_for_its_credit_and_no_more() -> None:
+def test_a_connection_that_was_idle_has_a_limited_credit() -> None:
     queue = FairQueue()
     away = come(queue, "away")
     queue.pop()
@@ -98,7 +98,7 @@ def test_ordinary_requests_run_in_the_order_in_which_they_came() -> None:
         tickets = []
         for client in left:
             tickets.append(come(queue, client))
-            # Time passes between two of them.
+            # Time passes between two arrivals.
             queue._now += 0.001
         while queue.length:
             ticket = queue.pop()
@@ -110,7 +110,7 @@ def test_ordinary_requests_run_in_the_order_in_which_they_came() -> None:
         for ticket in tickets:
             queue.leave(ticket)
         served.append(order)
-    # A connection has no such allowance for its first request.
+    # For its first request, a connection has a smaller allowance.
     assert served[0] != "aaabbbccc"
     assert served[-1] == "aaabbbccc"
 
@@ -134,7 +134,7 @@ def test_no_request_waits_for_ever_for_new_connections() -> None:
     queue.charge(queue.pop(), 0.050)
     queue.push(long)
     for number in range(2, 1000):
-        come(queue, "crowd", number)
+        come(queue, "many", number)
         ticket = queue.pop()
         if ticket is long:
             break
@@ -171,7 +171,7 @@ def test_requests_and_bytes_are_counted_by_client() -> None:
     assert (queue.length, queue.size, queue.waiting(Client("a", SHARES))) == (0, 0, (0, 0))
 
 
-def test_accounts_of_many_clients_take_little_room() -> None:
+def test_the_number_of_accounts_is_bounded() -> None:
     queue = FairQueue()
     for number in range(5_000):
         ticket = come(queue, f"client {number}", number)

@@ -1,4 +1,4 @@
-"""The lines of a real process as JSON: one object each, with ids and without secrets."""
+"""The JSON log of a real process contains request ids and no secrets."""
 
 import json
 from datetime import datetime
@@ -18,7 +18,7 @@ def post(path: str, body: bytes, *headers: bytes) -> bytes:
 
 
 def logged(folder: Path) -> tuple[list[dict[str, Any]], str]:
-    """The lines of a process, and their text."""
+    """Return the lines that a process logs for some requests, parsed and as text."""
     settings = {"DH_GRADER_LOG_FORMAT": "json", "DH_GRADER_DATABASE": new_file(folder)}
     with service(folder, **settings) as running:
         attempts = "/v1/exercises/scara/attempts"
@@ -32,14 +32,14 @@ def logged(folder: Path) -> tuple[list[dict[str, Any]], str]:
         return lines, running.log
 
 
-def test_every_line_is_an_object_and_tells_no_answer(tmp_path: Path) -> None:
+def test_every_line_is_an_object_and_contains_no_answer(tmp_path: Path) -> None:
     lines, text = logged(tmp_path)
     for line in lines:
         assert {"time", "level", "logger", "message"} <= line.keys()
         assert datetime.fromisoformat(line["time"]).utcoffset() is not None
     requests = [line for line in lines if line["logger"] == "uvicorn.access"]
-    told = [(line["method"], line["path"], line["status"]) for line in requests]
-    assert told == [
+    logged_requests = [(line["method"], line["path"], line["status"]) for line in requests]
+    assert logged_requests == [
         ("POST", "/v1/exercises/scara/attempts", 201),
         ("POST", "/v1/exercises/scara/grade", 422),
         ("-", "-", 400),

@@ -1,4 +1,4 @@
-"""What a real process tells Prometheus, alone and with workers of which one is lost."""
+"""The metrics of a real process, alone and with workers of which one is killed."""
 
 import asyncio
 import json
@@ -25,7 +25,7 @@ Samples = Mapping[tuple[str, frozenset[str]], float]
 
 
 def asked(running: Service) -> Samples:
-    """The samples that it tells, by name and the values of their labels."""
+    """Return the metrics of a process, by name and the values of their labels."""
     (answer,) = running.ask(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n")
     assert answer.status == 200, answer.body
     assert answer.headers["content-type"].startswith("text/plain")
@@ -48,7 +48,7 @@ def attempt(running: Service, learner: str, table: str) -> None:
 
 
 def check_counts(samples: Samples, attempts: int) -> None:
-    """The counts of so many attempts, of which the first of three was wrong."""
+    """Check the metrics after a number of attempts, of which only the first was wrong."""
     assert value(samples, "requests_total", "POST", ROUTE, "201") == attempts
     assert value(samples, "requests_total", "GET", "other", "404") == 3
     assert value(samples, "request_seconds_count", ROUTE) == attempts
@@ -59,13 +59,13 @@ def check_counts(samples: Samples, attempts: int) -> None:
     assert value(samples, "messages_total", "half_turn") == 1
     assert value(samples, "store_seconds_count", "record") == attempts
     assert value(samples, "store_failures_total", "record") == 0
-    # The question itself.
+    # The request for the metrics itself.
     assert value(samples, "requests_in_progress") == 1
     assert value(samples, "requests_waiting") == 0
 
 
 @pytest.mark.campaign
-def test_what_happened_is_told_by_whichever_process_is_asked(tmp_path: Path) -> None:
+def test_each_worker_returns_the_metrics_of_all_workers(tmp_path: Path) -> None:
     settings = {"DH_GRADER_METRICS": "local", "DH_GRADER_DATABASE": new_file(tmp_path)}
     with service(tmp_path, "--workers", "2", **settings) as running:
         until(lambda: running.log.count("startup complete") == 2)
@@ -86,7 +86,7 @@ def test_what_happened_is_told_by_whichever_process_is_asked(tmp_path: Path) -> 
 
 
 def told(client: tuple[str, int], **settings: Any) -> httpx.Response:
-    """What one process tells a client at this address after another has asked for an exercise."""
+    """Return the answer to `GET /metrics` from an address, after a request for an exercise."""
     app = installed_app(Settings(**settings))
 
     async def ask() -> httpx.Response:
@@ -98,7 +98,7 @@ def told(client: tuple[str, int], **settings: Any) -> httpx.Response:
     return asyncio.run(ask())
 
 
-def test_what_is_refused_is_counted_under_its_route() -> None:
+def test_refused_requests_are_counted_under_their_route() -> None:
     app = installed_app(Settings(metrics="local", address_rate="2/hour"))
     path = "/v1/exercises/scara/grade"
     large = {"Content-Length": str(10 * MAX_BODY_SIZE)}
@@ -119,7 +119,7 @@ def test_what_is_refused_is_counted_under_its_route() -> None:
         assert f"dh_grader_requests_total{labels} {2.0 if status == 200 else 1.0}" in own
 
 
-def test_one_process_tells_its_own_memory_too_and_strangers_only_where_it_may() -> None:
+def test_metrics_contain_the_memory_and_are_shown_to_other_machines_only_if_set_to_all() -> None:
     here, elsewhere = ("127.0.0.1", 1), ("192.0.2.7", 1)
     own = told(here, metrics="local").text
     count = (
