@@ -115,4 +115,4 @@ def test_a_service_ends_in_time_although_its_database_does_not_react(
             assert running.end() == 0
         finally:
             start(postgresql, "pause")
-        assert "ended without waiting" in running.log
+        assert "exiting without waiting" in running.log
