@@ -92,7 +92,7 @@ def editor(page: Page, service: str) -> None:
     """The editor of exercise files, with a slip in the file."""
     page.goto(f"{service}/tutor/editor?exercise=scara")
     text = page.get_by_label("Exercise file, TOML")
-    expect(page.locator("#findings")).to_contain_text("Nothing to mend.")
+    expect(page.locator("#findings")).to_contain_text("No problems found.")
     text.fill(text.input_value().replace("points = ", "pionts = ", 1))
     expect(page.locator("#findings")).to_contain_text("did you mean 'points'?")
     page.locator("#findings").get_by_role("button", name="line").click()

@@ -134,7 +134,7 @@ def test_a_tutor_works_with_recorded_attempts(
     student.page.goto(f"{recording.address}/exercises/scara")
     cells(student.page).first.fill("a1")
     student.page.get_by_role("button", name="Check").click()
-    sentence = "Open this exercise from your course's site: here it needs a key."
+    sentence = "Please open this exercise from your course page."
     expect(student.page.get_by_text(sentence).first).to_be_visible()
     expect(student.page.get_by_text("Authorization")).to_have_count(0)
     student.page.close()
@@ -151,9 +151,9 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(rows(page)).to_have_count(1)
     page.reload()
     expect(rows(page)).to_have_count(1)
-    page.get_by_label("To, this day included").fill("2020-01-01")
-    expect(page.get_by_text("No attempt is like this")).to_be_visible()
-    page.get_by_label("To, this day included").fill("")
+    page.get_by_label("To (inclusive)").fill("2020-01-01")
+    expect(page.get_by_text("No attempt matches the filters")).to_be_visible()
+    page.get_by_label("To (inclusive)").fill("")
     with page.expect_download() as downloading:
         page.get_by_role("link", name="CSV").click()
     assert downloading.value.suggested_filename == "attempts-scara.csv"
@@ -184,7 +184,7 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(page.locator("#points")).to_have_value("")
     page.get_by_label("Reason").fill("A <b>misprint</b>.")
     page.locator("#points").fill("25")
-    page.get_by_role("button", name="Give these points").click()
+    page.get_by_role("button", name="Save").click()
     assert page.locator("#points").evaluate("each => each.validity.rangeOverflow")
     page.locator("#points").fill("7.5")
     page.keyboard.press("Enter")
@@ -206,26 +206,26 @@ def test_a_tutor_works_with_recorded_attempts(
     # The drawing of the days, in words: twice, today.
     expect(page.get_by_role("img", name=re.compile(r"^\d+ \w+ 20\d\d: 2$")).first).to_be_visible()
     assert wide(page) <= NARROW["width"]
-    page.get_by_role("button", name="Look what would change").click()
+    page.get_by_role("button", name="Preview regrade").click()
     expect(page.get_by_text("All attempts were graded by this version")).to_be_visible()
     recording.correct()
     changes = page.get_by_role("region", name="Changes")
     write = page.get_by_role("button", name="Write the new reports")
 
     def looked() -> None:
-        page.get_by_role("button", name="Look what would change").click()
+        page.get_by_role("button", name="Preview regrade").click()
         expect(page.get_by_role("button", name="Stop")).to_be_hidden()
 
     looked()
     while not changes.is_visible():  # until the service has seen the new file
         page.wait_for_timeout(100)
         looked()
-    told = "3 would change, of which 1 would keep the points of a tutor. Nothing is written yet."
+    told = "3 would change; 1 of these would keep the overridden mark. Nothing is written yet."
     expect(page.get_by_text(told)).to_be_visible()
     expect(changes).to_contain_text("table correct → partial")
-    expect(changes).to_contain_text("; a tutor's 7.5 stays")
+    expect(changes).to_contain_text("; the overridden mark 7.5 stays")
     write.click()
-    expect(page.get_by_text("Regraded: 3 attempts. The reports before are kept.")).to_be_visible()
+    expect(page.get_by_text("Regraded: 3 attempts. The earlier reports are kept.")).to_be_visible()
     expect(write).to_be_hidden()
     page.get_by_role("region", name="Changes").get_by_role("link", name="ada").click()
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
@@ -239,13 +239,13 @@ def test_a_tutor_works_with_recorded_attempts(
     page.get_by_label("Learner").last.fill(PICTURE)
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name=f"Forget {PICTURE}?")
-    expect(dialog).to_contain_text("1 attempt, 1 earlier report, for ever")
-    expect(dialog.get_by_role("button", name="Keep it")).to_be_focused()
+    expect(dialog).to_contain_text("permanently deletes 1 attempt, 1 earlier report.")
+    expect(dialog.get_by_role("button", name="Cancel")).to_be_focused()
     page.keyboard.press("Enter")
     expect(dialog).to_be_hidden()
     page.get_by_role("button", name="Look up").click()
-    dialog.get_by_role("button", name=f"Delete all of {PICTURE}").click()
-    expect(page.get_by_text(f"Deleted of {PICTURE}: 1 attempt, 1 earlier report.")).to_be_visible()
+    dialog.get_by_role("button", name=f"Delete all data of {PICTURE}").click()
+    expect(page.get_by_text(f"Deleted for {PICTURE}: 1 attempt, 1 earlier report.")).to_be_visible()
     expect(rows(page)).to_have_count(2)
     expect(page.locator("#list")).not_to_contain_text(PICTURE)
     assert page.evaluate("taken") == []
@@ -278,7 +278,7 @@ def test_nobody_is_kept_out_of_the_views_of_attempts(
     page.goto(f"{recording.address}/tutor/statistics/scara")
     expect(page.locator(".share").first).to_be_visible()
     while not page.get_by_role("region", name="Changes").is_visible():
-        page.get_by_role("button", name="Look what would change").click()
+        page.get_by_role("button", name="Preview regrade").click()
         expect(page.get_by_role("button", name="Stop")).to_be_hidden()
         page.wait_for_timeout(100)
     check()

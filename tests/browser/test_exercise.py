@@ -167,7 +167,7 @@ def test_what_is_typed_is_understood_marked_kept_and_shared(
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(0)
 
     # A reload keeps the answers, and a link carries them without sending them.
-    expect(page.locator(".saved")).to_have_text("Kept in this browser")
+    expect(page.locator(".saved")).to_have_text("Saved in this browser")
     page.reload()
     expect(cells(page).nth(4)).to_have_value("l3")
     page.get_by_role("button", name="Copy link").click()

@@ -96,7 +96,7 @@ def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str)
     shown = entries(page)
     cell(page, 2, 2).fill("l1 +")
     # While a cell is half typed, robot and pose stay, and look as if from before.
-    expect(page.locator(".told")).to_contain_text("The picture is the one of before.")
+    expect(page.locator(".told")).to_contain_text("The view shows your last valid table.")
     assert entries(page) == shown
     expect(page.locator(".numeric")).to_be_visible()
     expect(page.locator(".formula.stale")).to_be_visible()

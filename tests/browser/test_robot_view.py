@@ -51,7 +51,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     # The table appears over it as it is written, as far as it has numbers.
     for i, text in enumerate(TABLE[:6]):
         cells(page).nth(i).fill(text)
-    expect(page.locator(".told")).to_contain_text("The frames end before it.")
+    expect(page.locator(".told")).to_contain_text("The view shows the frames before it.")
     for i, text in enumerate(TABLE):
         cells(page).nth(i).fill(text)
     expect(page.get_by_role("checkbox", name="Show frame 4")).to_be_checked()

@@ -55,7 +55,7 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     save = page.get_by_role("button", name="Save")
     save.click()
     told = page.get_by_role("status")
-    expect(told.filter(has_text="scara.toml is written")).to_be_visible()
+    expect(told.filter(has_text="scara.toml is saved")).to_be_visible()
     file = folder / "scara.toml"
     assert file.read_text(encoding="utf-8") == text.input_value() != written
     page.reload()
@@ -69,9 +69,9 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     assert file.read_text(encoding="utf-8") == written
     # A text that is no exercise is not written, under whatever name.
     text.fill("title = 1")
-    page.get_by_label("Id, the name").fill("../escaped")
+    page.get_by_label("Exercise id").fill("../escaped")
     save.click()
-    expect(told.filter(has_text="is written")).to_have_count(0)
+    expect(told.filter(has_text="is saved")).to_have_count(0)
     expect(page.locator("#findings li").first).to_be_visible()
     assert [each.name for each in folder.iterdir()] == ["scara.toml"]
     assert all("409" in each for each in opened.complaints)

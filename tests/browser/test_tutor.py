@@ -43,7 +43,7 @@ def test_a_tutor_looks_at_a_solution_and_writes_an_exercise(
     page.get_by_role("link", name="Edit its file").click()
     text = page.get_by_label("Exercise file, TOML")
     findings = page.locator("#findings")
-    expect(findings).to_contain_text("Nothing to mend.")
+    expect(findings).to_contain_text("No problems found.")
     assert page.locator("#preview figure img").evaluate(drawn)
     assert "\n".join(violations(page, "")) == ""
     assert wide(page) <= NARROW["width"]
@@ -91,7 +91,7 @@ def test_a_class_is_graded_in_the_browser(
     page.get_by_label("Part").select_option("table")
     page.get_by_label("Folder").set_input_files(folder)
     expect(page.get_by_role("status")).to_have_text(
-        "5 submissions. Nothing is kept by the service."
+        "5 submissions. The service does not keep them."
     )
     report = page.frame_locator("#report")
     expect(report.get_by_role("heading", level=1)).to_contain_text("Planar RR arm")

@@ -146,7 +146,7 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 def _too_long(seconds: float) -> ProblemError:
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY,
-        f"The checks of this exercise take more than {seconds:g} seconds, so they were ended. "
+        f"The checks of this exercise take more than {seconds:g} seconds, so they were stopped. "
         "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
         "checks-too-long",
         "The checks take too long",
@@ -156,6 +156,6 @@ def _too_long(seconds: float) -> ProblemError:
 def _ending() -> ProblemError:
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
-        "The service is ending. Send this request again in a minute.",
+        "The service is shutting down. Send this request again in a minute.",
         headers={"Retry-After": "60"},
     )

@@ -104,7 +104,7 @@ def exercise_of(exercise_id: str, text: str) -> Exercise:
 def _summary(exercise: Exercise, lazy: Mapping[str, float]) -> str:
     told = [_count(len(exercise.parts), "part"), _count(len(exercise.checks), "check")]
     earned = ", ".join(f"{int(100 * share)} % of {part}" for part, share in lazy.items())
-    return f"{', '.join(told)}; a lazy answer earns {earned}."
+    return f"{', '.join(told)}. Writing only zeros and joint variables earns {earned}."
 
 
 def _preview(exercise: Exercise) -> ExercisePreview:

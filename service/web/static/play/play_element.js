@@ -55,7 +55,7 @@ export class DhPlay extends HTMLElement {
     );
     this.unit = h(
       "select",
-      { "aria-label": "Plain numbers in angles are", onchange: () => this.#edited() },
+      { "aria-label": "Angles without a unit", onchange: () => this.#edited() },
       option("radians"),
       option("degrees"),
     );
@@ -98,7 +98,7 @@ export class DhPlay extends HTMLElement {
           "header",
           {},
           h("h1", { id: "title" }, "Free play"),
-          h("p", { class: "quiet" }, "Write any DH table, see the robot that it builds, and move it."),
+          h("p", { class: "quiet" }, "Write any DH table, see its robot, and move it."),
         ),
         view.element,
       ),
@@ -112,7 +112,7 @@ export class DhPlay extends HTMLElement {
             "div",
             { class: "tools" },
             this.convention,
-            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
           ),
           h("div", { class: "grids" }, this.table.element),
           h(
@@ -157,7 +157,7 @@ export class DhPlay extends HTMLElement {
     this.#rows = rows;
     this.table.show({ rows, convention });
     this.add.disabled = rows.length >= MOST_ROWS;
-    this.results.title.textContent = `The same in the ${
+    this.results.title.textContent = `This table in the ${
       convention === "standard" ? "modified (proximal)" : "standard (distal)"
     } convention`;
     this.view?.refit();
@@ -241,7 +241,7 @@ export class DhPlay extends HTMLElement {
   filled(pairs) {
     for (const [cell, text] of pairs) cell.put(text);
     this.#edited();
-    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; Ctrl+Z takes it back`);
+    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; press Ctrl+Z to undo`);
   }
 
   /**
@@ -274,7 +274,7 @@ export class DhPlay extends HTMLElement {
   /** @param {number} i */
   removed(i) {
     const { rows, ...rest } = this.state;
-    if (rows.length === 1) return this.#say("A table has a row at least");
+    if (rows.length === 1) return this.#say("A table needs at least one row");
     this.#change({ ...rest, rows: without(rows, i) });
     this.#focus(i);
     return this.announce(`Row ${i + 1} is removed.`);
@@ -298,7 +298,7 @@ export class DhPlay extends HTMLElement {
       }
       this.view?.forget();
       this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
-      return this.#say("The pasted table is filled in; Ctrl+Z takes it back");
+      return this.#say("The pasted table is filled in; press Ctrl+Z to undo");
     } catch (error) {
       return this.#say(error.message);
     }
@@ -330,7 +330,7 @@ export class DhPlay extends HTMLElement {
   #share() {
     return this.#copy(
       this.service.address("play") + NAME + packed(this.state),
-      "Link copied: it holds the table",
+      "Link copied, with the table",
       true,
     );
   }
@@ -342,7 +342,7 @@ export class DhPlay extends HTMLElement {
       this.#say(told);
     } catch {
       if (isLink) history.replaceState(null, "", new URL(text).hash);
-      this.#say(isLink ? "The link is in the address bar" : "The browser does not let this page copy");
+      this.#say(isLink ? "The link is in the address bar" : "The browser did not allow copying");
     }
   }
 }

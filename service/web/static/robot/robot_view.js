@@ -328,9 +328,9 @@ export class RobotView {
     const lost = table?.lost_freedoms.map((each) => each.message) ?? [];
     const isKept = this.stage.element.classList.contains("stale");
     const ends = reason && isKept
-      ? " The picture is the one of before."
+      ? " The view shows your last valid table."
       : reason && table?.frames[0]?.length
-      ? " The frames end before it."
+      ? " The view shows the frames before it."
       : "";
     this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
     this.told.hidden = !this.told.textContent;

@@ -91,7 +91,7 @@ export class Stage {
     canvas.setAttribute("role", "img");
     canvas.setAttribute(
       "aria-label",
-      "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.",
+      "The robot in 3D. Arrow keys rotate the view, plus and minus zoom, 0 resets the view.",
     );
     canvas.addEventListener("keydown", (event) => this.#pressed(event, scene));
     /** @type {(text: string, name: string, act: () => void) => HTMLElement} */

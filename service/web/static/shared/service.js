@@ -3,7 +3,7 @@
 // Longer than any grading: whoever waits so long has no connection.
 const PATIENCE = 20_000;
 // A student has no key: that is the course's site's.
-const KEY_NEEDED = "Open this exercise from your course's site: here it needs a key.";
+const KEY_NEEDED = "Please open this exercise from your course page.";
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
 export class ServiceError extends Error {
@@ -76,7 +76,7 @@ export class Service {
       content = await answer.json();
     } catch {
       throw answer === undefined || answer.ok
-        ? new ServiceError("offline", "The service cannot be reached. Your answers are kept in this browser.")
+        ? new ServiceError("offline", "The service cannot be reached. Your answers are saved in this browser.")
         : failure(answer.status, {});
     }
     if (!answer.ok) throw failure(answer.status, content ?? {});
@@ -87,7 +87,7 @@ export class Service {
 /** @param {number} status @param {Partial<Api.Problem>} problem */
 function failure(status, problem) {
   if (status === 429 || status === 503) {
-    return new ServiceError("busy", "The service has a lot to do. Try again in a few seconds.", status);
+    return new ServiceError("busy", "The service is busy. Try again in a few seconds.", status);
   }
   const kind = status >= 500 ? "failed" : "refused";
   if (problem.type?.endsWith("key-needed")) return new ServiceError(kind, KEY_NEEDED, status);

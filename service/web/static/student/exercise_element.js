@@ -89,7 +89,7 @@ export class DhExercise extends HTMLElement {
   /** @param {number} turn */
   async #load(turn) {
     const id = this.getAttribute("exercise");
-    if (!id) return this.#tell("No exercise is chosen", "Name one in the attribute “exercise”.");
+    if (!id) return this.#tell("No exercise is chosen", "Set the attribute “exercise” to the id of an exercise.");
     const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
     this.service = new Service(base, () => this.getAttribute("token"));
     this.main.setAttribute("aria-busy", "true");
@@ -175,8 +175,8 @@ export class DhExercise extends HTMLElement {
     this.saved.textContent = empty
       ? ""
       : kept
-      ? "Kept in this browser"
-      : "This browser keeps nothing: a reload loses the answers";
+      ? "Saved in this browser"
+      : "This browser cannot save your answers: a reload loses them";
   }
 
   get angleUnit() {
@@ -284,7 +284,7 @@ export class DhExercise extends HTMLElement {
     };
     this.received.replaceChildren(
       h("p", {}, "These answers came with the link."),
-      own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Back to my own") : "",
+      own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Restore my own answers") : "",
     );
     this.received.hidden = false;
     history.replaceState(null, "", location.pathname + location.search);
@@ -294,14 +294,14 @@ export class DhExercise extends HTMLElement {
     this.saved = h("p", { class: "quiet saved" });
     this.unit = h(
       "select",
-      { "aria-label": "Plain numbers in angles are", onchange: () => this.#unitChanged() },
+      { "aria-label": "Angles without a unit", onchange: () => this.#unitChanged() },
       h("option", { value: "radians" }, "radians"),
       h("option", { value: "degrees" }, "degrees"),
     );
     return h(
       "div",
       { class: "tools" },
-      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
       this.saved,
       h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link"),
       h("button", { type: "button", class: "quiet-button", onclick: () => this.#clear() }, "Clear"),
@@ -318,14 +318,14 @@ export class DhExercise extends HTMLElement {
     for (const part of this.#parts) part.clearReport();
     this.#save();
     this.bar.outdated();
-    this.announce("All cells are empty. Ctrl+Z in a cell takes it back.");
-    this.saved.textContent = "Cleared; Ctrl+Z takes it back";
+    this.announce("All cells are empty. Press Ctrl+Z in a cell to undo.");
+    this.saved.textContent = "Cleared; press Ctrl+Z to undo";
     this.#parts[0]?.focus(this.#parts[0].cells[0]);
   }
 
   async #share() {
     const address = this.service.address(`exercises/${encodeURIComponent(this.exercise.id)}`) + fragment(this.answers);
-    let told = "Link copied: it holds your answers";
+    let told = "Link copied, with your answers";
     try {
       await navigator.clipboard.writeText(address);
     } catch {
@@ -333,7 +333,7 @@ export class DhExercise extends HTMLElement {
         history.replaceState(null, "", new URL(address).hash);
         told = "The link is in the address bar";
       } else {
-        told = "The browser does not let this page copy";
+        told = "The browser did not allow copying";
       }
     }
     this.saved.textContent = told;

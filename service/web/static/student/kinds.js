@@ -44,7 +44,7 @@ const FORMS = {
       }],
       choices: either
         ? {
-          "": "Convention: not said",
+          "": "Convention: not specified",
           standard: "Convention: standard (distal)",
           modified: "Convention: modified (proximal)",
         }

@@ -56,7 +56,7 @@ export class PartView {
     const options = Object.entries(choices).map(([value, text]) => h("option", { value }, text));
     return h(
       "select",
-      { class: "choice", "aria-label": `${this.part.title}: what it is`, onchange: () => this.#chosen() },
+      { class: "choice", "aria-label": `${this.part.title}: option`, onchange: () => this.#chosen() },
       ...options,
     );
   }
@@ -219,7 +219,7 @@ export class PartView {
       this.host.history.note(this.#fill(pairs));
       this.host.edited();
       this.focus(pairs[0][0]);
-      this.#say(`The pasted text filled ${pairs.length} cells. Ctrl+Z takes it back.`, grid?.notes);
+      this.#say(`The pasted text filled ${pairs.length} cells. Press Ctrl+Z to undo.`, grid?.notes);
       return;
     }
     const misfit = grid?.rows

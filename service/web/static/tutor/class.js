@@ -65,22 +65,22 @@ async function grade(input) {
   const files = [...(input.files ?? [])].filter((file) => !isHidden(file));
   input.value = "";
   frame.hidden = bar.hidden = true;
-  if (!files.length) return tell("There is no file in it.");
+  if (!files.length) return tell("No files found.");
   if (files.length > MOST_FILES) {
-    return tell(`${files.length} files are too many here: grade them on the command line.`);
+    return tell(`${files.length} files are too many for this page. Grade them on the command line.`);
   }
   tell(`Grading ${files.length} ${files.length === 1 ? "file" : "files"} …`);
   const upload = { exercise: exercise.value, part: part.value || null, files: await Promise.all(files.map(sent)) };
   const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
   const body = await new Response(packed).arrayBuffer();
   if (body.byteLength > MOST_PACKED) {
-    return tell("The files are too large for the browser: grade them on the command line.");
+    return tell("The files are too large for this page. Grade them on the command line.");
   }
   try {
     archive = await (await post("../tutor/class", body, "application/gzip")).arrayBuffer();
     found = entries(archive);
     await show(INDEX);
-    tell(`${found.size - 1} ${found.size === 2 ? "submission" : "submissions"}. Nothing is kept by the service.`);
+    tell(`${found.size - 1} ${found.size === 2 ? "submission" : "submissions"}. The service does not keep them.`);
     bar.hidden = false;
   } catch (error) {
     tell(refusal(error));

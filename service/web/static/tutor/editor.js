@@ -61,7 +61,7 @@ function show({ findings, summary, preview }) {
   found.replaceChildren(
     h("h2", {}, "Findings"),
     h("p", { class: `verdict ${verdict}` }, h("span", { "aria-hidden": "true" }, told), visible(summary)),
-    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "Nothing to mend."),
+    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "No problems found."),
   );
   if (preview) showPreview(preview);
   else shown.classList.add("outdated");
@@ -122,7 +122,7 @@ async function save() {
     const answer = await post("../tutor/files", JSON.stringify({ ...asked, before: mark }));
     ({ mark } = await answer.json());
     kept = asked.text;
-    saved.textContent = `${asked.id}.toml is written`;
+    saved.textContent = `${asked.id}.toml is saved`;
   } catch (error) {
     saved.textContent = refusal(error);
   }

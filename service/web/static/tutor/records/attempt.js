@@ -97,11 +97,14 @@ function facts({ attempt, submission, report }, exercise, attempts) {
     attempts.length > 1 &&
     ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
     ["Points", h("strong", {}, earned(attempt))],
-    attempt.awarded !== undefined && ["instead of", points(attempt.points, attempt.max_points)],
+    attempt.awarded !== undefined && ["Without the override", points(attempt.points, attempt.max_points)],
     late && report.points > 0 &&
-    ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
-    ["Plain angles in", String(submission.angle_unit ?? "radians")],
-    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
+    [
+      "Points in the report",
+      `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`,
+    ],
+    ["Angles without a unit", String(submission.angle_unit ?? "radians")],
+    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the current version)" : ""}, program ${grader}`)],
   ];
   const shown = pairs.filter((pair) => pair !== false);
   return h("dl", {}, ...shown.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
@@ -113,8 +116,8 @@ function facts({ attempt, submission, report }, exercise, attempts) {
  * @param {number} share
  */
 function lateShare(share) {
-  if (share > 0.999) return "all of it although late";
-  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it for being late`;
+  if (share > 0.999) return "all of it counts although it is late";
+  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it counts because it is late`;
 }
 
 /**
@@ -135,7 +138,7 @@ function isEmpty(answer) {
  */
 function ofLearner({ id: other, ordinal }) {
   const name = ordinal === undefined ? "–" : String(ordinal);
-  const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
+  const spoken = ordinal === undefined ? "an attempt that does not count" : `no. ${ordinal}`;
   if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
   return h(
     "li",
@@ -169,20 +172,20 @@ class PointsGiven {
     });
     this.reason = h("input", { id: "reason", type: "text", maxlength: 1000, required: true, autocomplete: "off" });
     this.author = h("input", { id: "author", type: "text", maxlength: 150, autocomplete: "name" });
-    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw them");
+    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw override");
     this.told = h("p", { class: "state-line", role: "status" });
     this.list = h("ul", { class: "given" });
     this.element = h(
       "section",
       { class: "card override", "aria-labelledby": "override-title" },
-      h("h2", { id: "override-title" }, "Other points"),
+      h("h2", { id: "override-title" }, "Override mark"),
       h(
         "form",
         { onsubmit: (event) => this.#give(event) },
         field("Points", this.points, `of ${number(most)}`),
-        field("Reason", this.reason, "kept, and not shown to the learner"),
-        field("Your name", this.author, "if others give points, too"),
-        h("p", { class: "choices" }, h("button", { type: "submit" }, "Give these points"), this.withdrawal),
+        field("Reason", this.reason, "recorded, but not shown to the learner"),
+        field("Your name", this.author, "if several tutors override marks"),
+        h("p", { class: "choices" }, h("button", { type: "submit" }, "Save"), this.withdrawal),
       ),
       this.told,
       this.list,
@@ -212,7 +215,9 @@ class PointsGiven {
       this.reason.value = "";
       tell(
         this.told,
-        isWithdrawal ? "Withdrawn: the report's points count." : `The attempt has ${number(awarded)} points.`,
+        isWithdrawal
+          ? "Override withdrawn: the points of the report count."
+          : `The attempt has ${number(awarded)} points.`,
       );
     } catch (error) {
       failed(error, this.told);

@@ -52,7 +52,7 @@ function draw({ attempts, next }, wanted) {
     tell(state, "");
     const isNarrowed = Object.values(wanted).some(Boolean);
     list.replaceChildren(
-      isNarrowed ? nothing("No attempt is like this", "Take a filter away.") : nothing(
+      isNarrowed ? nothing("No attempt matches the filters", "Remove a filter.") : nothing(
         "Nobody has handed in yet",
         "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts.",
       ),
@@ -85,7 +85,7 @@ function row(attempt) {
   const remarks = [
     ordinal === undefined && "nothing readable",
     late && "late",
-    awarded !== undefined && "points by a tutor",
+    awarded !== undefined && "mark overridden",
   ];
   // The attempt's page leads back to the list as it is now.
   const open = h(
@@ -157,7 +157,7 @@ async function lookUp(event) {
   try {
     /** @type {Api.ForgottenData} */
     const found = await send("v1/learners/forget", { learner });
-    if (!found.attempts) return tell(forgetState(), `Nothing is recorded of ${learner}.`);
+    if (!found.attempts) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
     tell(forgetState(), "");
     return confirm(found);
   } catch (error) {
@@ -170,7 +170,7 @@ const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
   [
     count(attempts, "attempt"),
     earlier && count(earlier, "earlier report"),
-    overrides && `points given ${overrides === 1 ? "once" : `${overrides} times`}`,
+    overrides && count(overrides, "overridden mark"),
   ]
     .filter(Boolean)
     .join(", ");
@@ -183,17 +183,17 @@ function confirm(found) {
     "dialog",
     { "aria-labelledby": "forget-title", onclose: () => dialog.remove() },
     h("h2", { id: "forget-title" }, "Forget ", learnerName(found.learner), "?"),
-    h("p", {}, `This deletes ${amounts(found)}, for ever. Backups are not touched.`),
+    h("p", {}, `This permanently deletes ${amounts(found)}. Backups are not changed.`),
     h(
       "p",
       { class: "choices" },
       h(
         "button",
         { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) },
-        "Delete all of ",
+        "Delete all data of ",
         learnerName(found.learner),
       ),
-      h("button", { type: "button", autofocus: true, onclick: close }, "Keep it"),
+      h("button", { type: "button", autofocus: true, onclick: close }, "Cancel"),
     ),
   );
   document.body.append(dialog);
@@ -206,9 +206,9 @@ async function forget(learner) {
     /** @type {Api.ForgottenData} */
     const deleted = await send("v1/learners/forget", { learner, apply: true });
     const later = deleted.erased === false
-      ? " Another program is reading the database: the text is overwritten in its files when that has ended."
+      ? " Another program is reading the database. The deleted text is overwritten in its files when that program ends."
       : "";
-    tell(forgetState(), `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
+    tell(forgetState(), `Deleted for ${learner}: ${amounts(deleted)}.${later}`);
     fieldOf("forgotten").value = "";
     await changed();
   } catch (error) {

@@ -17,9 +17,9 @@ const OTHERS = 1;
  */
 export function regradeForm(exercise, done) {
   const state = h("p", { class: "state-line", role: "status" });
-  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts graded anew" });
+  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts regraded" });
   const changes = h("div", {});
-  const look = h("button", { type: "button", onclick: () => run(false) }, "Look what would change");
+  const look = h("button", { type: "button", onclick: () => run(false) }, "Preview regrade");
   const write = h("button", { type: "button", hidden: true, onclick: () => run(true) }, "Write the new reports");
   const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, "Stop");
   let isStopped = false;
@@ -71,15 +71,15 @@ export function regradeForm(exercise, done) {
   /** @param {boolean} apply @param {number} graded @param {Api.AttemptChange[]} changed @param {number} left */
   function told(apply, graded, changed, left) {
     const kept = changed.filter(({ awarded }) => awarded !== undefined).length;
-    const ofWhich = kept ? `, of which ${kept} would keep the points of a tutor` : "";
+    const ofWhich = kept ? `; ${kept} of these would keep the overridden mark` : "";
     const stopped = left ? ` Stopped: ${count(left, "attempt")} left.` : "";
-    if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The reports before are kept.${stopped}`);
+    if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The earlier reports are kept.${stopped}`);
     else if (!graded) tell(state, "All attempts were graded by this version of the exercise and of the program.");
     else {tell(
         state,
         `${
           count(graded, "attempt")
-        } by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
+        } graded by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
       );}
     changes.replaceChildren(...(changed.length ? [list(changed)] : []));
   }
@@ -100,8 +100,8 @@ export function regradeForm(exercise, done) {
       h(
         "span",
         {},
-        ...message(reasons.join("; ") || "what a late attempt earns"),
-        awarded === undefined ? "" : `; a tutor's ${number(awarded)} stays`,
+        ...message(reasons.join("; ") || "the rule for late attempts"),
+        awarded === undefined ? "" : `; the overridden mark ${number(awarded)} stays`,
       ),
     ]);
     const more = changed.length - rows.length;
@@ -115,7 +115,7 @@ export function regradeForm(exercise, done) {
     h(
       "p",
       { class: "quiet" },
-      "After a correction: attempts that another version of the exercise or of the program has graded are graded anew. Points that tutors gave stay, and so do the reports before.",
+      "Grade again all attempts that were graded by another version of the exercise or of the program, for example after a correction. Overridden marks and the earlier reports are kept.",
     ),
     h("p", { class: "choices" }, look, write, stop),
     bar,

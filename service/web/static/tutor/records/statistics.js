@@ -80,35 +80,35 @@ function draw({ attempts, learners, parts, misconceptions, identical }) {
     place.replaceChildren(
       nothing(
         isNarrowed ? "Nobody handed in on these days" : "Nobody has handed in yet",
-        "Counts appear here with the first recorded attempt.",
+        "Statistics appear here after the first recorded attempt.",
       ),
     );
     return;
   }
   tell(
     state,
-    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Who was wrong three times counts three times.`,
+    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Every attempt counts.`,
   );
   place.replaceChildren(
     section(
       "Right answers",
-      "Of the answers, one of each attempt. A part or a cell that could not be read is an answer that is not right; of a table that could not be read as a whole, no row is counted.",
+      "The share of answers that are right. An unreadable part or cell counts as an answer that is not right. If a whole table is unreadable, its rows are not counted.",
       parts.map(partShares),
     ),
     section(
       "Misconceptions",
-      "The attempts that have each, the commonest first, and on which days (UTC). The sentence is what one of them was told.",
+      "How many attempts have each misconception, the most frequent first, and on which days (UTC). The sentence is an example from one of the reports.",
       [
-        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None was found."),
+        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None found."),
       ],
     ),
     section(
       "Identical wrong answers",
-      "Sent by several learners letter by letter. This is no proof that anybody copied.",
+      "Several learners sent exactly the same wrong answer. This does not prove that anybody copied.",
       [
         identical.length
           ? folded(identical, (groups) => h("ul", { class: "groups" }, ...groups.map(group)))
-          : h("p", {}, "There are none."),
+          : h("p", {}, "None found."),
       ],
     ),
   );
