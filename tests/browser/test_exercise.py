@@ -220,7 +220,7 @@ def test_without_the_service_the_answers_stay(visit: Opening, service: str) -> N
     open_exercise(page, service, "rrrp")
     page.context.set_offline(True)
     cells(page).first.fill("l2")
-    expect(page.locator(".trouble-line")).to_contain_text("kept in this browser")
+    expect(page.locator(".trouble-line")).to_contain_text("saved in this browser")
     page.context.set_offline(False)
     expect(page.locator(".shown").first.locator("math")).to_be_visible()
     expect(page.locator(".trouble-line")).to_be_hidden()

@@ -1,4 +1,4 @@
-// <dh-play>: any table of any robot, with its 3D view, its pose, and its equivalent in the other convention.
+// <dh-play>: a DH table of any robot, with its 3D view, its pose, and the table in the other convention.
 
 import { h, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
@@ -164,7 +164,7 @@ export class DhPlay extends HTMLElement {
     this.changed();
   }
 
-  /** What every request says of the table; null if it has no joint. */
+  /** Return the fields of every request about the table, or null if it has no joint. */
   #body() {
     const { convention, unit, rows } = this.state;
     const structure = rows.map(({ kind }) => kind).filter((kind) => kind !== "F").join("");
@@ -178,10 +178,10 @@ export class DhPlay extends HTMLElement {
     this.#saving = setTimeout(() => keep(this.state), 250);
   }
 
-  // What changes the table. Each change is a step that can be taken back.
+  // The methods that change the table. Each change is one step for undo.
 
   /**
-   * Note that the table was changed; what is typed into one cell is one step.
+   * Add a change of the table to the history. Keys typed into one cell are one step.
    *
    * @param {Front.PlayCell | null} [cell]
    */
@@ -193,7 +193,7 @@ export class DhPlay extends HTMLElement {
   }
 
   /**
-   * What puts a table of the past back, and the cursor where it was changed.
+   * Return the target of a step in the history: it restores a table, and puts the cursor where it was changed.
    *
    * @param {[number, number]} at
    */
@@ -304,7 +304,7 @@ export class DhPlay extends HTMLElement {
     }
   }
 
-  // What the service says.
+  // The answers of the service.
 
   /** @param {Api.Frames} answer @param {boolean} isKept */
   #answered({ table }, isKept) {
@@ -316,7 +316,7 @@ export class DhPlay extends HTMLElement {
   /** @param {Api.ConvertedRow[]} converted */
   #useConverted(converted) {
     const { rows, unit, convention } = this.state;
-    // A fixed row more stands before or after those of the joints.
+    // The converted table may have one more fixed row, before or after the joints.
     const kinds = rows.map(({ kind }) => kind);
     while (kinds.length < converted.length) converted[0].label === "b" ? kinds.unshift("F") : kinds.push("F");
     this.#change({
@@ -360,6 +360,6 @@ function keep(state) {
   try {
     localStorage.setItem(KEPT, JSON.stringify(state));
   } catch {
-    // The table then lasts as long as the page.
+    // Without storage, the table is lost when the page is closed.
   }
 }

@@ -1,8 +1,8 @@
-// The service over HTTP: each failure is one kind of error with words for the student.
+// Requests to the service. Each failure is a ServiceError with a message for the student.
 
-// Longer than any grading: whoever waits so long has no connection.
+// Milliseconds until a request fails; longer than any grading.
 const PATIENCE = 20_000;
-// A student has no key: that is the course's site's.
+// Students have no key; the course's site has it.
 const KEY_NEEDED = "Please open this exercise from your course page.";
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
@@ -17,7 +17,7 @@ export class ServiceError extends Error {
 
 export class Service {
   /**
-   * `base` is the address of the service, with a slash at its end; `token` gives that of the learner, if any.
+   * `base` is the address of the service, with a slash at its end. `token` returns the learner's token, or null.
    *
    * @param {string} base
    * @param {() => string | null} [token]
@@ -66,7 +66,7 @@ export class Service {
       options.method = "POST";
       headers.set("Content-Type", "application/json");
       options.body = JSON.stringify(body);
-      // What is only read needs none, and is asked for without a question beforehand.
+      // Other requests need no token; without this header, the browser sends them without a preflight.
       const token = this.token();
       if (token) headers.set("Authorization", `Bearer ${token}`);
     }

@@ -1,4 +1,4 @@
-// One recorded attempt: what was handed in, its report and those before it, and the points of a tutor.
+// The page of a recorded attempt: the answers, the reports and the overridden mark.
 
 import { byId, h, number, points, visible } from "../../shared/dom.js";
 import { RecordedReport } from "./recorded_report.js";
@@ -9,7 +9,7 @@ const id = byId("main", HTMLElement).dataset.attempt ?? "";
 const path = `v1/attempts/${encodeURIComponent(id)}`;
 const state = byId("state", HTMLElement);
 const place = byId("attempt", HTMLElement);
-// So many attempts of a learner are listed, the newest.
+// How many of the learner's attempts are listed: the newest ones.
 const MOST_LISTED = "20";
 
 async function load() {
@@ -19,7 +19,7 @@ async function load() {
     const { exercise: name, learner } = found.attempt;
     /** @type {Api.Exercise | null} */
     const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
-    // Also, a browser that shows a key here shows it from then on to all that is beside /v1/attempts.
+    // After this request, the browser sends the key of HTTP Basic to all other addresses below /v1, too.
     const { attempts } = await get(
       `v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`,
     );
@@ -40,7 +40,7 @@ function show(found, exercise, attempts) {
   const drawn = new RecordedReport(exercise, found.submission);
   drawn.show(found.report);
   const about = h("section", { class: "card facts", "aria-label": "Facts" });
-  const given = new PointsGiven(attempt, (changed) => update(changed));
+  const given = new OverrideForm(attempt, (changed) => update(changed));
   /** @type {(now: Api.AttemptDetail) => void} */
   const update = (now) => {
     about.replaceChildren(facts(now, exercise, attempts));
@@ -51,7 +51,7 @@ function show(found, exercise, attempts) {
 }
 
 /**
- * The choice between the report that counts and those that a regrade has replaced.
+ * Return a field to choose between the current report and the reports that a regrade replaced.
  *
  * @param {Api.AttemptDetail} found
  * @param {RecordedReport} drawn
@@ -111,7 +111,7 @@ function facts({ attempt, submission, report }, exercise, attempts) {
 }
 
 /**
- * How much of its report's points a late attempt earns.
+ * Return in words which share of its report's points a late attempt earns.
  *
  * @param {number} share
  */
@@ -121,7 +121,7 @@ function lateShare(share) {
 }
 
 /**
- * Whether an answer, or what an answer is made of, holds no letter at all.
+ * Return true if an answer, or each entry of it, is blank.
  *
  * @param {unknown} answer
  * @returns {boolean}
@@ -132,7 +132,7 @@ function isEmpty(answer) {
 }
 
 /**
- * One of the learner's attempts at the exercise: a link, but for the one that is shown.
+ * Return a list item for an attempt of the learner; it is a link unless the attempt is the one on this page.
  *
  * @param {Api.AttemptSummary} attempt
  */
@@ -151,10 +151,10 @@ function ofLearner({ id: other, ordinal }) {
   );
 }
 
-/** The form for other points than the report's, and those that were given. */
-class PointsGiven {
+/** The form to override the mark, and the list of earlier overrides. */
+class OverrideForm {
   /**
-   * `changed` gets the attempt anew after each change.
+   * `changed` gets the attempt after each override.
    *
    * @param {Api.AttemptSummary} attempt
    * @param {(attempt: Api.AttemptDetail) => void} changed
@@ -194,7 +194,7 @@ class PointsGiven {
 
   /** @param {Api.AttemptDetail} found */
   show({ attempt, overrides }) {
-    // Those of the report would stand here rounded.
+    // Empty without an override, because the points of the report would be rounded here.
     this.points.value = String(attempt.awarded ?? "");
     this.withdrawal.hidden = attempt.awarded === undefined;
     this.list.replaceChildren(...overrides.toReversed().map(override));
@@ -250,6 +250,6 @@ function override({ points: given, reason, author, at }) {
   );
 }
 
-// The list as it was left: its filters and its page.
+// Return to the list with the same filters and page.
 byId("back-to-list", HTMLAnchorElement).search = location.search;
 load();

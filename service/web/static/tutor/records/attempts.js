@@ -1,4 +1,4 @@
-// The list of recorded attempts: filters, pages, and all of a learner deleted.
+// The list of recorded attempts: its filters and pages, and the deletion of a learner's data.
 
 import { byId, h } from "../../shared/dom.js";
 import {
@@ -22,7 +22,7 @@ const form = byId("filters", HTMLFormElement);
 const state = byId("state", HTMLElement);
 const list = byId("list", HTMLElement);
 
-// The cursors of the pages up to the one that is shown; the first page has none. They stand in the address.
+// The cursors of the pages up to the current one, which are also in the address. That of the first page is empty.
 let cursors = [""];
 let turn = 0;
 
@@ -87,7 +87,7 @@ function row(attempt) {
     late && "late",
     awarded !== undefined && "mark overridden",
   ];
-  // The attempt's page leads back to the list as it is now.
+  // The link keeps the filters, so that the attempt's page can link back to this list.
   const open = h(
     "a",
     { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search },
@@ -126,7 +126,7 @@ function pages(next) {
 }
 
 /**
- * The filters have changed: the first page.
+ * Show the first page after the filters have changed.
  *
  * @param {Event} [event]
  */
@@ -137,16 +137,15 @@ function changed(event) {
   return show();
 }
 
-/** Put filters and page into the address, which can be kept, and which the browser comes back to. */
+/** Put filters and page into the address, for bookmarks and for the browser's back button. */
 function keepAddress() {
   const pairs = [...FIELDS.map((name) => [name, fieldOf(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
   const given = new URLSearchParams(pairs.filter(([, value]) => value));
   history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
 }
 
-// All of a learner deleted.
+// The deletion of a learner's data. A key that is restricted to some exercises does not see this form.
 
-// Not there for a key that is restricted to some exercises.
 const forgetForm = document.getElementById("forget");
 const forgetState = () => byId("forget-state", HTMLElement);
 

@@ -1,16 +1,16 @@
-// The regrade of an exercise: first who would change and why, then the same for good.
+// The regrade of an exercise: first a preview of the changes with their reasons, then the regrade itself.
 
 import { h, message, number, points } from "../../shared/dom.js";
 import { count, failed, learnerName, table, tell } from "./records.js";
 import { address, pause, sendPatiently } from "../tutor_service.js";
 
-// So many changes are shown one by one.
+// How many changes are listed.
 const MOST_SHOWN = 200;
-// While others are at the last attempts, this asks again after so many seconds.
+// Seconds to wait while other processes regrade the last attempts.
 const OTHERS = 1;
 
 /**
- * The form; `done` is called when reports have been written.
+ * Return the form; it calls `done` after it has written reports.
  *
  * @param {string} exercise
  * @param {() => void} done
@@ -19,7 +19,7 @@ export function regradeForm(exercise, done) {
   const state = h("p", { class: "state-line", role: "status" });
   const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts regraded" });
   const changes = h("div", {});
-  const look = h("button", { type: "button", onclick: () => run(false) }, "Preview regrade");
+  const preview = h("button", { type: "button", onclick: () => run(false) }, "Preview regrade");
   const write = h("button", { type: "button", hidden: true, onclick: () => run(true) }, "Write the new reports");
   const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, "Stop");
   let isStopped = false;
@@ -27,11 +27,11 @@ export function regradeForm(exercise, done) {
   /** @param {boolean} apply */
   async function run(apply) {
     isStopped = false;
-    look.disabled = write.disabled = true;
+    preview.disabled = write.disabled = true;
     stop.hidden = bar.hidden = false;
     bar.removeAttribute("value");
     tell(state, apply ? "Writing …" : "Grading …");
-    const focused = document.activeElement instanceof HTMLElement ? document.activeElement : look;
+    const focused = document.activeElement instanceof HTMLElement ? document.activeElement : preview;
     try {
       const { graded, changed, left } = await allSteps(apply);
       told(apply, graded, changed, left);
@@ -40,13 +40,13 @@ export function regradeForm(exercise, done) {
     } catch (error) {
       failed(error, state);
     }
-    look.disabled = write.disabled = false;
+    preview.disabled = write.disabled = false;
     stop.hidden = bar.hidden = true;
-    if (document.activeElement === document.body) (focused.hidden ? look : focused).focus();
+    if (document.activeElement === document.body) (focused.hidden ? preview : focused).focus();
   }
 
   /**
-   * Step by step until nothing is left; the service does about a second of work in each.
+   * Send requests until no attempt is left. The service works for about a second on each.
    *
    * @param {boolean} apply
    */
@@ -117,7 +117,7 @@ export function regradeForm(exercise, done) {
       { class: "quiet" },
       "Grade again all attempts that were graded by another version of the exercise or of the program, for example after a correction. Overridden marks and the earlier reports are kept.",
     ),
-    h("p", { class: "choices" }, look, write, stop),
+    h("p", { class: "choices" }, preview, write, stop),
     bar,
     state,
     changes,
