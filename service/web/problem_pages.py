@@ -1,4 +1,4 @@
-"""The page that is shown in place of one that cannot be shown: it says what the reader can do."""
+"""The pages that show a problem in place of the requested page, with advice."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
