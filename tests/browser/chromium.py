@@ -1,4 +1,4 @@
-"""The Chromium that the tests drive: the machine's, that of an npm package, or Playwright's own.
+"""Find the Chromium for the tests: the machine's, that of an npm package, or Playwright's.
 
 ``python -m tests.browser.chromium`` says which one it is. If the machine has none, it fetches the
 npm package.
@@ -20,24 +20,24 @@ from typing import Final
 import brotli
 from playwright.sync_api import sync_playwright
 
-# Of the package's own versions the one that was tried; its major number is Chromium's.
+# The version of the package that was tested; its major number is that of Chromium.
 _PACKAGE: Final = "@sparticuz/chromium@153.0.0"
-# Beside the environment's other programs: `make clean` takes it away.
+# Inside the virtual environment, so that `make clean` removes it.
 _FOLDER: Final = Path(sys.prefix) / "chromium-153.0.0"
 _PROGRAMS: Final = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
-# The package's own configuration names the folders of the machine that it is made for.
+# Replaces the package's own configuration, which names folders of another machine.
 _FONTS: Final = Path(__file__).with_name("fonts.conf")
 
 OPTIONS: Final = [
     "--no-sandbox", "--no-first-run", "--disable-sync", "--disable-quic",
     "--disable-background-networking", "--disable-component-update",
-    # WebGL in software, where there is no graphics card.
+    # WebGL in software if there is no graphics card.
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    # The page itself is then drawn by the processor, as Chromium does it without a graphics card,
-    # and not by a graphics card that the processor plays: that takes 50 ms a frame.
+    # Let the processor draw the page directly; drawing it through the software renderer of WebGL
+    # would take 50 ms for each frame.
     "--disable-gpu-compositing",
-    # Every name and address but this machine's leads nowhere.
+    # Block all names and addresses except this machine.
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]  # fmt: skip
 ABSENT: Final = (
@@ -61,14 +61,14 @@ def find_chromium() -> Chromium | None:
         return Chromium(program)
     if unpacked := _unpacked():
         return unpacked
-    # Playwright can be asked only by a thread that is not using it already.
+    # Only a thread that does not already use Playwright can ask it.
     with ThreadPoolExecutor(1) as other:
         own = other.submit(_path_of_playwright).result()
     return Chromium(own) if Path(own).is_file() else None
 
 
 def _path_of_playwright() -> str:
-    """The path at which Playwright installs its Chromium."""
+    """Return the path at which Playwright installs its Chromium."""
     with sync_playwright() as playwright:
         return playwright.chromium.executable_path
 
@@ -77,12 +77,12 @@ def _unpacked() -> Chromium | None:
     program = _FOLDER / "chromium"
     if not program.is_file():
         return None
-    # The package is made for a machine without the libraries and fonts that a desktop has.
+    # The package brings the libraries and fonts that a machine without a desktop lacks.
     libraries = [str(_FOLDER / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
     variables = {
         "LD_LIBRARY_PATH": os.pathsep.join(filter(None, libraries)),
         "FONTCONFIG_FILE": str(_FONTS),
-        # The folders of the fonts and of what is remembered of them.
+        # The folders of the fonts and of their cache.
         "XDG_DATA_HOME": str(_FOLDER),
         "XDG_CACHE_HOME": str(_FOLDER / "cache"),
     }
@@ -90,7 +90,7 @@ def _unpacked() -> Chromium | None:
 
 
 def fetch_chromium() -> Chromium | None:
-    """Fetch the one of the npm package; None where that fails."""
+    """Fetch the Chromium of the npm package; return None if that fails."""
     npm = shutil.which("npm")
     if npm is None:
         return None
@@ -110,7 +110,7 @@ def fetch_chromium() -> Chromium | None:
 
 
 def _unpack(archive: Path, folder: Path) -> None:
-    """The program with its libraries, fonts and WebGL in software, side by side."""
+    """Unpack the program with its libraries, its fonts and WebGL in software into one folder."""
     with tarfile.open(archive) as package:
         for member in package.getmembers():
             name = Path(member.name).name
@@ -129,7 +129,7 @@ def _unpack(archive: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    """Say which Chromium there is, and fetch one where there is none."""
+    """Print which Chromium the tests use; fetch one if there is none."""
     found = find_chromium() or fetch_chromium()
     if found is None:
         raise SystemExit(ABSENT)

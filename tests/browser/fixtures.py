@@ -19,10 +19,10 @@ from playwright.sync_api import (
 
 from tests.browser.chromium import ABSENT, OPTIONS, Chromium, find_chromium
 
-# A guard against a hang, in milliseconds: what is waited for takes a hundredth of it.
+# Milliseconds; a guard against hangs, a hundred times what the tests wait for.
 GUARD: Final = 60_000
 expect.set_options(timeout=GUARD)
-# Where a page and all that it needs may come from: a server of the tests, or a file.
+# The addresses that a page may load: servers of the tests, and files.
 OURS: Final = ("http://127.0.0.1:", "file:", "data:")
 # A light screen, a dark screen, and paper.
 APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dark"]], ...]] = (
@@ -34,7 +34,7 @@ APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dar
 
 @pytest.fixture(scope="session")
 def chromium() -> Chromium:
-    """The Chromium of this machine. Without one, the tests fail in continuous integration."""
+    """Return the Chromium of this machine. Continuous integration fails without one."""
     found = find_chromium()
     if found is None:
         if os.environ.get("CI"):
@@ -80,31 +80,31 @@ def browser(started_browser: Started) -> Iterator[Browser]:
 
 @dataclass
 class Visit:
-    """A page, and what the browser complained about."""
+    """A page, and the browser's complaints about it."""
 
     page: Page
     complaints: list[str] = field(default_factory=list)
     requests: list[str] = field(default_factory=list)
 
 
-# Said where the processor draws the page: it has to fetch each picture from WebGL.
+# A complaint to ignore: without a graphics card, the browser reads each picture back from WebGL.
 READBACK: Final = "GPU stall due to ReadPixels"
 
 
 def complaint(line: ConsoleMessage) -> list[str]:
-    """What the browser or a script says in the console, if it is a complaint."""
+    """Return the message of the console, if it is a complaint."""
     is_complaint = line.type in ("error", "warning") and READBACK not in line.text
     return [line.text] if is_complaint else []
 
 
 def failure(request: Request) -> list[str]:
-    """The failure of a request, if it is none that a visitor made by going on to another page."""
+    """Return the failure of a request, unless the visitor left the page."""
     return [] if request.failure == "net::ERR_ABORTED" else [f"{request.failure}: {request.url}"]
 
 
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
-    """Opens a page in a context of its own; at the end nothing may have gone wrong in any."""
+    """Yield a function that opens a page in a new context; fail if any page had complaints."""
     contexts: list[BrowserContext] = []
     visits: list[Visit] = []
 

@@ -1,6 +1,6 @@
-"""An exercise as somebody would write it who wants to run a script in a student's browser."""
+"""An exercise by an attacker who wants to run a script in students' browsers."""
 
-# Each would be seen by a test if it were taken for markup: it calls `stolen`, or loads a picture.
+# Each text calls `stolen` or loads a picture if a page takes it for markup, which a test notices.
 SCRIPT = "<script>stolen('script')</script>"
 PICTURE = "<img src=x onerror=\"stolen('picture')\">"
 DRAWING = "<svg onload=\"stolen('drawing')\"><a href='javascript:stolen(1)'>q</a></svg>"

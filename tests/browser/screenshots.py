@@ -1,4 +1,4 @@
-"""Photographs every view for the docs: ``make screenshots``."""
+"""Take screenshots of every view for the docs: ``make screenshots``."""
 
 import os
 import subprocess
@@ -27,7 +27,7 @@ ANSWERS: Final = [
     "0", "-90°", "0", "theta1", "0", "pi/2", "d2", "theta2", "0", "0", "d3", "0",
     "0", "pi/2", "0", "theta4", "0", "90°", "0", "theta5", "0", "0", "d6 +", "theta6",
 ]  # fmt: skip
-# Learners, tables, and which of their attempts each is; the oldest first.
+# Learner, table and number of the attempt, the oldest first.
 UNFINISHED: Final = RIGHT.replace("θ2", "θ2 +").replace("d4 θ4", "0 θ4")
 CLASS: Final = [
     ("u4711", NO_TWIST, 1), ("u4712", LAZY, 1), ("u4713", NO_TWIST, 1), ("u4711", RIGHT, 2),
@@ -37,13 +37,13 @@ CLASS: Final = [
 
 
 def home(page: Page, service: str) -> None:
-    """The catalogue."""
+    """Open the catalogue."""
     page.goto(service)
     expect(page.get_by_label("Find an exercise")).to_be_visible()
 
 
 def exercise(page: Page, service: str) -> None:
-    """An exercise while it is filled in."""
+    """Open an exercise and fill in some cells."""
     open_exercise(page, service, "stanford-arm")
     for i, text in enumerate(ANSWERS[:14]):
         cells(page).nth(i).fill(text)
@@ -52,7 +52,7 @@ def exercise(page: Page, service: str) -> None:
 
 
 def report(page: Page, service: str) -> None:
-    """The report on a table with two slips."""
+    """Open the report on a table with two slips."""
     open_exercise(page, service, "stanford-arm")
     for i, text in enumerate(ANSWERS):
         cells(page).nth(i).fill(text)
@@ -62,7 +62,7 @@ def report(page: Page, service: str) -> None:
 
 
 def robot_view(page: Page, service: str) -> None:
-    """The robot in 3D, with a student's table that has a slip over it."""
+    """Open the 3D view with a student's table that has a slip."""
     exercise(page, service)
     for i, text in enumerate(ANSWERS[14:22], 14):
         cells(page).nth(i).fill(text)
@@ -75,7 +75,7 @@ def robot_view(page: Page, service: str) -> None:
 
 
 def free_play(page: Page, service: str) -> None:
-    """An arm in free play."""
+    """Open an arm in free play."""
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Elbow arm with a wrist, 6R")
     expect(page.locator(".slider")).to_have_count(6)
@@ -83,13 +83,13 @@ def free_play(page: Page, service: str) -> None:
 
 
 def solution(page: Page, service: str) -> None:
-    """A model solution, for tutors."""
+    """Open a model solution."""
     page.goto(f"{service}/tutor/solutions/scara")
     expect(page.locator("math mtable").first).to_be_visible()
 
 
 def editor(page: Page, service: str) -> None:
-    """The editor of exercise files, with a slip in the file."""
+    """Open the editor with a mistake in the file."""
     page.goto(f"{service}/tutor/editor?exercise=scara")
     text = page.get_by_label("Exercise file, TOML")
     expect(page.locator("#findings")).to_contain_text("No problems found.")
@@ -100,20 +100,20 @@ def editor(page: Page, service: str) -> None:
 
 
 def attempts(page: Page, service: str) -> None:
-    """What a class has recorded."""
+    """Open the list of recorded attempts."""
     page.goto(f"{service}/tutor/attempts?exercise=scara")
     expect(page.locator("#list tbody tr")).to_have_count(len(CLASS))
 
 
 def attempt(page: Page, service: str) -> None:
-    """A recorded attempt with its report."""
+    """Open a recorded attempt with its report."""
     attempts(page, service)
     page.locator("#list").get_by_role("link", name="u4713").first.click()
     expect(page.locator("td[data-verdict=unreadable]")).to_have_count(1)
 
 
 def statistics(page: Page, service: str) -> None:
-    """An exercise in counts."""
+    """Open the statistics of an exercise."""
     page.goto(f"{service}/tutor/statistics/scara")
     expect(page.locator(".share").first).to_be_visible()
 
@@ -133,7 +133,7 @@ VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
 
 
 def recorded_class(database: Path) -> None:
-    """Write the attempts of a class, spread over some days."""
+    """Record the attempts of a class on several days."""
     store = AttemptStore.open(str(database))
     scara = load_catalogue(shipped_folder())["scara"]
     recorded_all(
@@ -146,8 +146,8 @@ def recorded_class(database: Path) -> None:
     store.close()
 
 
-def photograph(service: str, names: Collection[str]) -> None:
-    """The views of these names, in light and dark, wide and narrow."""
+def take_screenshots(service: str, names: Collection[str]) -> None:
+    """Take screenshots of the named views in light and dark, wide and narrow."""
     found = find_chromium()
     if found is None:
         raise SystemExit(ABSENT)
@@ -161,11 +161,11 @@ def photograph(service: str, names: Collection[str]) -> None:
                 page = browser.new_page(viewport=viewport, reduced_motion="reduce")
                 page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
                 for name in names:
-                    # Each view begins as a first visit does.
+                    # Start each view as on a first visit.
                     page.goto(service)
                     page.evaluate("localStorage.clear()")
                     VIEWS[name](page, service)
-                    # The pictures, too.
+                    # Wait until the pictures have been loaded, too.
                     page.wait_for_load_state("networkidle")
                     page.screenshot(path=FOLDER / f"{name}-{size}-{scheme}.png")
                 page.close()
@@ -173,7 +173,7 @@ def photograph(service: str, names: Collection[str]) -> None:
 
 
 def main() -> None:
-    """Start the service and photograph it: all views, or those that are named."""
+    """Start the service and take screenshots of the named views, by default of all."""
     names = sys.argv[1:] or VIEWS
     if unknown := set(names) - set(VIEWS):
         raise SystemExit(f"There is no view {', '.join(unknown)}; there are {', '.join(VIEWS)}.")
@@ -190,7 +190,7 @@ def main() -> None:
             ) as process,
         ):
             try:
-                photograph(f"http://127.0.0.1:{announced_port(process, log)}", names)
+                take_screenshots(f"http://127.0.0.1:{announced_port(process, log)}", names)
             finally:
                 process.terminate()
 

@@ -1,4 +1,4 @@
-"""What a student does on the page of an exercise."""
+"""The actions of a student on the page of an exercise."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -16,12 +16,12 @@ def open_exercise(page: Page, service: str, exercise: str, fragment: str = "") -
 
 
 def cells(page: Page, part: int = 0) -> Locator:
-    """The inputs of a part."""
+    """Return the inputs of a part."""
     return page.locator(".part").nth(part).locator("input")
 
 
 def right_answers(exercise: Exercise) -> dict[str, list[str]]:
-    """The entries of each part, in order, from the answers that the author wrote as right ones."""
+    """Return the entries of each part in order, from the author's checks of right answers."""
     found: dict[str, list[str]] = {}
     for check in exercise.checks:
         if check.kind == "right":
@@ -52,7 +52,7 @@ def _entries(answer: object) -> Iterator[str]:
 
 
 def type_with_tab(page: Page, texts: Sequence[str]) -> None:
-    """Type texts into cells, one after the other, with the keyboard alone."""
+    """Type texts into consecutive cells, only with the keyboard."""
     for text in texts:
         page.keyboard.insert_text(text)
         page.keyboard.press("Tab")
@@ -77,6 +77,6 @@ _MATRICES: Final = {"link_transforms": 4, "transform": 4, "rotation": 3}
 
 
 def paste(page: Page, text: str) -> None:
-    """Paste a text where the cursor is, from the real clipboard."""
+    """Paste a text from the real clipboard at the cursor."""
     page.evaluate("text => navigator.clipboard.writeText(text)", text)
     page.keyboard.press("Control+V")

@@ -1,4 +1,4 @@
-"""A tutor and what students have recorded: read, other points, statistics, regrade, forget."""
+"""A tutor works with recorded attempts: list, override, statistics, regrade, deletion."""
 
 import csv
 import json
@@ -38,9 +38,9 @@ ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WR
 
 @dataclass
 class Recording:
-    """A service that records for whoever has the key, and the folder of its exercises.
+    """A service that records attempts, with its exercise folder and two keys.
 
-    ``narrow_key`` is for one exercise.
+    ``key`` may record and tutor; ``narrow_key`` is a tutor's key for one exercise.
     """
 
     address: str
@@ -50,16 +50,16 @@ class Recording:
 
     @property
     def visitor(self) -> dict[str, Any]:
-        """A browser in which the key is given when it asks for a password."""
+        """Return the options of a browser that enters the key as the password."""
         return self.visitor_with(self.key)
 
     def visitor_with(self, key: str) -> dict[str, Any]:
-        """The same with another key."""
+        """Return the options of a browser that enters this key as the password."""
         password = {"username": "tutor", "password": key, "origin": self.address}
         return {"viewport": NARROW, "http_credentials": password}
 
     def record(self, learner: str, table: Any) -> str:
-        """Record an attempt as a course does; its id."""
+        """Record an attempt as a course does, and return its id."""
         body = json.dumps({"learner": learner, "answers": {"table": table}}).encode()
         headers = {"Content-Type": "application/json", "Authorization": f"Bearer {self.key}"}
         asked = Request(f"{self.address}/v1/exercises/scara/attempts", body, headers)
@@ -67,7 +67,7 @@ class Recording:
             return str(json.load(answer)["attempt"]["id"])
 
     def correct(self) -> None:
-        """Have the exercise take a table for right that has no turn in it."""
+        """Change the exercise so that a table without the half turn is right."""
         text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
         changed = text.replace('["a2", "180deg",', '["a2", "0",').partition("[[checks]]")[0]
         assert "180deg" not in changed, "the exercise has changed"
@@ -122,14 +122,14 @@ def test_a_tutor_works_with_recorded_attempts(
     for learner, table in ANSWERS:
         recording.record(learner, table)
 
-    # Who has a key for this exercise alone sees the same of it at once.
+    # A tutor with a key for this exercise alone sees the same attempts.
     other = visit(**recording.visitor_with(recording.narrow_key)).page
     other.goto(f"{recording.address}/tutor")
     other.get_by_role("link", name="Recorded attempts").click()
     expect(rows(other)).to_have_count(3)
     other.close()
 
-    # A student, who has none, is told where to go, and nothing of headers.
+    # A student without a key is sent to the course page; headers are not mentioned.
     student = visit()
     student.page.goto(f"{recording.address}/exercises/scara")
     cells(student.page).first.fill("a1")
@@ -142,7 +142,7 @@ def test_a_tutor_works_with_recorded_attempts(
     assert all("401" in each for each in student.complaints)
     student.complaints.clear()
 
-    # Filters, and an address that keeps them.
+    # The address keeps the filters.
     page.get_by_label("Exercise").select_option("scara")
     expect(rows(page)).to_have_count(3)
     expect(rows(page).first).to_contain_text(PICTURE)
@@ -161,7 +161,7 @@ def test_a_tutor_works_with_recorded_attempts(
     with (tmp_path / "attempts.csv").open(encoding="utf-8", newline="") as file:
         assert [each["learner"] for each in csv.DictReader(file)] == ["grace"]
 
-    # One attempt: what was typed, and its report.
+    # The page of an attempt shows the answers and the report.
     rows(page).get_by_role("link").click()
     entries = page.locator(".part").first.locator("tbody input")
     expect(entries.nth(4)).to_have_value("a2")
@@ -170,15 +170,15 @@ def test_a_tutor_works_with_recorded_attempts(
     ]
     expect(page.locator("td[data-verdict=unreadable]")).to_have_count(2)
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
-    # How each was understood, which is asked for with the same key.
+    # It shows how each entry was read; the requests use the same key.
     expect(page.locator(".part").first.locator(".shown math")).to_have_count(14)
-    # It is read only: neither keys nor what is pasted, and no repair, change it.
+    # It is read-only: typing changes nothing, and there are no repairs.
     entries.nth(7).focus()
     page.keyboard.type("x")
     assert entries.nth(7).input_value() == "theta2 +"
     expect(page.locator(".repair")).to_have_count(0)
     assert wide(page) <= NARROW["width"]
-    # The list is had back as it was left; the points of the report would stand here rounded.
+    # The link to the list keeps the filters. Without an override, its field is empty.
     back = page.get_by_role("link", name="List of attempts")
     assert str(back.get_attribute("href")).endswith("?exercise=scara&learner=+grace+")
     expect(page.locator("#points")).to_have_value("")
@@ -192,7 +192,7 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(page.locator(".given")).to_contain_text("A <b>misprint</b>. key ")
     expect(page.locator(".facts")).to_contain_text("7.5 / 24")
 
-    # The exercise in counts, and its regrade: first who changes, then for good.
+    # The statistics, then the regrade: first a preview, then the new reports.
     page.goto(f"{recording.address}/tutor/statistics/scara")
     expect(page.get_by_text("3 attempts of 3 learners")).to_be_visible()
     shares = page.get_by_role("region", name="Shares: Denavit-Hartenberg table")
@@ -203,7 +203,7 @@ def test_a_tutor_works_with_recorded_attempts(
         "Something is missing after the + at the end."
     )
     expect(page.locator(".groups")).to_contain_text(f"2 learners: {PICTURE}, grace")
-    # The drawing of the days, in words: twice, today.
+    # The text alternative of the chart: two attempts today.
     expect(page.get_by_role("img", name=re.compile(r"^\d+ \w+ 20\d\d: 2$")).first).to_be_visible()
     assert wide(page) <= NARROW["width"]
     page.get_by_role("button", name="Preview regrade").click()
@@ -233,7 +233,7 @@ def test_a_tutor_works_with_recorded_attempts(
     page.get_by_label("Report", exact=True).select_option("1")
     expect(page.locator("td[data-verdict=correct]")).to_have_count(16)
 
-    # A learner who wants to be forgotten is named before it happens.
+    # The deletion of a learner's data must be confirmed.
     page.get_by_role("link", name="List of attempts").click()
     expect(rows(page)).to_have_count(3)
     page.get_by_label("Learner").last.fill(PICTURE)
@@ -252,7 +252,7 @@ def test_a_tutor_works_with_recorded_attempts(
 
 
 @pytest.mark.campaign
-def test_nobody_is_kept_out_of_the_views_of_attempts(
+def test_the_pages_of_attempts_are_accessible(
     recording: Recording, visit: Opening, service: str, axe: str
 ) -> None:
     [*_, attempt] = [recording.record(learner, table) for learner, table in ANSWERS]
@@ -282,17 +282,15 @@ def test_nobody_is_kept_out_of_the_views_of_attempts(
         expect(page.get_by_role("button", name="Stop")).to_be_hidden()
         page.wait_for_timeout(100)
     check()
-    # A service that has no database says how it gets one.
+    # A service without a database explains how to add one.
     page.goto(f"{service}/tutor/attempts")
     expect(page.get_by_text("DH_GRADER_DATABASE=attempts.db")).to_be_visible()
     check()
 
 
 @pytest.mark.campaign
-def test_the_page_of_the_interface_shows_what_students_wrote_as_text(
-    recording: Recording, visit: Opening
-) -> None:
-    """Whoever tries an operation out at /docs sees recorded answers there."""
+def test_the_api_page_shows_recorded_answers_as_text(recording: Recording, visit: Opening) -> None:
+    """Recorded answers are shown as text when a tutor tries an operation at /docs."""
     attempt = recording.record(PICTURE, WRONG)
     page = visit(**recording.visitor, bypass_csp=True).page
     page.goto(f"{recording.address}/docs#/attempts/getAttempt")

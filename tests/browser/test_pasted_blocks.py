@@ -23,7 +23,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
     open_exercise(page, service, "rrrp")
     table = cells(page)
     table.nth(6).focus()
-    # Quotes are a spreadsheet's own; its last line ends with a line break.
+    # Spreadsheets add quotes, and a line break at the end.
     paste(page, 'l1\t"q1"\r\n0\tq2\r\n')
     expect(table.nth(11)).to_have_value("q2")
     block = ["", "", "l1", "q1", "", "", "0", "q2"]
@@ -34,7 +34,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
     assert set(texts(page, ".part >> nth=0 >> input")) == {""}
     page.keyboard.press("Control+Shift+Z")
     expect(table.nth(11)).to_have_value("q2")
-    # A column goes down; what reaches beyond the table stays one text in one cell.
+    # A column fills cells downwards. One that is too long for the table stays in one cell.
     table.nth(1).focus()
     paste(page, "0\n180°\n0\n0")
     expect(table.nth(13)).to_have_value("0")
@@ -50,7 +50,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
 
 
 @pytest.mark.campaign
-def test_what_changes_the_table_of_free_play_can_be_undone(visit: Opening, service: str) -> None:
+def test_changes_of_the_table_of_free_play_can_be_undone(visit: Opening, service: str) -> None:
     page = visit(permissions=CLIPBOARD).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("SCARA, RRPR")
@@ -61,7 +61,7 @@ def test_what_changes_the_table_of_free_play_can_be_undone(visit: Opening, servi
     paste(page, "0.1\tpi/2\n0.2\t0")
     expect(cell.nth(9)).to_have_value("0")
     assert texts(page, ".entry input")[4:10] == ["0.1", "pi/2", "0", "theta2", "0.2", "0"]
-    # A whole table of another size takes the place of this one.
+    # A pasted whole table replaces this one.
     paste(page, "DH = [a1 0 0 q1; a2 0 0 q2];")
     expect(cell).to_have_count(8)
     page.get_by_role("button", name="Remove row 1").click()
@@ -75,7 +75,7 @@ def test_what_changes_the_table_of_free_play_can_be_undone(visit: Opening, servi
     assert texts(page, ".entry input") == scara
     page.keyboard.press("Control+Y")
     expect(cell.nth(8)).to_have_value("0.2")
-    # What is typed into one cell is one step.
+    # Keys typed into one cell are one step.
     cell.first.focus()
     page.keyboard.press("Control+A")
     page.keyboard.type("l1+l2")

@@ -1,4 +1,4 @@
-"""Free play: any table, its robot in 3D, its pose and its equivalent."""
+"""Free play: a table, its robot in 3D, its pose, and its equivalent."""
 
 from collections.abc import Callable
 
@@ -11,8 +11,8 @@ from tests.browser.test_robot_view import picture
 
 Opening = Callable[..., Visit]
 
-# Pictures in a second of dragging, and of a page that changes one number, which is the floor here;
-# last the milliseconds of script for one picture.
+# Measures three figures: pictures in a second of dragging, pictures in a second of a page that only
+# changes a number (for comparison), and milliseconds of script for each picture.
 DRAG = """async (slider) => {
   const pictures = async (change) => {
     const from = performance.now();
@@ -45,7 +45,7 @@ def cell(page: Page, row: int, column: int) -> Locator:
     return page.locator(".entry input").nth(4 * row - 4 + column)
 
 
-def test_a_seven_joint_arm_is_played_with(
+def test_a_seven_joint_arm_can_be_moved(
     visit: Opening, service: str, axe: str, figure: Callable[[str], None]
 ) -> None:
     page = visit(bypass_csp=True, viewport=SMALL).page
@@ -69,7 +69,7 @@ def test_a_seven_joint_arm_is_played_with(
     assert script < 33
     assert drawn > floor / 6
 
-    # Its equivalent is the same robot: the pose stays.
+    # The table in the other convention has the same pose.
     slider.press("Home")
     picture(page)
     pose = entries(page)
@@ -83,8 +83,8 @@ def test_a_seven_joint_arm_is_played_with(
 
 
 @pytest.mark.campaign
-def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str) -> None:
-    """Two rows that turn about one line."""
+def test_a_table_can_be_written_and_shared(visit: Opening, service: str) -> None:
+    """Both joints of the table turn about the same line, which the page points out."""
     page = visit(permissions=["clipboard-read", "clipboard-write"], viewport=SMALL).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Planar arm, RR")
@@ -95,7 +95,7 @@ def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str)
     picture(page)
     shown = entries(page)
     cell(page, 2, 2).fill("l1 +")
-    # While a cell is half typed, robot and pose stay, and look as if from before.
+    # While a cell is incomplete, robot and pose stay, but faded.
     expect(page.locator(".told")).to_contain_text("The view shows your last valid table.")
     assert entries(page) == shown
     expect(page.locator(".numeric")).to_be_visible()

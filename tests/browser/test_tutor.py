@@ -1,4 +1,4 @@
-"""A tutor at the machine: solutions, the editor, the report on a class."""
+"""The tutor's pages: solutions, the editor, the report on a class."""
 
 import json
 import re
@@ -62,7 +62,7 @@ def test_a_tutor_looks_at_a_solution_and_writes_an_exercise(
     expect(page.locator("#preview .statement")).to_contain_text(SCRIPT)
     assert page.locator("main").locator("script, [onerror], img[src=x]").count() == 0
     assert page.evaluate("taken") == []
-    # The file stays what counts: without a folder to write to, it is downloaded.
+    # Without an editor folder, the file can only be downloaded.
     expect(page.get_by_role("button", name="Save")).to_have_count(0)
     text.fill(written + "\n# ü\n")
     with page.expect_download() as downloading:
@@ -83,7 +83,7 @@ def test_a_class_is_graded_in_the_browser(
     (folder / "dave.json").write_bytes(b" " * 300_000)
     (folder / "eve.txt").write_bytes(b"\xff\xfe\x00")
 
-    # Under the page's own policy: the styles of the reports are allowed in their frame alone.
+    # Under the page's own policy, which allows the styles of the reports only in the frame.
     page = visit(viewport=NARROW).page
     page.goto(f"{service}/tutor/class")
     page.get_by_label("Exercise").select_option("planar-rr")

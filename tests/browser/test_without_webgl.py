@@ -30,7 +30,7 @@ def page(browser: Browser, chromium: Chromium) -> Iterator[Page]:
 
 
 def drawing(page: Page) -> Locator:
-    """The drawing, when the browser has decoded it."""
+    """Return the drawing after the browser has decoded it."""
     image = page.get_by_role("img", name="Drawing of the robot at these joint values")
     expect(image).to_be_visible()
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
