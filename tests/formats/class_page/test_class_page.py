@@ -92,7 +92,7 @@ def test_a_partly_usable_file_is_listed_with_the_reason() -> None:
 
 def test_the_index_says_if_the_feedback_level_hides_slips() -> None:
     scores = [graded({"table": {"rows": []}}, each, FeedbackLevel.SCORE) for each in "ab"]
-    assert "2 reports tell no slips" in told(folder(*scores)["index.html"])
+    assert "2 reports without misconceptions" in told(folder(*scores)["index.html"])
 
 
 def test_a_class_without_submissions_has_an_index() -> None:
