@@ -92,10 +92,10 @@ def _marks(content: bytes) -> int:
 
 
 def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
-    """The folder that the command line writes, as a ZIP archive. Raises ProblemError.
+    """Grade a class, and return the folder of its reports as a ZIP archive. Raises ProblemError.
 
-    The files stand in a temporary folder as long as they are read, so that they are found and
-    named as everywhere else.
+    The files are in a temporary folder while they are graded, so that they are found and read as on
+    the command line.
     """
     exercise = require_exercise(catalogue, upload.exercise)
     try:
