@@ -1,7 +1,7 @@
-"""Reports in the forms that people and programs take them in: one file for each format.
+"""Report formats for people and programs: one file for each format.
 
 A format is a file ``<name>.py`` with a ``FORMAT`` in ``documents/`` or ``platforms/``. It is found
-by its name, and loaded when somebody asks for it. ``shared/`` has what formats share.
+by its name, and loaded when it is used. ``shared/`` has helpers of several formats.
 """
 
 from importlib import import_module

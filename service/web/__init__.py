@@ -1,4 +1,4 @@
-"""The page and the element that other sites embed: HTML from here, everything else static files."""
+"""The pages of the service, and the element that other sites embed."""
 
 from service.web.routes import web_routes
 from service.web.tutor.tutor_routes import Tutoring

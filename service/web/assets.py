@@ -1,9 +1,9 @@
-"""The static files of the page, each under a name that holds a hash of its content.
+"""The static files of the pages, each served under a name that contains a hash of its content.
 
-A file that has changed has another name, so that a browser may keep each for ever. The names are
-made when the service starts; there is no build step. The files are in rooms, and in the source a
-module imports ``"../shared/dom.js"`` by its path. All addresses are in one folder: a file can
-change its room, and two files of one name are refused.
+A changed file has another name, so browsers may cache each file without a limit. The names are made
+when the service starts; there is no build step. In the source, a module imports another one by its
+path, such as ``"../shared/dom.js"``. All files are served from one folder, so no two of them may
+have the same name.
 """
 
 import hashlib
@@ -17,17 +17,17 @@ from typing import Final
 
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
-# A file names another one by its path, in quotes; a module may import one later, when it needs it.
-# A pattern that begins with plain characters is searched for ten times as fast.
+# A file names another one by its path in quotes. A module may also import one later (``import(``).
+# A pattern that begins with plain characters is ten times as fast.
 _NAMED: Final = re.compile(r'"(\.\.?/[\w./-]+\.(?:js|css|svg))"')
 _LATER: Final = "import("
 
 
 @dataclass(frozen=True, slots=True)
 class Asset:
-    """A file as it is served; ``needs`` are the plain names of those that it names itself.
+    """A file as it is served.
 
-    Modules that it imports later are not among them.
+    ``needs`` has the plain names of all files that it names, except the modules it imports later.
     """
 
     name: str
@@ -38,21 +38,21 @@ class Asset:
 
 @dataclass(frozen=True, slots=True)
 class Assets:
-    """All files, by their plain names and by those under which they are served."""
+    """All files by their plain names."""
 
     by_plain_name: Mapping[str, Asset]
 
     @property
     def by_name(self) -> dict[str, Asset]:
-        """The files by the names under which they are served."""
+        """Return the files by the names under which they are served."""
         return {asset.name: asset for asset in self.by_plain_name.values()}
 
     def name(self, plain_name: str) -> str:
-        """The name under which a file is served."""
+        """Return the name under which a file is served."""
         return self.by_plain_name[plain_name].name
 
     def modules(self, plain_name: str) -> list[str]:
-        """The names of all modules that a module needs, it included, so that none is waited for."""
+        """Return the names of a module and of all modules that it needs, to be preloaded."""
         found: dict[str, None] = {}
         waiting = [plain_name]
         while waiting:

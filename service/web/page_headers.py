@@ -1,13 +1,13 @@
-"""The headers of the pages: what a browser may load and run there."""
+"""The headers of the pages, among them the policy of what a browser may load and run."""
 
 from typing import Final
 
 
 def policy(**more: str) -> str:
-    """The policy of a page; ``more`` are directives that take the place of the usual ones.
+    """Return the Content-Security-Policy of a page; ``more`` replaces some of its directives.
 
-    Nothing from another host, but for pictures what the page itself was sent. No script or style in
-    the page itself, and no text that becomes markup but by the one policy of markup.js.
+    It allows nothing from other hosts, and no script or style inside the page. Scripts may turn
+    text into markup only by the policy of markup.js.
     """
     directives = {
         "default_src": "'none'",
@@ -32,6 +32,6 @@ PAGE_HEADERS: Final = {
     "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
     "Cache-Control": "no-cache",
 }
-# What only a tutor may see is kept by no browser.
+# Browsers must not store what only a tutor may see.
 NO_STORE: Final = {"Cache-Control": "no-store"}
 PRIVATE_HEADERS: Final = {**PAGE_HEADERS, **NO_STORE}

@@ -1,4 +1,4 @@
-"""Students' pages as HTML. What can be read without a script is in the page itself."""
+"""Students' pages as HTML. They can be read without scripts."""
 
 from collections.abc import Iterable, Iterator
 from typing import Final
@@ -11,7 +11,7 @@ from service.catalogue import Exercise
 from service.formats.shared.html_templates import html, own_html
 from service.web.assets import Assets
 
-# The entries of the menu: text and address, from the root.
+# The entries of the menu: text, and address relative to the root.
 _MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
 _TUTORS_MENU: Final = (*_MENU, ("For tutors", "tutor"))
 
@@ -67,8 +67,8 @@ def page(
 ) -> bytes:
     """Return the page of a template that extends ``site.html``.
 
-    ``root`` leads from its address to that of the catalogue. The menu has one more entry for a
-    ``tutor``. ``values`` are the variables of the template.
+    ``root`` is the relative address of the catalogue. The menu has one more entry for a ``tutor``.
+    ``values`` are the variables of the template.
     """
     static = f"{root}static/"
     modules = dict.fromkeys(name for script in scripts for name in assets.modules(script))
@@ -85,7 +85,7 @@ def page(
 
 
 def _groups(exercises: Iterable[Exercise]) -> Iterator[tuple[str, list[Exercise]]]:
-    """Yield the headings with their exercises: robots, which have pictures, and all others."""
+    """Yield each heading with its exercises: first those with a robot, then all others."""
     robots: list[Exercise] = []
     others: list[Exercise] = []
     for exercise in exercises:

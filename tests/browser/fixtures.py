@@ -1,4 +1,4 @@
-"""Fixtures: one browser for all tests of a process, and pages in it."""
+"""One browser for all tests of a process, and visits with it."""
 
 import asyncio
 import os
@@ -19,10 +19,10 @@ from playwright.sync_api import (
 
 from tests.browser.chromium import ABSENT, OPTIONS, Chromium, find_chromium
 
-# A guard against a hang, in milliseconds: about a hundred times as long as needed.
+# Milliseconds; a guard against hangs, a hundred times what the tests wait for.
 GUARD: Final = 60_000
 expect.set_options(timeout=GUARD)
-# The addresses from which a page may load anything: servers of the tests, and files.
+# The addresses that a page may load: servers of the tests, and files.
 OURS: Final = ("http://127.0.0.1:", "file:", "data:")
 # A light screen, a dark screen, and paper.
 APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dark"]], ...]] = (
@@ -34,7 +34,7 @@ APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dar
 
 @pytest.fixture(scope="session")
 def chromium() -> Chromium:
-    """The Chromium of this machine. Without one, the tests fail in continuous integration."""
+    """Return the Chromium of this machine. Continuous integration fails without one."""
     found = find_chromium()
     if found is None:
         if os.environ.get("CI"):
@@ -70,8 +70,8 @@ def started_browser(chromium: Chromium) -> Iterator[Started]:
 def browser(started_browser: Started) -> Iterator[Browser]:
     """The browser.
 
-    Playwright marks its event loop as running in this thread, which forbids any other loop. The
-    mark is removed while tests without a browser run.
+    Playwright leaves its event loop marked as running in this thread, so that no other loop could
+    be run there: the mark is taken away while tests without a browser run.
     """
     asyncio._set_running_loop(started_browser.loop)
     yield started_browser.browser
@@ -80,31 +80,31 @@ def browser(started_browser: Started) -> Iterator[Browser]:
 
 @dataclass
 class Visit:
-    """A page, and the complaints of the browser about it."""
+    """A page, and the browser's complaints about it."""
 
     page: Page
     complaints: list[str] = field(default_factory=list)
     requests: list[str] = field(default_factory=list)
 
 
-# A warning that appears only because the processor draws the page and fetches it from WebGL.
+# A complaint to ignore: without a graphics card, the browser reads each picture back from WebGL.
 READBACK: Final = "GPU stall due to ReadPixels"
 
 
 def complaint(line: ConsoleMessage) -> list[str]:
-    """Return the text of a line in the console if it is an error or a warning."""
+    """Return the message of the console, if it is a complaint."""
     is_complaint = line.type in ("error", "warning") and READBACK not in line.text
     return [line.text] if is_complaint else []
 
 
 def failure(request: Request) -> list[str]:
-    """Return the failure of a request, unless the visitor has left the page meanwhile."""
+    """Return the failure of a request, unless the visitor left the page."""
     return [] if request.failure == "net::ERR_ABORTED" else [f"{request.failure}: {request.url}"]
 
 
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
-    """A function that opens a page in a new context. In the end, no page may have complaints."""
+    """Yield a function that opens a page in a new context; fail if any page had complaints."""
     contexts: list[BrowserContext] = []
     visits: list[Visit] = []
 

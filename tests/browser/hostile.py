@@ -1,6 +1,6 @@
-"""A hostile exercise, which tries to run scripts in a student's browser."""
+"""An exercise by an attacker who wants to run a script in students' browsers."""
 
-# A test notices if one of these is taken for markup: it calls `stolen`, or loads a picture.
+# Each text calls `stolen` or loads a picture if a page takes it for markup, which a test notices.
 SCRIPT = "<script>stolen('script')</script>"
 PICTURE = "<img src=x onerror=\"stolen('picture')\">"
 DRAWING = "<svg onload=\"stolen('drawing')\"><a href='javascript:stolen(1)'>q</a></svg>"

@@ -1,4 +1,4 @@
-"""Take a screenshot of every view for the docs: ``make screenshots``."""
+"""Take screenshots of every view for the docs: ``make screenshots``."""
 
 import os
 import subprocess
@@ -27,7 +27,7 @@ ANSWERS: Final = [
     "0", "-90°", "0", "theta1", "0", "pi/2", "d2", "theta2", "0", "0", "d3", "0",
     "0", "pi/2", "0", "theta4", "0", "90°", "0", "theta5", "0", "0", "d6 +", "theta6",
 ]  # fmt: skip
-# Learners, their tables, and the numbers of the attempts, the oldest first.
+# Learner, table and number of the attempt, the oldest first.
 UNFINISHED: Final = RIGHT.replace("θ2", "θ2 +").replace("d4 θ4", "0 θ4")
 CLASS: Final = [
     ("u4711", NO_TWIST, 1), ("u4712", LAZY, 1), ("u4713", NO_TWIST, 1), ("u4711", RIGHT, 2),
@@ -43,7 +43,7 @@ def home(page: Page, service: str) -> None:
 
 
 def exercise(page: Page, service: str) -> None:
-    """Open an exercise and fill in a part of it."""
+    """Open an exercise and fill in some cells."""
     open_exercise(page, service, "stanford-arm")
     for i, text in enumerate(ANSWERS[:14]):
         cells(page).nth(i).fill(text)
@@ -62,7 +62,7 @@ def report(page: Page, service: str) -> None:
 
 
 def robot_view(page: Page, service: str) -> None:
-    """Open the robot in 3D, with a student's table that has a slip."""
+    """Open the 3D view with a student's table that has a slip."""
     exercise(page, service)
     for i, text in enumerate(ANSWERS[14:22], 14):
         cells(page).nth(i).fill(text)
@@ -75,7 +75,7 @@ def robot_view(page: Page, service: str) -> None:
 
 
 def free_play(page: Page, service: str) -> None:
-    """Open free play with an arm."""
+    """Open an arm in free play."""
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Elbow arm with a wrist, 6R")
     expect(page.locator(".slider")).to_have_count(6)
@@ -89,10 +89,10 @@ def solution(page: Page, service: str) -> None:
 
 
 def editor(page: Page, service: str) -> None:
-    """Open the editor with a mistake in the exercise file."""
+    """Open the editor with a mistake in the file."""
     page.goto(f"{service}/tutor/editor?exercise=scara")
     text = page.get_by_label("Exercise file, TOML")
-    expect(page.locator("#findings")).to_contain_text("Nothing to mend.")
+    expect(page.locator("#findings")).to_contain_text("No problems found.")
     text.fill(text.input_value().replace("points = ", "pionts = ", 1))
     expect(page.locator("#findings")).to_contain_text("did you mean 'points'?")
     page.locator("#findings").get_by_role("button", name="line").click()
@@ -100,7 +100,7 @@ def editor(page: Page, service: str) -> None:
 
 
 def attempts(page: Page, service: str) -> None:
-    """Open the list of attempts of a class."""
+    """Open the list of recorded attempts."""
     page.goto(f"{service}/tutor/attempts?exercise=scara")
     expect(page.locator("#list tbody tr")).to_have_count(len(CLASS))
 
@@ -133,7 +133,7 @@ VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
 
 
 def recorded_class(database: Path) -> None:
-    """Write the attempts of a class, spread over some days."""
+    """Record the attempts of a class on several days."""
     store = AttemptStore.open(str(database))
     scara = load_catalogue(shipped_folder())["scara"]
     recorded_all(
@@ -146,8 +146,8 @@ def recorded_class(database: Path) -> None:
     store.close()
 
 
-def photograph(service: str, names: Collection[str]) -> None:
-    """Take screenshots of the named views, in light and dark, wide and narrow."""
+def take_screenshots(service: str, names: Collection[str]) -> None:
+    """Take screenshots of the named views in light and dark, wide and narrow."""
     found = find_chromium()
     if found is None:
         raise SystemExit(ABSENT)
@@ -161,11 +161,11 @@ def photograph(service: str, names: Collection[str]) -> None:
                 page = browser.new_page(viewport=viewport, reduced_motion="reduce")
                 page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
                 for name in names:
-                    # Each view begins like a first visit.
+                    # Start each view as on a first visit.
                     page.goto(service)
                     page.evaluate("localStorage.clear()")
                     VIEWS[name](page, service)
-                    # Wait for the pictures as well.
+                    # Wait until the pictures have been loaded, too.
                     page.wait_for_load_state("networkidle")
                     page.screenshot(path=FOLDER / f"{name}-{size}-{scheme}.png")
                 page.close()
@@ -173,7 +173,7 @@ def photograph(service: str, names: Collection[str]) -> None:
 
 
 def main() -> None:
-    """Start the service and take screenshots of all views, or of the named ones."""
+    """Start the service and take screenshots of the named views, by default of all."""
     names = sys.argv[1:] or VIEWS
     if unknown := set(names) - set(VIEWS):
         raise SystemExit(f"There is no view {', '.join(unknown)}; there are {', '.join(VIEWS)}.")
@@ -190,7 +190,7 @@ def main() -> None:
             ) as process,
         ):
             try:
-                photograph(f"http://127.0.0.1:{announced_port(process, log)}", names)
+                take_screenshots(f"http://127.0.0.1:{announced_port(process, log)}", names)
             finally:
                 process.terminate()
 

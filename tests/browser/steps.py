@@ -1,4 +1,4 @@
-"""Steps of a student on the page of an exercise."""
+"""The actions of a student on the page of an exercise."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -21,7 +21,7 @@ def cells(page: Page, part: int = 0) -> Locator:
 
 
 def right_answers(exercise: Exercise) -> dict[str, list[str]]:
-    """Return the entries of each part in order, from the right answers in the exercise file."""
+    """Return the entries of each part in order, from the author's checks of right answers."""
     found: dict[str, list[str]] = {}
     for check in exercise.checks:
         if check.kind == "right":
@@ -52,16 +52,16 @@ def _entries(answer: object) -> Iterator[str]:
 
 
 def type_with_tab(page: Page, texts: Sequence[str]) -> None:
-    """Type texts into cells, one after the other, with the keyboard alone."""
+    """Type texts into consecutive cells, only with the keyboard."""
     for text in texts:
         page.keyboard.insert_text(text)
         page.keyboard.press("Tab")
 
 
 def answer(page: Page, part: PartSpec, place: int, texts: Sequence[str]) -> None:
-    """Answer a part by keyboard, beginning at its first cell, which has the focus.
+    """Answer a part by keyboard from its first cell, which has the focus.
 
-    Matrices are pasted as MATLAB text; other answers are typed.
+    Matrices are pasted, as the text that MATLAB would write; all else is typed.
     """
     if part.kind not in _MATRICES:
         return type_with_tab(page, texts)
@@ -77,6 +77,6 @@ _MATRICES: Final = {"link_transforms": 4, "transform": 4, "rotation": 3}
 
 
 def paste(page: Page, text: str) -> None:
-    """Paste a text at the cursor, from the real clipboard."""
+    """Paste a text from the real clipboard at the cursor."""
     page.evaluate("text => navigator.clipboard.writeText(text)", text)
     page.keyboard.press("Control+V")

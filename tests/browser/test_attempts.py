@@ -1,4 +1,4 @@
-"""A tutor works with recorded attempts: read, override a mark, statistics, regrade, forget."""
+"""A tutor works with recorded attempts: list, override, statistics, regrade, deletion."""
 
 import csv
 import json
@@ -38,9 +38,9 @@ ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WR
 
 @dataclass
 class Recording:
-    """A service that records attempts, with a key for it and the folder of its exercises.
+    """A service that records attempts, with its exercise folder and two keys.
 
-    ``narrow_key`` is a key for one exercise.
+    ``key`` may record and tutor; ``narrow_key`` is a tutor's key for one exercise.
     """
 
     address: str
@@ -50,16 +50,16 @@ class Recording:
 
     @property
     def visitor(self) -> dict[str, Any]:
-        """Options of a browser that sends the key as password."""
+        """Return the options of a browser that enters the key as the password."""
         return self.visitor_with(self.key)
 
     def visitor_with(self, key: str) -> dict[str, Any]:
-        """Return options of a browser that sends a key as password."""
+        """Return the options of a browser that enters this key as the password."""
         password = {"username": "tutor", "password": key, "origin": self.address}
         return {"viewport": NARROW, "http_credentials": password}
 
     def record(self, learner: str, table: Any) -> str:
-        """Record an attempt as a course does; return its id."""
+        """Record an attempt as a course does, and return its id."""
         body = json.dumps({"learner": learner, "answers": {"table": table}}).encode()
         headers = {"Content-Type": "application/json", "Authorization": f"Bearer {self.key}"}
         asked = Request(f"{self.address}/v1/exercises/scara/attempts", body, headers)
@@ -67,7 +67,7 @@ class Recording:
             return str(json.load(answer)["attempt"]["id"])
 
     def correct(self) -> None:
-        """Change the exercise so that a table without a turn is right."""
+        """Change the exercise so that a table without the half turn is right."""
         text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
         changed = text.replace('["a2", "180deg",', '["a2", "0",').partition("[[checks]]")[0]
         assert "180deg" not in changed, "the exercise has changed"
@@ -122,19 +122,19 @@ def test_a_tutor_works_with_recorded_attempts(
     for learner, table in ANSWERS:
         recording.record(learner, table)
 
-    # A tutor with a key for only this exercise sees the same list.
+    # A tutor with a key for this exercise alone sees the same attempts.
     other = visit(**recording.visitor_with(recording.narrow_key)).page
     other.goto(f"{recording.address}/tutor")
     other.get_by_role("link", name="Recorded attempts").click()
     expect(rows(other)).to_have_count(3)
     other.close()
 
-    # A student without a key gets a hint where to go, without technical terms.
+    # A student without a key is sent to the course page; headers are not mentioned.
     student = visit()
     student.page.goto(f"{recording.address}/exercises/scara")
     cells(student.page).first.fill("a1")
     student.page.get_by_role("button", name="Check").click()
-    sentence = "Open this exercise from your course's site: here it needs a key."
+    sentence = "Please open this exercise from your course page."
     expect(student.page.get_by_text(sentence).first).to_be_visible()
     expect(student.page.get_by_text("Authorization")).to_have_count(0)
     student.page.close()
@@ -142,7 +142,7 @@ def test_a_tutor_works_with_recorded_attempts(
     assert all("401" in each for each in student.complaints)
     student.complaints.clear()
 
-    # Filters, and an address that keeps them.
+    # The address keeps the filters.
     page.get_by_label("Exercise").select_option("scara")
     expect(rows(page)).to_have_count(3)
     expect(rows(page).first).to_contain_text(PICTURE)
@@ -151,9 +151,9 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(rows(page)).to_have_count(1)
     page.reload()
     expect(rows(page)).to_have_count(1)
-    page.get_by_label("To, this day included").fill("2020-01-01")
-    expect(page.get_by_text("No attempt is like this")).to_be_visible()
-    page.get_by_label("To, this day included").fill("")
+    page.get_by_label("To (inclusive)").fill("2020-01-01")
+    expect(page.get_by_text("No attempt matches the filters")).to_be_visible()
+    page.get_by_label("To (inclusive)").fill("")
     with page.expect_download() as downloading:
         page.get_by_role("link", name="CSV").click()
     assert downloading.value.suggested_filename == "attempts-scara.csv"
@@ -161,7 +161,7 @@ def test_a_tutor_works_with_recorded_attempts(
     with (tmp_path / "attempts.csv").open(encoding="utf-8", newline="") as file:
         assert [each["learner"] for each in csv.DictReader(file)] == ["grace"]
 
-    # One attempt: what was typed, and its report.
+    # The page of an attempt shows the answers and the report.
     rows(page).get_by_role("link").click()
     entries = page.locator(".part").first.locator("tbody input")
     expect(entries.nth(4)).to_have_value("a2")
@@ -170,21 +170,21 @@ def test_a_tutor_works_with_recorded_attempts(
     ]
     expect(page.locator("td[data-verdict=unreadable]")).to_have_count(2)
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
-    # Each entry is shown as it was read; this request uses the same key.
+    # It shows how each entry was read; the requests use the same key.
     expect(page.locator(".part").first.locator(".shown math")).to_have_count(14)
-    # The attempt is read-only: typing, pasting and repairs do not change it.
+    # It is read-only: typing changes nothing, and there are no repairs.
     entries.nth(7).focus()
     page.keyboard.type("x")
     assert entries.nth(7).input_value() == "theta2 +"
     expect(page.locator(".repair")).to_have_count(0)
     assert wide(page) <= NARROW["width"]
-    # The list returns with the same filters.
+    # The link to the list keeps the filters. Without an override, its field is empty.
     back = page.get_by_role("link", name="List of attempts")
     assert str(back.get_attribute("href")).endswith("?exercise=scara&learner=+grace+")
     expect(page.locator("#points")).to_have_value("")
     page.get_by_label("Reason").fill("A <b>misprint</b>.")
     page.locator("#points").fill("25")
-    page.get_by_role("button", name="Give these points").click()
+    page.get_by_role("button", name="Save").click()
     assert page.locator("#points").evaluate("each => each.validity.rangeOverflow")
     page.locator("#points").fill("7.5")
     page.keyboard.press("Enter")
@@ -192,7 +192,7 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(page.locator(".given")).to_contain_text("A <b>misprint</b>. key ")
     expect(page.locator(".facts")).to_contain_text("7.5 / 24")
 
-    # The statistics of the exercise, and its regrade: first a preview, then the regrade itself.
+    # The statistics, then the regrade: first a preview, then the new reports.
     page.goto(f"{recording.address}/tutor/statistics/scara")
     expect(page.get_by_text("3 attempts of 3 learners")).to_be_visible()
     shares = page.get_by_role("region", name="Shares: Denavit-Hartenberg table")
@@ -203,29 +203,29 @@ def test_a_tutor_works_with_recorded_attempts(
         "Something is missing after the + at the end."
     )
     expect(page.locator(".groups")).to_contain_text(f"2 learners: {PICTURE}, grace")
-    # The text of the chart of days: two attempts today.
+    # The text alternative of the chart: two attempts today.
     expect(page.get_by_role("img", name=re.compile(r"^\d+ \w+ 20\d\d: 2$")).first).to_be_visible()
     assert wide(page) <= NARROW["width"]
-    page.get_by_role("button", name="Look what would change").click()
+    page.get_by_role("button", name="Preview regrade").click()
     expect(page.get_by_text("All attempts were graded by this version")).to_be_visible()
     recording.correct()
     changes = page.get_by_role("region", name="Changes")
     write = page.get_by_role("button", name="Write the new reports")
 
     def looked() -> None:
-        page.get_by_role("button", name="Look what would change").click()
+        page.get_by_role("button", name="Preview regrade").click()
         expect(page.get_by_role("button", name="Stop")).to_be_hidden()
 
     looked()
     while not changes.is_visible():  # until the service has seen the new file
         page.wait_for_timeout(100)
         looked()
-    told = "3 would change, of which 1 would keep the points of a tutor. Nothing is written yet."
+    told = "3 would change; 1 of these would keep the overridden mark. Nothing is written yet."
     expect(page.get_by_text(told)).to_be_visible()
     expect(changes).to_contain_text("table correct → partial")
-    expect(changes).to_contain_text("; a tutor's 7.5 stays")
+    expect(changes).to_contain_text("; the overridden mark 7.5 stays")
     write.click()
-    expect(page.get_by_text("Regraded: 3 attempts. The reports before are kept.")).to_be_visible()
+    expect(page.get_by_text("Regraded: 3 attempts. The earlier reports are kept.")).to_be_visible()
     expect(write).to_be_hidden()
     page.get_by_role("region", name="Changes").get_by_role("link", name="ada").click()
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
@@ -233,26 +233,26 @@ def test_a_tutor_works_with_recorded_attempts(
     page.get_by_label("Report", exact=True).select_option("1")
     expect(page.locator("td[data-verdict=correct]")).to_have_count(16)
 
-    # The page names the learner before it deletes the data.
+    # The deletion of a learner's data must be confirmed.
     page.get_by_role("link", name="List of attempts").click()
     expect(rows(page)).to_have_count(3)
     page.get_by_label("Learner").last.fill(PICTURE)
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name=f"Forget {PICTURE}?")
-    expect(dialog).to_contain_text("1 attempt, 1 earlier report, for ever")
-    expect(dialog.get_by_role("button", name="Keep it")).to_be_focused()
+    expect(dialog).to_contain_text("permanently deletes 1 attempt, 1 earlier report.")
+    expect(dialog.get_by_role("button", name="Cancel")).to_be_focused()
     page.keyboard.press("Enter")
     expect(dialog).to_be_hidden()
     page.get_by_role("button", name="Look up").click()
-    dialog.get_by_role("button", name=f"Delete all of {PICTURE}").click()
-    expect(page.get_by_text(f"Deleted of {PICTURE}: 1 attempt, 1 earlier report.")).to_be_visible()
+    dialog.get_by_role("button", name=f"Delete all data of {PICTURE}").click()
+    expect(page.get_by_text(f"Deleted for {PICTURE}: 1 attempt, 1 earlier report.")).to_be_visible()
     expect(rows(page)).to_have_count(2)
     expect(page.locator("#list")).not_to_contain_text(PICTURE)
     assert page.evaluate("taken") == []
 
 
 @pytest.mark.campaign
-def test_the_views_of_attempts_are_accessible(
+def test_the_pages_of_attempts_are_accessible(
     recording: Recording, visit: Opening, service: str, axe: str
 ) -> None:
     [*_, attempt] = [recording.record(learner, table) for learner, table in ANSWERS]
@@ -278,21 +278,19 @@ def test_the_views_of_attempts_are_accessible(
     page.goto(f"{recording.address}/tutor/statistics/scara")
     expect(page.locator(".share").first).to_be_visible()
     while not page.get_by_role("region", name="Changes").is_visible():
-        page.get_by_role("button", name="Look what would change").click()
+        page.get_by_role("button", name="Preview regrade").click()
         expect(page.get_by_role("button", name="Stop")).to_be_hidden()
         page.wait_for_timeout(100)
     check()
-    # A service without a database says how to set one.
+    # A service without a database explains how to add one.
     page.goto(f"{service}/tutor/attempts")
     expect(page.get_by_text("DH_GRADER_DATABASE=attempts.db")).to_be_visible()
     check()
 
 
 @pytest.mark.campaign
-def test_the_page_of_the_api_shows_entries_of_students_as_text(
-    recording: Recording, visit: Opening
-) -> None:
-    """A tutor who tries an operation at /docs sees recorded answers there."""
+def test_the_api_page_shows_recorded_answers_as_text(recording: Recording, visit: Opening) -> None:
+    """Recorded answers are shown as text when a tutor tries an operation at /docs."""
     attempt = recording.record(PICTURE, WRONG)
     page = visit(**recording.visitor, bypass_csp=True).page
     page.goto(f"{recording.address}/docs#/attempts/getAttempt")

@@ -1,4 +1,4 @@
-"""A student uses the page of an exercise, in a real browser with a real service."""
+"""A student solves exercises in a real browser with a real service."""
 
 import re
 import statistics
@@ -14,13 +14,13 @@ from tests.samples import one_in
 
 Opening = Callable[..., Visit]
 
-# Exercises with the kinds that the four core exercises do not have.
+# They have the answer kinds that the four core exercises lack.
 OTHER_KINDS = ("dh-conditions", "planar-rpr-poe", "simple-twist", "spherical-wrist")
 CLIPBOARD = ["clipboard-read", "clipboard-write"]
 IS_FOCUSED = "each => each.matches(':focus')"
 TABLE = ["l2", "0", "l1", "q1", "l3", "pi", "0", "q2", "0", "0", "l4", "q3", "0", "0", "q4", "0"]
 WRONG_ALPHA = 5
-# The same table from a spreadsheet, LaTeX, MATLAB and Markdown; headers name the columns.
+# The same table from a spreadsheet, LaTeX, MATLAB and Markdown. The headers name the columns.
 PASTED = {
     "spreadsheet": "a\talpha [deg]\td\ttheta\n"
     "l2\t0\tl1\tq1\nl3\t180\t0\tq2\n0\t0\tl4\tq3\n0\t0\tq4\t0\n",
@@ -34,7 +34,7 @@ PASTED = {
     "| 0 | l3 | 180° | q2 |\n| l4 | 0 | 0 | q3 |\n| q4 | 0 | 0 | 0 |",
 }  # fmt: skip
 
-# Resolves as soon as more than `count` answers were shown; the timeout of the test is the guard.
+# Resolves as soon as more than ``count`` answers were shown; the test's time limit is the guard.
 SHOWN = """(count) => new Promise((done) => {
   const look = () => (waits.length > count ? done() : setTimeout(look, 2));
   look();
@@ -49,7 +49,7 @@ def total(page: Page) -> Locator:
     return page.locator(".total")
 
 
-# The first exercise has all kinds of the others.
+# The first exercise has all answer kinds of the others.
 @pytest.mark.parametrize("exercise", ["spatial-rrr", "planar-rrr", "rrrp", "stanford-arm"])
 def test_an_exercise_is_solved_by_keyboard(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise], exercise: str
@@ -60,7 +60,7 @@ def test_an_exercise_is_solved_by_keyboard(
     page.get_by_role("link", name="Skip to the content").focus()
     page.keyboard.press("Enter")
     for part, spec in enumerate(catalogue[exercise].parts):
-        # Move to the first cell of the part with Tab.
+        # Press Tab until the first cell of the part has the focus.
         while not cells(page, part).first.evaluate(IS_FOCUSED):
             page.keyboard.press("Tab")
         answer(page, spec, part, answers[spec.id])
@@ -104,10 +104,10 @@ def test_a_table_in_four_formats_fills_the_grid(visit: Opening, service: str) ->
         expect(page.locator(".part").first.locator(".badge").first).to_have_text("correct")
         page.keyboard.press("Control+Z")
         expect(table.nth(14)).to_have_value("")
-    # A text that does not fit causes a message, and stays in one cell as it was pasted.
+    # A text that does not fit stays in one cell, with a message.
     paste(page, "1\t2\t3\t4\t5\t6\n7\t8\t9\t0\t1\t2")
     expect(page.locator(".reading").first).to_contain_text("Not read as a table")
-    # A single matrix fills the cells from the cursor on.
+    # A single matrix fills the matrix of the cursor.
     open_exercise(page, service, "spatial-rrr")
     cells(page, 1).nth(20).focus()
     paste(page, "[c2 -s2 0 L1*c2; s2 c2 0 L1*s2; 0 0 1 0; 0 0 0 1]")
@@ -115,7 +115,7 @@ def test_a_table_in_four_formats_fills_the_grid(visit: Opening, service: str) ->
     assert values(cells(page, 1))[16:20] == ["c2", "-s2", "0", "L1*c2"]
 
 
-def test_typed_answers_are_read_marked_kept_and_shared(
+def test_answers_are_previewed_marked_saved_and_shared(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     page = visit(permissions=CLIPBOARD).page
@@ -123,7 +123,7 @@ def test_typed_answers_are_read_marked_kept_and_shared(
     table = cells(page)
     shown = page.locator(".part").first.locator(".shown")
 
-    # The keys work as in a spreadsheet.
+    # The keyboard of a spreadsheet.
     table.first.focus()
     page.keyboard.insert_text("l2")
     page.keyboard.press("Enter")
@@ -137,7 +137,7 @@ def test_typed_answers_are_read_marked_kept_and_shared(
     page.keyboard.press("ArrowUp")
     expect(table.nth(1)).to_be_focused()
 
-    # A click inserts the repaired text, and Ctrl+Z undoes this.
+    # A click on the repair writes it, and Ctrl+Z restores the text.
     shown.nth(5).get_by_role("button").click()
     expect(table.nth(5)).to_have_value("sin(pi/2)")
     page.keyboard.press("Control+Z")
@@ -162,12 +162,12 @@ def test_typed_answers_are_read_marked_kept_and_shared(
     expect(wrong).to_have_attribute("aria-label", "alpha, link twist, row 2: incorrect")
     expect(page.get_by_role("status").last).to_contain_text("Denavit-Hartenberg table: partial")
 
-    # A changed cell is no longer marked.
+    # A change removes the mark of the cell.
     wrong.fill("pi/2 ")
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(0)
 
-    # A reload keeps the answers, and a link carries them without sending them.
-    expect(page.locator(".saved")).to_have_text("Kept in this browser")
+    # A reload keeps the answers. A link contains them, but never sends them to a server.
+    expect(page.locator(".saved")).to_have_text("Saved in this browser")
     page.reload()
     expect(cells(page).nth(4)).to_have_value("l3")
     page.get_by_role("button", name="Copy link").click()
@@ -220,12 +220,12 @@ def test_without_the_service_the_answers_stay(visit: Opening, service: str) -> N
     open_exercise(page, service, "rrrp")
     page.context.set_offline(True)
     cells(page).first.fill("l2")
-    expect(page.locator(".trouble-line")).to_contain_text("kept in this browser")
+    expect(page.locator(".trouble-line")).to_contain_text("saved in this browser")
     page.context.set_offline(False)
     expect(page.locator(".shown").first.locator("math")).to_be_visible()
     expect(page.locator(".trouble-line")).to_be_hidden()
     page.reload()
     expect(cells(page).first).to_have_value("l2")
-    # The browser complains about the requests without an answer.
+    # These are the browser's complaints about failed requests.
     assert opened.complaints
     opened.complaints.clear()

@@ -1,4 +1,4 @@
-"""Hostile links: their contents are shown as text, or ignored."""
+"""Forged links: their answers are shown as text, or ignored."""
 
 import base64
 import json
@@ -48,10 +48,10 @@ def test_a_link_of_free_play_does_no_harm(visit: Opening, service: str) -> None:
     for fragment in BAD_ROBOTS:
         page.goto(f"{service}/play#robot={fragment}")
         page.reload()
-        # The robot that a first visit shows.
+        # The robot of a first visit.
         expect(page.locator(".entry input")).to_have_count(24)
         expect(page.locator(".slider")).to_have_count(6)
-    # A link of the right shape: each text is in its cell, with a message that it is unreadable.
+    # A link of the right shape: every text is in its cell, and marked as unreadable.
     robot = {
         "convention": SCRIPT, "unit": ["degrees"], "__proto__": {"x": 1}, "constructor": PICTURE,
         "rows": [row("F", TEXTS[:4]), row("R", ["x" * 9000, *TEXTS[4:], "theta1"])],
@@ -77,7 +77,7 @@ def test_a_link_of_an_exercise_does_no_harm(visit: Opening, service: str) -> Non
         page.reload()
         expect(cells(page).last).to_have_value("")
         expect(page.get_by_text("These answers came with the link.")).to_be_hidden()
-    # Unknown parts and surplus cells are ignored.
+    # Unknown parts and additional cells are ignored.
     one = {"cells": [PICTURE] * 50, "choice": SCRIPT}
     given = {"parts": {"__proto__": one, "constructor": one, "toString": one, "table": one}}
     open_exercise(page, service, "planar-rr", f"#answers={packed(json.dumps(given))}")

@@ -1,4 +1,4 @@
-"""All views in a real browser: accessibility, other sites, no scripts, hostile texts."""
+"""All pages in a real browser: accessible, embedded, without scripts, and with hostile texts."""
 
 import json
 import re
@@ -17,14 +17,14 @@ Opening = Callable[..., Visit]
 
 
 def course_page(service: str) -> str:
-    """Return the page of docs/embedding.md, with the address of this service."""
+    """Return the example page of docs/embedding.md with the address of this service."""
     text = (ROOT / "docs" / "embedding.md").read_text(encoding="utf-8")
     [page] = re.findall(r"```html\n(.*?)```", text, re.DOTALL)
     return str(page).replace("https://grader.example.edu", service)
 
 
 def violations(page: Page, axe: str) -> list[str]:
-    """Return the violations that axe-core finds; in dark mode only those of colours."""
+    """Return the violations that axe-core finds; in dark mode it only checks contrast."""
     page.evaluate(f"({json.dumps(axe)}, 0)")
     found = []
     options: dict[str, Any] = {"resultTypes": ["violations"]}
@@ -40,8 +40,8 @@ def violations(page: Page, axe: str) -> list[str]:
     return found
 
 
-def test_every_view_is_accessible(visit: Opening, service: str, axe: str) -> None:
-    # The policy of the pages forbids other scripts, so it is bypassed for axe-core.
+def test_the_pages_are_accessible(visit: Opening, service: str, axe: str) -> None:
+    # The pages' policy allows only their own scripts, so the checker needs ``bypass_csp``.
     page = visit(bypass_csp=True, viewport={"width": 1280, "height": 900}).page
     page.add_init_script(axe)
     page.goto(service)
@@ -65,7 +65,7 @@ def test_every_view_is_accessible(visit: Opening, service: str, axe: str) -> Non
     assert violations(page, "") == []
 
 
-def test_the_element_works_on_the_page_of_a_course(
+def test_the_element_works_on_a_course_page(
     visit: Opening, service: str, other_origin: Origin, stranger: Origin, axe: str
 ) -> None:
     other_origin.pages["/"] = course_page(service)
@@ -75,7 +75,7 @@ def test_the_element_works_on_the_page_of_a_course(
     expect(page.locator(".part")).to_have_count(1)
     for i, text in enumerate(["a1", "0", "0", "theta1"]):
         cells(page).nth(i).fill(text)
-    # The learner's token goes to the service with the answers; a page may set it at any time.
+    # The element sends the learner's token with the answers; a page may set it at any time.
     page.locator("dh-exercise").evaluate("each => each.setAttribute('token', 'a.b.c')")
     with page.expect_request("**/grade") as graded:
         page.get_by_role("button", name="Check").click()
@@ -86,7 +86,7 @@ def test_the_element_works_on_the_page_of_a_course(
     page.locator("dh-exercise").evaluate("each => each.setAttribute('exercise', 'planar-rr')")
     expect(page.get_by_role("heading", name="Planar RR arm, distal convention")).to_be_visible()
 
-    # On a site that is not allowed, the element shows the reason instead of the exercise.
+    # On a site that the service does not allow, the element shows an error.
     stranger.pages["/"] = course_page(service)
     unknown = visit()
     unknown.page.goto(stranger.address)
@@ -95,7 +95,7 @@ def test_the_element_works_on_the_page_of_a_course(
     unknown.complaints.clear()
 
 
-def test_any_page_may_show_a_figure_but_not_a_page_for_tutors(
+def test_other_sites_may_show_figures_but_not_solutions(
     visit: Opening, service: str, stranger: Origin
 ) -> None:
     stranger.pages["/figure"] = (
@@ -133,7 +133,7 @@ HOSTILE_PAGES = (
 )  # fmt: skip
 
 
-def test_hostile_texts_are_shown_as_text(visit: Opening, service: str) -> None:
+def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
     page = visit().page
     page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")
     page.goto(service)
@@ -151,7 +151,7 @@ def test_hostile_texts_are_shown_as_text(visit: Opening, service: str) -> None:
     expect(page.locator("td[data-verdict=unreadable]").first).to_be_visible()
     for i in range(len(TEXTS)):
         cells(page).nth(i).focus()
-    # A character that changes the direction of text is shown as its number.
+    # A character that reverses text is shown as its code point.
     shown = page.locator("dh-exercise").evaluate(
         """(each) => {
           // The echo lies unseen below the input, letter for letter.

@@ -1,4 +1,4 @@
-"""Paste blocks of a spreadsheet that are smaller than the table; undo in free play."""
+"""Blocks of a spreadsheet that are smaller than the table, and undo in free play."""
 
 from collections.abc import Callable
 
@@ -23,7 +23,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
     open_exercise(page, service, "rrrp")
     table = cells(page)
     table.nth(6).focus()
-    # A spreadsheet adds quotes, and a line break after the last line.
+    # Spreadsheets add quotes, and a line break at the end.
     paste(page, 'l1\t"q1"\r\n0\tq2\r\n')
     expect(table.nth(11)).to_have_value("q2")
     block = ["", "", "l1", "q1", "", "", "0", "q2"]
@@ -34,7 +34,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
     assert set(texts(page, ".part >> nth=0 >> input")) == {""}
     page.keyboard.press("Control+Shift+Z")
     expect(table.nth(11)).to_have_value("q2")
-    # A column fills cells downwards; a block beyond the table stays one text in one cell.
+    # A column fills cells downwards. One that is too long for the table stays in one cell.
     table.nth(1).focus()
     paste(page, "0\n180°\n0\n0")
     expect(table.nth(13)).to_have_value("0")
@@ -42,7 +42,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
     paste(page, "1\t2")
     expect(page.locator(".reading").first).to_contain_text("Not read")
     assert "2" in table.nth(11).input_value()
-    # A refused script does not change the cell.
+    # A script that is refused leaves the cell as it was.
     table.nth(11).fill("q2")
     paste(page, "for i = 1:2, L(i) = Link([0 0 a1 0]); end")
     expect(page.locator(".reading").first).to_contain_text("Not read as a table or matrix")
@@ -50,7 +50,7 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
 
 
 @pytest.mark.campaign
-def test_changes_of_the_table_in_free_play_can_be_undone(visit: Opening, service: str) -> None:
+def test_changes_of_the_table_of_free_play_can_be_undone(visit: Opening, service: str) -> None:
     page = visit(permissions=CLIPBOARD).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("SCARA, RRPR")
@@ -61,7 +61,7 @@ def test_changes_of_the_table_in_free_play_can_be_undone(visit: Opening, service
     paste(page, "0.1\tpi/2\n0.2\t0")
     expect(cell.nth(9)).to_have_value("0")
     assert texts(page, ".entry input")[4:10] == ["0.1", "pi/2", "0", "theta2", "0.2", "0"]
-    # A pasted table of another size replaces this one.
+    # A pasted whole table replaces this one.
     paste(page, "DH = [a1 0 0 q1; a2 0 0 q2];")
     expect(cell).to_have_count(8)
     page.get_by_role("button", name="Remove row 1").click()
@@ -75,7 +75,7 @@ def test_changes_of_the_table_in_free_play_can_be_undone(visit: Opening, service
     assert texts(page, ".entry input") == scara
     page.keyboard.press("Control+Y")
     expect(cell.nth(8)).to_have_value("0.2")
-    # All typing in one cell is one step of undo.
+    # Keys typed into one cell are one step.
     cell.first.focus()
     page.keyboard.press("Control+A")
     page.keyboard.type("l1+l2")

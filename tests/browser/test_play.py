@@ -1,4 +1,4 @@
-"""Free play: any table, its robot in 3D, its pose and its equivalent."""
+"""Free play: a table, its robot in 3D, its pose, and its equivalent."""
 
 from collections.abc import Callable
 
@@ -11,8 +11,8 @@ from tests.browser.test_robot_view import picture
 
 Opening = Callable[..., Visit]
 
-# Returns the frames per second while dragging, those of a page that only changes one number (the
-# floor), and the milliseconds of script for each frame.
+# Measures three figures: pictures in a second of dragging, pictures in a second of a page that only
+# changes a number (for comparison), and milliseconds of script for each picture.
 DRAG = """async (slider) => {
   const pictures = async (change) => {
     const from = performance.now();
@@ -45,7 +45,7 @@ def cell(page: Page, row: int, column: int) -> Locator:
     return page.locator(".entry input").nth(4 * row - 4 + column)
 
 
-def test_a_seven_joint_arm_follows_its_sliders(
+def test_a_seven_joint_arm_can_be_moved(
     visit: Opening, service: str, axe: str, figure: Callable[[str], None]
 ) -> None:
     page = visit(bypass_csp=True, viewport=SMALL).page
@@ -54,7 +54,7 @@ def test_a_seven_joint_arm_follows_its_sliders(
     page.get_by_label("Start from a robot").select_option("Redundant arm, 7R")
     expect(page.locator(".slider")).to_have_count(7)
     home = picture(page)
-    # The arm points upwards: 0.34 + 0.4 + 0.4 + 0.15.
+    # Stretched out upwards: 0.34 + 0.4 + 0.4 + 0.15.
     assert entries(page) == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1.29, 0, 0, 0, 1]
     expect(page.get_by_text("6 degrees of freedom")).to_be_visible()
     slider = page.get_by_role("slider", name="theta4: joint 4 turns")
@@ -65,11 +65,11 @@ def test_a_seven_joint_arm_follows_its_sliders(
     figure(
         f"seven joints: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each"
     )
-    # At 30 frames per second, a frame has 33 ms, of which the browser needs most.
+    # At 30 pictures a second there are 33 ms for one, and the browser needs most of them.
     assert script < 33
     assert drawn > floor / 6
 
-    # The equivalent table describes the same robot, so the pose stays.
+    # The table in the other convention has the same pose.
     slider.press("Home")
     picture(page)
     pose = entries(page)
@@ -83,8 +83,8 @@ def test_a_seven_joint_arm_follows_its_sliders(
 
 
 @pytest.mark.campaign
-def test_an_own_table_is_written_and_shared(visit: Opening, service: str) -> None:
-    """The table has two joints that turn about one line."""
+def test_a_table_can_be_written_and_shared(visit: Opening, service: str) -> None:
+    """Both joints of the table turn about the same line, which the page points out."""
     page = visit(permissions=["clipboard-read", "clipboard-write"], viewport=SMALL).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Planar arm, RR")
@@ -95,8 +95,8 @@ def test_an_own_table_is_written_and_shared(visit: Opening, service: str) -> Non
     picture(page)
     shown = entries(page)
     cell(page, 2, 2).fill("l1 +")
-    # While a cell is incomplete, robot and pose stay, and are marked as outdated.
-    expect(page.locator(".told")).to_contain_text("The picture is the one of before.")
+    # While a cell is incomplete, robot and pose stay, but faded.
+    expect(page.locator(".told")).to_contain_text("The view shows your last valid table.")
     assert entries(page) == shown
     expect(page.locator(".numeric")).to_be_visible()
     expect(page.locator(".formula.stale")).to_be_visible()
@@ -118,9 +118,7 @@ def test_an_own_table_is_written_and_shared(visit: Opening, service: str) -> Non
     assert [url for url in friend.requests if "robot=" in url.partition("#")[0]] == []
 
 
-def test_an_element_that_is_moved_on_its_page_appears_only_once(
-    visit: Opening, service: str
-) -> None:
+def test_an_element_that_is_moved_on_its_page_is_there_once(visit: Opening, service: str) -> None:
     page = visit(viewport=SMALL).page
     page.goto(f"{service}/play")
     expect(page.get_by_role("heading", name="Free play")).to_have_count(1)

@@ -1,4 +1,4 @@
-"""The robot in 3D: with sliders, with a student's table, and without WebGL."""
+"""The 3D view: sliders, the student's table over the robot, and browsers without WebGL."""
 
 import os
 from collections.abc import Callable
@@ -20,12 +20,12 @@ TABLE = ["l2", "0", "l1", "q1", "l3", "pi", "0", "q2", "0", "0", "l4", "q3", "0"
 def open_view(page: Page) -> None:
     page.get_by_role("button", name="Move it in 3D").press("Enter")
     expect(page.locator(".slider")).not_to_have_count(0)
-    # A keyboard user can still see the button.
+    # The button keeps the focus for keyboard users.
     expect(page.get_by_role("button", name="Back to the drawing")).to_be_in_viewport()
 
 
 def picture(page: Page) -> bytes:
-    """Return the pixels of the stage when it has been drawn completely."""
+    """Return the pixels of the stage after all requests have been drawn."""
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
     return page.locator(".stage canvas").screenshot()
@@ -48,10 +48,10 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     expect(page.get_by_role("group", name="Frames shown").get_by_role("checkbox")).to_have_count(0)
     alone = picture(page)
 
-    # The table appears in the picture while it is written, as far as it has numbers.
+    # The table appears while it is typed, up to the first row that cannot be drawn.
     for i, text in enumerate(TABLE[:6]):
         cells(page).nth(i).fill(text)
-    expect(page.locator(".told")).to_contain_text("The frames end before it.")
+    expect(page.locator(".told")).to_contain_text("The view shows the frames before it.")
     for i, text in enumerate(TABLE):
         cells(page).nth(i).fill(text)
     expect(page.get_by_role("checkbox", name="Show frame 4")).to_be_checked()
@@ -59,7 +59,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     home, at_home = picture(page), tool(page)
     assert home != alone
 
-    # Both follow the slider, by keyboard and by mouse; the numbers are those of the service.
+    # Both robots follow the slider. The coordinates are those of the service.
     slider = page.get_by_role("slider", name="q1: joint 1 turns")
     slider.press("End")
     expect(page.locator(".slider output").first).not_to_have_text("0°")
@@ -70,7 +70,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     turned = [x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z]
     assert list(map(float, robot.split())) == pytest.approx(turned, abs=0.002)
     assert table.split()[:2] == robot.split()[:2]
-    # A slip in the table leads its frames away from the robot.
+    # A slip in the table moves its frames away from the robot.
     cells(page).nth(4).fill("2 l3")
     astray = page.locator(".pose-numbers code").last
     expect(astray).not_to_have_text(table)
@@ -96,7 +96,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     expect(page.locator(".stage")).to_have_count(0)
 
 
-def test_without_webgl_a_drawing_is_shown(
+def test_a_browser_without_webgl_shows_the_drawing(
     browser: Browser, chromium: Chromium, service: str
 ) -> None:
     options = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]

@@ -1,4 +1,4 @@
-"""Saving in the tutor's editor, if the service may write files."""
+"""The tutor's editor saves files if the service has an editor folder."""
 
 import os
 import subprocess
@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def writing(folder: Path) -> Iterator[str]:
-    """The address of a service whose editor writes to the folder."""
+    """Start a service whose editor saves in the folder; return its address."""
     log = folder.parent / "log"
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
     variables = {"NO_COLOR": "1", "DH_GRADER_EDITOR_DIR": str(folder)}
@@ -42,7 +42,7 @@ def writing(folder: Path) -> Iterator[str]:
             process.wait(timeout=ANSWER)
 
 
-# `writing` is the first fixture, so that it ends last: the page uses the service to the end.
+# The service is the first fixture, so that it ends last: the page sends requests until its end.
 @pytest.mark.campaign
 def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -> None:
     opened = visit()
@@ -50,28 +50,28 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     page.goto(f"{writing}/tutor/editor?exercise=scara")
     text = page.get_by_label("Exercise file, TOML")
     written = text.input_value()
-    # The shipped file stays; the editor now opens the copy in the folder.
+    # The editor saves a copy in its own folder, and opens the copy from now on.
     text.fill(written.replace("SCARA manipulator", "A robot", 1))
     save = page.get_by_role("button", name="Save")
     save.click()
     told = page.get_by_role("status")
-    expect(told.filter(has_text="scara.toml is written")).to_be_visible()
+    expect(told.filter(has_text="scara.toml is saved")).to_be_visible()
     file = folder / "scara.toml"
     assert file.read_text(encoding="utf-8") == text.input_value() != written
     page.reload()
     expect(text).to_have_value(file.read_text(encoding="utf-8"))
 
-    # If another person has changed the file meanwhile, nothing is lost.
+    # If somebody else has changed the file meanwhile, it is not overwritten.
     file.write_text(written, encoding="utf-8")
     text.fill(f"{written}\n# mine\n")
     save.click()
     expect(told.filter(has_text="has changed")).to_be_visible()
     assert file.read_text(encoding="utf-8") == written
-    # A text that is no exercise is never written.
+    # A text that is not an exercise is not saved.
     text.fill("title = 1")
-    page.get_by_label("Id, the name").fill("../escaped")
+    page.get_by_label("Exercise id").fill("../escaped")
     save.click()
-    expect(told.filter(has_text="is written")).to_have_count(0)
+    expect(told.filter(has_text="is saved")).to_have_count(0)
     expect(page.locator("#findings li").first).to_be_visible()
     assert [each.name for each in folder.iterdir()] == ["scara.toml"]
     assert all("409" in each for each in opened.complaints)

@@ -1,4 +1,4 @@
-"""On a phone, a finger drags sliders and turns the robot."""
+"""On a phone, a finger drags the sliders and turns the robot."""
 
 from collections.abc import Callable
 
@@ -12,7 +12,7 @@ Opening = Callable[..., Visit]
 
 
 def swipe(session: CDPSession, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """Move a finger over the screen with real touch events."""
+    """Move a finger over the screen by the browser's own input events."""
     points = [
         {"x": start[0] + (end[0] - start[0]) * i / 8, "y": start[1] + (end[1] - start[1]) * i / 8}
         for i in range(9)

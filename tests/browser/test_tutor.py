@@ -1,4 +1,4 @@
-"""A tutor on the machine itself: solutions, the editor, the report on a class."""
+"""The tutor's pages: solutions, the editor, the report on a class."""
 
 import json
 import re
@@ -43,7 +43,7 @@ def test_a_tutor_looks_at_a_solution_and_writes_an_exercise(
     page.get_by_role("link", name="Edit its file").click()
     text = page.get_by_label("Exercise file, TOML")
     findings = page.locator("#findings")
-    expect(findings).to_contain_text("Nothing to mend.")
+    expect(findings).to_contain_text("No problems found.")
     assert page.locator("#preview figure img").evaluate(drawn)
     assert "\n".join(violations(page, "")) == ""
     assert wide(page) <= NARROW["width"]
@@ -62,7 +62,7 @@ def test_a_tutor_looks_at_a_solution_and_writes_an_exercise(
     expect(page.locator("#preview .statement")).to_contain_text(SCRIPT)
     assert page.locator("main").locator("script, [onerror], img[src=x]").count() == 0
     assert page.evaluate("taken") == []
-    # Without a folder to write to, the exercise file is downloaded.
+    # Without an editor folder, the file can only be downloaded.
     expect(page.get_by_role("button", name="Save")).to_have_count(0)
     text.fill(written + "\n# ü\n")
     with page.expect_download() as downloading:
@@ -83,7 +83,7 @@ def test_a_class_is_graded_in_the_browser(
     (folder / "dave.json").write_bytes(b" " * 300_000)
     (folder / "eve.txt").write_bytes(b"\xff\xfe\x00")
 
-    # With the policy of the page, which allows the styles of reports only in their frame.
+    # Under the page's own policy, which allows the styles of the reports only in the frame.
     page = visit(viewport=NARROW).page
     page.goto(f"{service}/tutor/class")
     page.get_by_label("Exercise").select_option("planar-rr")
@@ -91,7 +91,7 @@ def test_a_class_is_graded_in_the_browser(
     page.get_by_label("Part").select_option("table")
     page.get_by_label("Folder").set_input_files(folder)
     expect(page.get_by_role("status")).to_have_text(
-        "5 submissions. Nothing is kept by the service."
+        "5 submissions. The service does not keep them."
     )
     report = page.frame_locator("#report")
     expect(report.get_by_role("heading", level=1)).to_contain_text("Planar RR arm")

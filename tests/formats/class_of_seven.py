@@ -1,4 +1,4 @@
-"""A class so small that it can be counted by hand, graded by the grader."""
+"""A graded class that is small enough to count by hand."""
 
 from functools import cache
 
@@ -14,10 +14,10 @@ _UNFINISHED = [*ROWS[:2], {**ROWS[2], "theta": "q3 +"}, *ROWS[3:], ROWS[1]]
 
 @cache
 def class_of_seven() -> tuple[GradedSubmission, ...]:
-    """Seven submissions to an exercise of a table and a pose.
+    """Return seven submissions to an exercise with a table and a pose.
 
-    Anna's is right. Ben and Cleo have the same wrong cell. Dana has no tool row and no pose. Emre
-    has an entry that cannot be read, and a row too many. Fritz's is empty, Gina's no submission.
+    Anna is right. Ben and Cleo have the same wrong cell. Dana has no tool row and no pose. Emre has
+    an unreadable entry and one row too many. Fritz answers nothing. Gina's file is empty.
     """
     answers: dict[str, dict[str, object]] = {
         "anna": {"table": {"rows": ROWS}, "pose": POSE},

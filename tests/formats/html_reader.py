@@ -1,4 +1,4 @@
-"""Reads a page and holds it to the elements and attributes that pages may have."""
+"""A parser of pages that allows only certain elements and attributes."""
 
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
@@ -6,8 +6,8 @@ from html.parser import HTMLParser
 
 import pytest
 
-# Of each element, the attributes that it may have; none of them is a script or a style, and none
-# but ``a`` a link.
+# The allowed attributes of each element. None of them is a script or a style, and only ``a`` may
+# be a link.
 ALLOWED: Mapping[str, AbstractSet[str]] = {
     "html": {"lang"}, "head": set(), "body": set(), "style": set(), "title": set(),
     "meta": {"charset", "http-equiv", "content", "name"}, "article": set(), "section": {"class"},
@@ -22,7 +22,7 @@ VOID = {"meta"}
 
 
 class PageReader(HTMLParser):
-    """Checks what is open and closed, and keeps the texts, the links and the names of places."""
+    """Checks that all elements are closed, and collects texts, links and ids."""
 
     def __init__(self, page: str, allowed: Mapping[str, AbstractSet[str]] = ALLOWED) -> None:
         super().__init__(convert_charrefs=True)

@@ -1,4 +1,4 @@
-"""Graded submissions of each sort, for the tests of formats: most of them graded by the grader."""
+"""Graded submissions of each sort for the tests of formats; the grader has graded most of them."""
 
 import io
 import json
@@ -48,8 +48,8 @@ s123, c123, 0, l1*s1+l2*s12+l3*s123
 0, 0, 1, 0
 0, 0, 0, 1"""
 
-# Commands to builds, markup of each kind, a formula of a spreadsheet, a way out of the folder,
-# controls, characters that XML forbids, half a pair of surrogates, text that runs backwards.
+# Commands to builds, markup of each kind, a spreadsheet formula, a path out of the folder, control
+# characters, characters that XML forbids, a lone surrogate, right-to-left text.
 HOSTILE = (
     "=cmd|' /C calc'!A0 ../../etc <script>alert(1)</script> <img src=x onerror=alert(1)> \"&amp; "
     "\x1b[31m\x07\x00\x7f\x9b2J\r\n::set-output name=a::b\n##[error]x ##vso[task] ###x\n"
@@ -57,7 +57,7 @@ HOSTILE = (
     "https://e.vil www.e.vil | a || b | ]]> --> <!-- \udc80\ufffe\uffff\u202e\u200b 100% %0A, $x$ "
     "{{7*7}} [[ATTACHMENT|x]]"
 )
-# Half a pair comes from the name of a file alone: it is replaced in what is handed in.
+# Only names of files can have a lone surrogate; in answers it is replaced.
 WRITTEN = HOSTILE.replace("\udc80", "")
 NOW = datetime(2026, 6, 1, 14, 32, 5, tzinfo=UTC)
 # What the runner of Classroom 50 sets.
@@ -73,7 +73,7 @@ CLASSROOM = {
 
 @cache
 def planar() -> Exercise:
-    """The exercise that the submissions answer: a table and a pose, 8 points each."""
+    """Return the exercise of the submissions: a table and a pose, 8 points each."""
     return load_exercise(shipped_folder() / "planar-rrr.toml")
 
 
@@ -93,7 +93,7 @@ def graded(
 
 
 def _hostile_words() -> GradedSubmission:
-    """A report each text of which is hostile, although the grader repeats little of an answer."""
+    """Return a report with only hostile texts. (The grader would repeat little of an answer.)"""
     correction = Correction(WRITTEN, WRITTEN)
     told = [
         Feedback(
@@ -116,7 +116,7 @@ def _hostile_words() -> GradedSubmission:
 
 
 def _assignment() -> GradedSubmission:
-    """Two exercises: one is right and counts 3 points, the other has no file and counts 1."""
+    """Return a submission to two exercises: one right (3 points), one without a file (1)."""
     right = graded({"table": {"rows": ROWS}, "pose": POSE}).files[0].report
     exercise = answered(planar(), worth=3.0)
     missing = AnsweredExercise(
@@ -131,7 +131,7 @@ def _assignment() -> GradedSubmission:
 
 @cache
 def cases() -> Mapping[str, GradedSubmission]:
-    """One submission of each sort by its name."""
+    """Return a submission of each sort, by the name of the sort."""
     wrong = [ROWS[0], {**ROWS[1], "alpha": "pi/2"}, {**ROWS[2], "theta": "q2"}, ROWS[3]]
     hostile = [dict.fromkeys(row, WRITTEN) for row in ROWS]
     problem = GradedFile("folder/b.json", answered(planar()), None, f"is no JSON: {HOSTILE}")
@@ -154,13 +154,13 @@ def setting(**changes: Any) -> Setting:
 
 
 def document(name: str, *submissions: GradedSubmission, **changes: Any) -> str:
-    """The document of the format with this name."""
+    """Return the document of the format with this name."""
     pieces = report_format(name).pieces(submissions, setting(**changes))
     return b"".join(pieces).decode()
 
 
 def checked_json(name: str, only: GradedSubmission, **changes: Any) -> Any:
-    """The document of a format that a platform reads as JSON, held to the platform's rules."""
+    """Return the JSON document of a format, validated by the schema of its platform."""
     file = Path(__file__).with_name("schemas") / f"{name}.json"
     schema = json.loads(file.read_text(encoding="utf-8"))
     text = document(name, only, **changes)

@@ -1,4 +1,4 @@
-"""Columns beneath each other look as Rich's own table does."""
+"""An AlignedTable looks exactly like Rich's own table."""
 
 import io
 
@@ -30,7 +30,7 @@ def printed(what: object, width: int) -> str:
 
 
 @pytest.mark.parametrize("width", [10, 24, 29, 30, 80])
-def test_it_looks_as_richs_own_table(width: int) -> None:
+def test_a_table_looks_like_richs_own_table(width: int) -> None:
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
     for column in COLUMNS:
         no_wrap = column.justify == "right"

@@ -1,4 +1,4 @@
-"""What holds for every format: it is found by its name, and no text that it prints is a command."""
+"""Tests of every format: it is found by its name, and prints no commands to builds."""
 
 import re
 import unicodedata
@@ -23,7 +23,7 @@ SINGLE = {"gradescope", "classroom50", "prairielearn"}
 FOR_STUDENTS = {*SINGLE, "html", "junit", "markdown", "github"}
 
 
-def test_each_file_is_a_format() -> None:
+def test_each_module_is_a_format() -> None:
     folder = Path(formats.__file__).parent
     files = {
         file.stem for room in ("documents", "platforms") for file in folder.glob(f"{room}/*.py")
@@ -31,7 +31,7 @@ def test_each_file_is_a_format() -> None:
     assert set(FORMAT_NAMES) == files - {"__init__"} == NAMES
 
 
-def test_documents_of_platforms_hold_one_submission_each() -> None:
+def test_documents_for_platforms_contain_one_submission() -> None:
     assert {name for name in FORMAT_NAMES if report_format(name).is_single} == SINGLE
     right, empty = cases()["right"], cases()["empty"]
     for name in SINGLE:
@@ -41,12 +41,12 @@ def test_documents_of_platforms_hold_one_submission_each() -> None:
             document(name)
 
 
-def test_students_read_what_is_handed_back_to_them() -> None:
+def test_the_formats_for_students_are_known() -> None:
     assert {name for name in FORMAT_NAMES if report_format(name).for_students} == FOR_STUDENTS
 
 
 def commands(line: str) -> Iterator[str]:
-    """What GitHub, Azure and TeamCity take for commands, by their runners' own rules."""
+    """Yield what the runners of GitHub, Azure and TeamCity would read as commands."""
     if line.lstrip().startswith("::"):
         yield line
     yield from re.findall(r"##(?:vso|teamcity|\w*)\[", line)
@@ -54,9 +54,9 @@ def commands(line: str) -> Iterator[str]:
 
 @together("case", cases())
 @together("name", sorted(FORMAT_NAMES))
-def test_nothing_that_is_printed_is_a_command_or_a_control(name: str, case: str) -> None:
+def test_no_output_has_commands_or_control_characters(name: str, case: str) -> None:
     printed = document(name, cases()[case])
-    if name != "text" or case != "unusable":  # its problem is told on standard error
+    if name != "text" or case != "unusable":  # its problem is on standard error
         assert printed.endswith("\n")
     assert printed == document(name, cases()[case])
     kinds = ("Cc", "Cs") if name in ("json", "jsonl") else ("Cc", "Cs", "Cf", "Cn")
@@ -67,7 +67,7 @@ def test_nothing_that_is_printed_is_a_command_or_a_control(name: str, case: str)
 
 
 @pytest.mark.parametrize("name", ["json", "jsonl", "csv", "gradebook", "junit", "text", "html"])
-def test_each_submission_is_written_before_the_next_but_one_is_graded(name: str) -> None:
+def test_submissions_are_written_while_later_ones_are_graded(name: str) -> None:
     taken = 0
 
     def many() -> Iterator[GradedSubmission]:
@@ -80,18 +80,18 @@ def test_each_submission_is_written_before_the_next_but_one_is_graded(name: str)
     for written, _ in enumerate(report_format(name).pieces(many(), setting())):
         ahead = max(ahead, taken - written)
     assert taken == 49
-    # Text waits for nine submissions to know whether each gets a line only.
+    # The format text waits for nine submissions: then each gets only one line.
     assert ahead <= (8 if name == "text" else 1)
 
 
-def test_names_of_parts_are_told_apart() -> None:
+def test_parts_with_the_same_name_get_distinct_names() -> None:
     distinct = distinct_names()
     assert [distinct(name) for name in ("A", "A (2)", "A", "A", "B\n", "B\r")] == [
         "A", "A (2)", "A (3)", "A (4)", "B\ufffd", "B\ufffd (2)",
     ]  # fmt: skip
 
 
-def test_the_page_on_formats_names_each() -> None:
+def test_the_page_on_formats_names_every_format() -> None:
     page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
     table = page.partition("| format |")[2].partition("\n\n")[0]
     assert {name for name in NAMES if f"`{name}`" in table} == NAMES

@@ -1,4 +1,4 @@
-"""Archives and bombs in the folder of a class and on its page: named, and never unpacked."""
+"""Archives and zip bombs among the files of a class are refused by name, and never unpacked."""
 
 import base64
 import gzip
@@ -31,7 +31,7 @@ def zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def nested(content: bytes, levels: int) -> bytes:
-    """A zip of zips, each with ten of the one before: ten to the power of ``levels`` in all."""
+    """Return a zip of zips that contain ``10 ** levels`` copies of the content."""
     for _ in range(levels):
         content = zipped((f"{i}.zip", content) for i in range(10))
     return content
@@ -49,18 +49,18 @@ FILES = {
     "table.ods": SHEET,
     "table.csv.gz": gzip.compress(bytes(10 * MEGABYTE)),
     "folder.tar": bytes(20_480),
-    # Under a name that promises an answer.
+    # With the name of a readable kind.
     "a zip.csv": ZEROS,
     "a zip.txt": ZEROS,
     "a zip.json": ZEROS,
     "a zip.toml": ZEROS,
     "zeros.txt": bytes(10 * MEGABYTE),
 }
-# A web page is read, but nothing in it is multiplied: it holds no table of this size.
+# A web page is read, but its entities are not expanded to a table.
 LAUGHS = f'<!DOCTYPE t [<!ENTITY a "lol">{ENTITIES}]><table><tr><td>&j;</td></tr></table>'.encode()
 
 
-def test_an_archive_in_the_folder_of_a_class_is_told_and_costs_no_other(tmp_path: Path) -> None:
+def test_an_archive_in_a_folder_is_refused_and_the_others_are_graded(tmp_path: Path) -> None:
     folder = tmp_path / "class"
     folder.mkdir()
     for name, content in {**FILES, "laughs.html": LAUGHS, "right.csv": RIGHT.encode()}.items():
@@ -87,7 +87,7 @@ def test_an_archive_in_the_folder_of_a_class_is_told_and_costs_no_other(tmp_path
         assert len(problem) < 400
 
 
-def test_more_files_than_a_folder_may_hold_are_not_read(
+def test_a_folder_with_too_many_files_is_not_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.submissions.handed_in.MAX_SUBMISSIONS_IN_FOLDER", 50)
@@ -102,9 +102,9 @@ def tutor(catalogue: Mapping[str, Exercise]) -> Tutor:
     return Tutor(catalogue)
 
 
-def test_an_archive_on_the_page_of_a_class_is_told_and_costs_no_other(tutor: Tutor) -> None:
+def test_an_uploaded_archive_is_refused_and_the_others_are_graded(tutor: Tutor) -> None:
     files = [
-        # As the page sends a file that is too large: without its content.
+        # The page sends a file that is too large without its content.
         {"path": name, "base64": base64.b64encode(content).decode()}
         if len(content) <= MAX_BODY_SIZE
         else {"path": name}
@@ -141,7 +141,7 @@ def filled(unit: bytes) -> bytes:
     ],
     ids=["zeros", "objects", "files", "texts", "lists", "numbers", "backslashes", "quotes", "open"],
 )
-def test_a_small_body_that_unpacks_to_a_large_one_is_refused_before_it_is_read(
+def test_a_compression_bomb_is_refused_before_it_is_parsed(
     tutor: Tutor, content: bytes, told: str
 ) -> None:
     packed = gzip.compress(content)
@@ -151,8 +151,8 @@ def test_a_small_body_that_unpacks_to_a_large_one_is_refused_before_it_is_read(
     assert told in answer.json()["detail"]
 
 
-def test_a_class_at_the_limits_is_no_bomb(tutor: Tutor) -> None:
-    # Quotation marks and backslashes in what students wrote do not count.
+def test_a_class_at_the_limits_is_accepted(tutor: Tutor) -> None:
+    # Quotation marks and backslashes inside students' texts do not count.
     text = '"\\", {}, [' * 60 + "\n"
     files = [{"path": f"{i // 20}/{i}.md", "text": text} for i in range(2_000)]
     assert tutor.grade(files, part="table").status_code == 200

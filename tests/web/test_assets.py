@@ -5,7 +5,7 @@ import pytest
 from service.web.assets import load_assets
 
 
-def test_a_name_changes_with_its_file_and_with_those_that_the_file_names(tmp_path: Path) -> None:
+def test_a_name_changes_with_the_file_and_with_the_files_it_names(tmp_path: Path) -> None:
     for room in ("page", "shared"):
         (tmp_path / room).mkdir()
     entry, dom = tmp_path / "page" / "entry.js", tmp_path / "shared" / "dom.js"
@@ -42,7 +42,7 @@ def test_two_files_of_one_name_are_refused(tmp_path: Path) -> None:
         load_assets(tmp_path)
 
 
-def test_an_address_of_the_service_is_no_file(tmp_path: Path) -> None:
+def test_an_address_of_the_service_is_not_taken_for_a_file(tmp_path: Path) -> None:
     text = 'post("../tutor/check"); new URL("../", import.meta.url);\n'
     (tmp_path / "entry.js").write_text(text, encoding="utf-8")
     assert load_assets(tmp_path).by_plain_name["entry.js"].content == text.encode()

@@ -1,4 +1,4 @@
-"""A hostile exercise in every page and figure: nothing in it is markup, an address or a script."""
+"""The texts of a hostile exercise are never markup, addresses or scripts in pages and figures."""
 
 import json
 import re
@@ -15,20 +15,20 @@ from tests.browser.hostile import BREAKOUT, HOSTILE_EXERCISE, PICTURE
 from tests.web.tutor.test_tutor_routes import Tutor
 
 PLAIN = re.sub(r"'''.*?'''", "'''plain'''", HOSTILE_EXERCISE, flags=re.DOTALL)
-# The pages that show the title, and others that an exercise might get into.
+# The pages that show the title, and pages that should not show it.
 SHOWN = ("/", "/exercises/hostile", "/tutor", "/tutor/solutions/hostile", "/tutor/class")
 OTHERS = ("/tutor/editor?exercise=hostile", "/tutor/class/report", "/play")
 FIGURES = ("/v1/exercises/hostile/figure.svg", "/tutor/solutions/hostile/frames.svg")
-# What a statement may hold besides (Markdown and MathML), and what titles are put into.
+# Elements that statements (Markdown and MathML) may add, and elements that contain titles.
 TEXT = {
     "p", "code", "span", "div", "math", "mrow", "mi", "mn", "mo", "mtext", "em", "strong", "br",
 }  # fmt: skip
-# Attributes that hold a text which nothing follows.
+# Attributes whose text the browser neither loads nor runs.
 WORDS = {"alt", "title", "aria-label", "content", "placeholder", "value", "data-mark"}
 
 
 class Markup(HTMLParser):
-    """The elements of a page with their attributes, and its text, as a browser reads them."""
+    """The elements of a page with their attributes, and the page's text."""
 
     def __init__(self, page: str) -> None:
         super().__init__(convert_charrefs=True)
@@ -73,7 +73,7 @@ def bare(markup: Markup) -> Counter[str]:
 
 
 @pytest.mark.parametrize("path", [*SHOWN, *OTHERS])
-def test_a_page_has_the_elements_that_it_has_for_any_exercise(
+def test_a_page_has_the_same_elements_as_for_a_plain_exercise(
     both: tuple[Tutor, Tutor], path: str
 ) -> None:
     answers = [each.ask("GET", path) for each in both]
@@ -85,14 +85,16 @@ def test_a_page_has_the_elements_that_it_has_for_any_exercise(
         assert f"Hostile {PICTURE} {BREAKOUT}" in hostile.text
 
 
-def test_the_reference_of_the_interface_holds_no_exercise(both: tuple[Tutor, Tutor]) -> None:
+def test_the_api_reference_does_not_contain_the_exercise(both: tuple[Tutor, Tutor]) -> None:
     for path in ("/docs", "/openapi.json"):
         hostile, plain = (each.ask("GET", path).content for each in both)
         assert hostile == plain
 
 
 @pytest.mark.parametrize("path", FIGURES)
-def test_a_figure_has_no_other_elements(both: tuple[Tutor, Tutor], path: str) -> None:
+def test_a_figure_has_the_same_elements_as_a_plain_one(
+    both: tuple[Tutor, Tutor], path: str
+) -> None:
     hostile, plain = (ET.fromstring(each.ask("GET", path).content) for each in both)
     assert Counter(each.tag for each in hostile.iter()) == Counter(
         each.tag for each in plain.iter()
@@ -112,7 +114,7 @@ def texts(value: object) -> Iterator[str]:
         yield from (text for each in value for text in texts(each))
 
 
-def test_what_scripts_put_into_pages_as_html_is_as_harmless(both: tuple[Tutor, Tutor]) -> None:
+def test_the_html_in_json_has_no_hostile_elements(both: tuple[Tutor, Tutor]) -> None:
     check = {"id": "h", "text": HOSTILE_EXERCISE}
     for answer in (
         both[0].ask("GET", "/v1/exercises/hostile"),

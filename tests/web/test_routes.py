@@ -1,4 +1,4 @@
-"""The pages and files as they go over the wire."""
+"""The responses for pages and static files."""
 
 import asyncio
 import re
@@ -17,7 +17,7 @@ MOST_BYTES = 200_000
 
 
 class Client:
-    """Asks the application in this process."""
+    """Sends requests to an application in this process."""
 
     def __init__(self, catalogue: Mapping[str, Exercise]) -> None:
         self.app = application(catalogue, pages=web_routes(catalogue))
@@ -37,13 +37,13 @@ def client(catalogue: Mapping[str, Exercise]) -> Client:
 
 
 def named(page: httpx.Response) -> Iterator[str]:
-    """The addresses of the files that a page loads."""
+    """Yield the addresses of the files that a page loads."""
     for address in re.findall(r'<(?:link|script|img)[^>]* (?:href|src)="([^"]+)"', page.text):
         yield str(page.url.join(address).path)
 
 
 @pytest.mark.parametrize("path", ["/", "/exercises/scara"])
-def test_a_page_is_small_and_loads_files_that_never_change(client: Client, path: str) -> None:
+def test_a_page_is_small_and_its_files_are_cached_without_limit(client: Client, path: str) -> None:
     page = client.get(path)
     addresses = set(named(page))
     files = {each: client.get(each) for each in addresses if not each.endswith("/figure.svg")}
@@ -61,7 +61,7 @@ def test_a_page_is_small_and_loads_files_that_never_change(client: Client, path:
     assert sum(len(each.content) for each in loaded) < MOST_BYTES
 
 
-def test_the_policy_lets_in_nothing_from_elsewhere_and_nothing_inline(client: Client) -> None:
+def test_the_policy_allows_no_other_hosts_and_nothing_inline(client: Client) -> None:
     page = client.get("/exercises/scara")
     policy = page.headers["content-security-policy"]
     directives = dict(part.strip().split(" ", 1) for part in policy.split(";"))
@@ -77,7 +77,7 @@ def test_the_policy_lets_in_nothing_from_elsewhere_and_nothing_inline(client: Cl
     assert re.findall(r"<script(?![^>]* src=)", page.text) == []
 
 
-def test_an_exercise_is_in_the_page_itself(client: Client) -> None:
+def test_an_exercise_can_be_read_without_scripts(client: Client) -> None:
     page = client.get("/exercises/scara")
     assert "all four axes are vertical" in " ".join(page.text.split())
     assert 'src="../v1/exercises/scara/figure.svg"' in page.text
@@ -88,7 +88,7 @@ def test_an_exercise_is_in_the_page_itself(client: Client) -> None:
     assert client.get("/static/embed.js").status_code == 404
 
 
-def test_the_one_script_with_a_lasting_name_is_asked_for_anew(client: Client) -> None:
+def test_the_script_with_a_fixed_name_is_always_revalidated(client: Client) -> None:
     script = client.get("/embed.js")
     assert script.headers["cache-control"] == "no-cache"
     assert script.headers["access-control-allow-origin"] == "*"

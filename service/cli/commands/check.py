@@ -73,7 +73,7 @@ def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Te
     earned = ", ".join(
         f"{math.floor(100 * share)} % of {part}" for part, share in lazy_shares(exercise).items()
     )
-    lazy = f"; a lazy answer earns {earned}"
+    lazy = f". Writing only zeros and joint variables earns {earned}."
     yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {parts}, {checks}{lazy}")
     lines = value_lines(file.read_text(encoding="utf-8")) if remarks else {}
     for remark in remarks:

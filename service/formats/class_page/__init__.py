@@ -1,4 +1,4 @@
-"""A class at a glance: a folder with an index of all submissions and a page for each."""
+"""The overview of a class: a folder with an index and a page for each submission."""
 
 from service.formats.class_page.folder import class_folder
 

@@ -1,11 +1,11 @@
-"""Names of files made of the names of submissions, whoever chose these."""
+"""Safe file names from the names of submissions, which anybody may have chosen."""
 
 import unicodedata
 from collections.abc import Callable
 from itertools import chain, count
 from typing import Final
 
-# A file name has 255 bytes on most systems, and a letter up to four of them.
+# Characters. A file name has 255 bytes on most systems, and a letter up to four bytes.
 LONGEST: Final = 50
 _SIGNS: Final = "-_"
 _RESERVED: Final = frozenset(
@@ -14,10 +14,10 @@ _RESERVED: Final = frozenset(
 
 
 def distinct_file_names(ending: str) -> Callable[[str], str]:
-    """Makes names of files within one folder, no two alike on any system.
+    """Return a function that makes distinct file names for one folder.
 
-    Only letters, digits and single ``-`` and ``_`` are kept, so that no name leads anywhere else.
-    Systems that do not tell capitals apart, or ``é`` from ``e`` and an accent, tell these apart.
+    The names keep only letters, digits, ``-`` and ``_``, so no name leads out of the folder. They
+    are distinct even on systems that ignore case or the form of accented letters.
     """
     used: set[str] = set()
 
@@ -32,7 +32,7 @@ def distinct_file_names(ending: str) -> Callable[[str], str]:
 
 
 def file_stem(name: str) -> str:
-    """The name as that of a file, without an ending; ``submission`` where nothing is left."""
+    """Return a name as a file name without an ending, or ``submission`` if nothing is left."""
     composed = unicodedata.normalize("NFC", name)
     kept = "".join(c if c.isalnum() or c in _SIGNS else " " for c in composed)
     stem = "-".join(kept.split())[:LONGEST].strip(_SIGNS)

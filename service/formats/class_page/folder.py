@@ -1,4 +1,4 @@
-"""The folder of a class: a page for each submission, and the index at last."""
+"""The folder of a class: a page for each submission, then the index."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final
@@ -9,7 +9,7 @@ from service.formats.class_page.overview import Overview
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.report_format import Document, Setting
 
-# The folder of the pages, within that of the class.
+# The subfolder of the pages.
 PAGES: Final = "reports"
 
 Pages = Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
@@ -17,9 +17,9 @@ Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]
 
 
 def class_folder(page: Pages) -> Folder:
-    """The files of a class, where ``page`` writes a page for one submission.
+    """Return a function that yields the files of a class; ``page`` writes one submission.
 
-    Each submission is taken once, and only counts and a line of it are kept for the index.
+    It takes submissions one by one, and keeps only a line and the counts for the index.
     """
 
     def documents(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[Document]:

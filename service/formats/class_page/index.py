@@ -76,20 +76,20 @@ def _sentence_of(slip: CountedSlip) -> str:
 
 
 def _band_of(share: Share) -> str:
-    """Return the class of a share: its colour."""
+    """Return the CSS class with the colour of a share."""
     if share.value is None:
         return "share-none"
     return f"share{sum(share.value >= low for low in _BANDS) - 1}"
 
 
 def _span_of(each: ScoreBin) -> str:
-    """Return the scores of a column of the histogram in words."""
+    """Return the range of scores of a column of the histogram in words."""
     until = "to" if each.high == 1 else "to under"
     return f"{each.low * 100:.0f} {until} {each.high * 100:.0f} %"
 
 
 def _bars_of(each: ScoreBin, highest: int) -> Iterator[tuple[str, str, str]]:
-    """Yield class, top and height of the bars of a column: above those that passed, in per cent."""
+    """Yield CSS class, top and height (per cent) of the bars for failed and passed scores."""
     tall, below = (100 * n / highest for n in (each.count, each.count - each.passed))
     for side, top, height in (("below", 100 - below, below), ("over", 100 - tall, tall - below)):
         if each.count and f"{height:.2f}" != "0.00":

@@ -1,4 +1,4 @@
-"""All that the index tells, taken from submissions one by one."""
+"""The data of the index, collected from submissions one by one."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ from service.statistics import ClassStatistics
 
 @dataclass(frozen=True, slots=True)
 class SubmissionLine:
-    """A submission as the index lists it; ``page`` is the path of its page from the index."""
+    """A submission in the index; ``page`` is the path from the index to its page."""
 
     name: str
     learner: str
@@ -26,9 +26,9 @@ class SubmissionLine:
 
 @dataclass(slots=True)
 class Overview:
-    """The class: what was set by its id, a line for each submission, and the counts.
+    """A class: its exercises by id, a line for each submission, and the statistics.
 
-    The number of a submission in the statistics is its place among the lines.
+    In the statistics, the number of a submission is its index in ``lines``.
     """
 
     exercises: dict[str, AnsweredExercise]
@@ -39,7 +39,7 @@ class Overview:
     _learners: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: GradedSubmission, page: str) -> None:
-        """Take the submission in; nothing of its reports is kept."""
+        """Add a submission to the counts; its reports are not kept."""
         number = len(self.lines)
         self.pass_mark = submission.pass_mark
         self._learners[submission.learner] += 1
@@ -65,21 +65,21 @@ class Overview:
                 self.statistics.add(number, file.report)
 
     def listed(self, numbers: Iterable[int]) -> list[SubmissionLine]:
-        """The lines of the submissions with these numbers."""
+        """Return the lines of the submissions with these numbers."""
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Whose it is, or the name of the submission where several have the same learner."""
+        """Return the learner, or the name of the submission if the learner has several."""
         return line.learner if self._learners[line.learner] == 1 else line.name
 
     @property
     def ungraded(self) -> list[SubmissionLine]:
-        """The submissions of which something could not be used, or nothing could be read."""
+        """Return the submissions with a problem, and those in which nothing was readable."""
         return [line for line in self.lines if line.problems or not line.is_gradable]
 
 
 def _problems(submission: GradedSubmission) -> tuple[str, ...]:
-    """What could not be used, each once, with the exercise where there are several."""
+    """Return the distinct problems, each after the title of its exercise if there are several."""
     has_several = len(submission.files) > 1
     told = (
         f"{file.exercise.title}: {file.problem}" if has_several else file.problem

@@ -1,4 +1,4 @@
-"""Points as comma-separated values: a line for each submission, a column for each part."""
+"""Points as comma-separated values: one line for each submission, one column for each part."""
 
 from collections.abc import Iterable, Iterator
 from typing import Final
@@ -11,7 +11,7 @@ from service.grading import PartReport, Severity
 from service.grading.report import messages_of
 
 _HEAD: Final = ("submission", "points", "max_points", "score", "passed", "problem", "messages")
-# What costs points or may have been a slip; notes and hints are not counted.
+# Messages that cost points or may name a slip. Notes and hints are not listed.
 _COUNTED: Final = (Severity.ERROR, Severity.WARNING)
 
 
@@ -23,7 +23,7 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission) -> list[str | float | None]:
-    """No points where nothing was graded: nobody gets 0 for a file that cannot be used."""
+    """Return the cells of a submission. Those for points are empty if nothing was graded."""
     is_graded = submission.is_graded
     results = part_results(submission)
     return [
@@ -39,7 +39,7 @@ def _cells(submission: GradedSubmission) -> list[str | float | None]:
 
 
 def _codes(part: PartReport) -> list[str]:
-    """The codes of the part's messages, each once, behind the part's name."""
+    """Return the distinct codes of the part's messages, each as ``part.code``."""
     found = (message.code for message, _, _ in messages_of(part) if message.severity in _COUNTED)
     return [f"{part.part}.{code}" for code in dict.fromkeys(found)]
 

@@ -1,6 +1,6 @@
-"""Grades for the gradebook of a course: a line for each learner, with the headings of Moodle.
+"""Grades for the gradebook of a course: one line for each learner, with Moodle's headings.
 
-Moodle, Canvas and others import such a file and ask which column is which.
+When Moodle, Canvas and others import the file, they let the user assign its columns.
 """
 
 from collections.abc import Iterable, Iterator
@@ -20,7 +20,7 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
 
 
 def _cells(submission: GradedSubmission) -> list[str | float | None]:
-    """No grade where nothing was graded: an import leaves the one that is there."""
+    """Return the cells of a learner. An empty grade leaves the old one as it is in an import."""
     parts = (f"{each.name}: {_earned(each)}" for each in part_results(submission))
     return [
         submission.learner,

@@ -1,4 +1,4 @@
-"""A page to hand back: a card for each part, with the entries in their cells as they were read."""
+"""A page for students: a card for each part, which shows how each entry was read."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice

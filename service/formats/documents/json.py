@@ -1,4 +1,4 @@
-"""Reports as JSON: a list with one entry for each file, however many there are."""
+"""Reports as JSON: always a list, with one entry for each file."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -15,19 +15,19 @@ _REPORT: Final = TypeAdapter(Report)
 
 
 def rendered(report: Report, *, indent: int | None = None) -> bytes:
-    """The report as UTF-8 JSON; fields that say nothing (None) are left out."""
+    """Return the report as UTF-8 JSON without the fields that are None."""
     return _REPORT.dump_json(report, exclude_none=True, indent=indent)
 
 
 def read_report(content: bytes) -> Report:
-    """The report of ``rendered``. Raises pydantic.ValidationError, a ValueError, for others."""
+    """Return the report in JSON that ``rendered`` made. Raises pydantic.ValidationError."""
     return _REPORT.validate_json(content)
 
 
 def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
-    """A line of JSON for each file: its report, or the error because of which it has none.
+    """Yield a line of JSON for each file, with its report, its error, or both.
 
-    With both, a part of what was handed in could not be used.
+    An entry with both has a report on the usable part of a submission.
     """
     for submission in submissions:
         for file in submission.files:
@@ -49,7 +49,7 @@ def _entry(submission: GradedSubmission, file: GradedFile) -> bytes:
 
 
 def _encodable(text: str) -> str:
-    """The text, its bytes that are not UTF-8 (in the name of a file) replaced."""
+    """Return the text as valid Unicode. Names of files may have bytes that are not UTF-8."""
     return text.encode("utf-8", "replace").decode()
 
 

@@ -1,4 +1,4 @@
-"""Reports as JSON lines: one line for each file, written as soon as it is graded."""
+"""Reports as JSON lines: one line for each file, written as soon as the file is graded."""
 
 from collections.abc import Iterable, Iterator
 from typing import Final

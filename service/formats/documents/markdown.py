@@ -1,4 +1,4 @@
-"""Markdown for the summary of a job or a comment on a pull request: GitHub's dialect.
+"""GitHub's Markdown for the summary of a job or a comment on a pull request.
 
 GitHub takes 1 MiB of summary for a step and 65,536 characters of a comment.
 """
@@ -16,7 +16,7 @@ _HEAD: Final = "| submission | points | score | passed |\n|---|--:|--:|:-:|\n"
 
 
 def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
-    """A table of all submissions, and beneath it the parts of each."""
+    """Yield a table of all submissions, then the parts of each."""
     details = []
     yield _HEAD.encode()
     for submission in submissions:

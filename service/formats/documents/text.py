@@ -1,6 +1,6 @@
-"""A report for a person at a terminal: each part as a table, its messages beneath, a total.
+"""A report for the terminal: each part as a table with its messages, and a total.
 
-Marks, not colours, carry the meaning, so it reads the same in a file or without colour.
+Marks carry the meaning, not colours, so it can also be read without colours.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -26,7 +26,7 @@ _COLOURS: Final[Mapping[Verdict, str]] = {
     Verdict.UNREADABLE: "magenta",
     Verdict.MISSING: "bright_black",
 }
-# More submissions have a line each: other formats tell all of a class.
+# More submissions than this get one line each instead of a report.
 _IN_FULL: Final = 8
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
 # Longer lines are hard to read however wide the terminal is.
@@ -36,7 +36,7 @@ _BLANK: Final[StyledText] = ("", "")
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
-    """The reports below each other, or a line for each submission of a class; then a summary."""
+    """Yield each report, or one line for each submission of a class, then a summary."""
     rest = iter(submissions)
     first = tuple(islice(rest, _IN_FULL + 1))
     are_several = len(first) > 1 or any(len(each.files) > 1 for each in first)
@@ -78,7 +78,7 @@ def _write_submission(submission: GradedSubmission, console: Console, *, are_sev
 
 
 def _print_indented(line: Text, console: Console) -> None:
-    """Print a line of the summary, what does not fit below its text."""
+    """Print a line of the summary; a long one continues below, indented."""
     width = min(console.width, _WIDEST)
     if line.cell_len <= width:
         console.print(line)
@@ -91,7 +91,7 @@ def _print_indented(line: Text, console: Console) -> None:
 
 
 def write(report: Report, console: Console) -> None:
-    """Print the report; a console whose encoding lacks the marks gets plain ASCII for them."""
+    """Print the report. If the console's encoding lacks the marks, they are plain ASCII."""
     _Page(console).report(report)
 
 
@@ -113,7 +113,7 @@ class _Page:
             self._print(Text(unread if is_answered(report) else "It is not answered."))
         if any(part.rows for part in report.parts):
             signs = [Verdict.CORRECT, Verdict.INCORRECT, Verdict.UNREADABLE, Verdict.MISSING]
-            # The mark of an error in a part or row that is right elsewhere.
+            # An error in a partly right part or row has this mark.
             if any(
                 each.severity is Severity.ERROR and each.verdict is Verdict.PARTIAL
                 for part in report.parts
@@ -141,7 +141,7 @@ class _Page:
         self._console.print(_as_they_are(lines, self._console))
 
     def _table(self, part: PartReport) -> AlignedTable:
-        """The marks of the cells and the points of each row."""
+        """Return a table with the marks of the cells and the points of each row."""
         widest = max((row.cells for row in part.rows), key=len)
         columns = [AlignedColumn(cell.label, "center") for cell in widest]
         rows = [
@@ -158,7 +158,7 @@ class _Page:
         )
 
     def _read(self, part: PartReport) -> AlignedTable:
-        """The entries as they were understood."""
+        """Return a table that shows how each entry was read."""
         widest = max((row.cells for row in part.rows), key=len)
         columns = [AlignedColumn("read"), *(AlignedColumn(cell.label) for cell in widest)]
         rows = [
@@ -172,7 +172,7 @@ class _Page:
         return AlignedTable(columns, rows, "bold")
 
     def _message(self, message: Message) -> Iterator[Text]:
-        """The lines of a message, beneath each other to the right of its mark."""
+        """Yield the lines of a message, indented to the right of its mark."""
         costs = message.severity is Severity.ERROR
         mark = self._mark(message.verdict) if costs else (message.label, "cyan")
         places = f"{message.places}: " if message.places else ""
@@ -181,7 +181,7 @@ class _Page:
             text.append(f" {message.offers}")
         if message.example:
             text.append(f" {message.example}", "dim")
-        # A table of two columns looks the same, and takes rich four times as long.
+        # A Rich table of two columns looks the same but takes four times as long.
         first = Text.assemble("  ", mark, " ")
         lines = text.wrap(self._console, self._width - first.cell_len)
         yield Text.assemble(first, *lines[:1])
@@ -197,7 +197,7 @@ class _Page:
 
 
 def _as_they_are(lines: Iterable[Text], console: Console) -> Segments:
-    """Lines that fit, and an empty one; to print each by itself takes rich five times as long."""
+    """Return lines and an empty one as one renderable; separate prints take five times as long."""
     return Segments(segment for line in [*lines, Text()] for segment in line.render(console, "\n"))
 
 

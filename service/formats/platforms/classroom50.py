@@ -17,7 +17,7 @@ from service.formats.shared.report_format import (
     single,
 )
 
-# Each field with the environment variables that its runner sets, the first that is there counts.
+# Each field with the environment variables of the runner; the first that is set counts.
 _FIELDS: Final[Mapping[str, tuple[str, ...]]] = {
     "classroom": ("CLASSROOM",),
     "assignment": ("ASSIGNMENT",),
@@ -44,7 +44,10 @@ def _document(submission: GradedSubmission, setting: Setting) -> bytes:
 
 
 def _identity(environment: Mapping[str, str]) -> dict[str, str]:
-    """What is graded, as the runner tells it. Raises UnusableSettingError."""
+    """Return the identity of the submission from the runner's variables.
+
+    Raises UnusableSettingError if a variable is missing.
+    """
     found = {field: _first(environment, names) for field, names in _FIELDS.items()}
     lacking = [_FIELDS[field][0] for field, value in found.items() if not value]
     if lacking:

@@ -1,8 +1,9 @@
 """Annotations of GitHub Actions: one for each part that lost points, and one for the total.
 
 Source: https://docs.github.com/en/actions/reference/workflow-commands-for-github-actions, and the
-code by which the runner reads them, ``src/Runner.Common/ActionCommand.cs`` of
-https://github.com/actions/runner. It shows ten errors of a step, so that messages share one.
+code with which the runner parses them, ``src/Runner.Common/ActionCommand.cs`` of
+https://github.com/actions/runner. The runner shows only ten errors of a step, so all messages on a
+part share one annotation.
 """
 
 from collections.abc import Iterable, Iterator
@@ -13,7 +14,7 @@ from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import percent, points, visible
 from service.formats.shared.report_format import ReportFormat, Setting
 
-# Percent first, since it is the sign of all replacements.
+# Percent comes first, because all replacements contain it.
 _IN_DATA: Final = (("%", "%25"), ("\r", "%0D"), ("\n", "%0A"))
 _IN_PROPERTIES: Final = (*_IN_DATA, (":", "%3A"), (",", "%2C"))
 

@@ -1,4 +1,4 @@
-"""The ``results.json`` of a Gradescope autograder: a test for each part, with its rows inside.
+"""The ``results.json`` of a Gradescope autograder: a test for each part, with its rows.
 
 Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "Output format".
 """

@@ -1,4 +1,4 @@
-"""JUnit XML, as GitLab and the actions of GitHub read it: a suite for each file, a test a part.
+"""JUnit XML for GitLab and GitHub Actions: a suite for each submission, a test for each part.
 
 Sources: https://docs.gitlab.com/ci/testing/unit_test_reports/ and the schema ``junit-10.xsd`` of
 Jenkins (https://github.com/jenkinsci/xunit-plugin). GitLab shows the name of the class as the
@@ -50,7 +50,7 @@ def _case(result: PartResult, suite: str) -> Element:
 
 
 def _failure(result: PartResult) -> Element:
-    """Return what was wrong: an error if the part could not be read, and so was not judged."""
+    """Return a ``failure`` element, or an ``error`` if the part could not be read."""
     is_unread = result.verdict is Verdict.UNREADABLE
     earned = points(result.points, result.max_points)
     failure = _element(
@@ -63,7 +63,7 @@ def _failure(result: PartResult) -> Element:
 
 
 def _element(tag: str, *children: Element, **attributes: str) -> Element:
-    """Return an element whose attributes are visible lines, without characters XML forbids."""
+    """Return an element. Its attributes become visible text without characters XML forbids."""
     made = Element(tag, {name: visible(value) for name, value in attributes.items()})
     made.extend(children)
     return made

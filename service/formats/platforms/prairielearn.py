@@ -1,7 +1,7 @@
 """The ``results.json`` of a PrairieLearn external grader.
 
-Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading results". What
-cannot be read is not gradable there: it costs no attempt.
+Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading results". An
+unreadable submission is not gradable there, so it costs no attempt.
 """
 
 from typing import Any, Final
@@ -39,7 +39,7 @@ def _test(result: PartResult) -> dict[str, Any]:
 
 
 def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
-    """The reasons, each once: one file may leave several parts without a report."""
+    """Return the result of an unreadable submission, with each reason once."""
     lines = (
         line if each.report is None else f"{each.name}: {line}"
         for each in results

@@ -1,4 +1,4 @@
-"""Columns of short texts beneath each other, for a terminal."""
+"""Tables of short texts with aligned columns, for a terminal."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ StyledText = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class AlignedColumn:
-    """A column of a table: its heading, and the side on which its cells stand."""
+    """A column of a table: its heading, and the alignment of its cells."""
 
     heading: str
     justify: Literal["left", "center", "right"] = "left"
 
     def filled(self, text: str, width: int) -> str:
-        """The text, filled up with blanks."""
+        """Return the text, padded with blanks."""
         missing = width - cell_len(text)
         before = {"left": 0, "center": missing // 2, "right": missing}[self.justify]
         return " " * before + text + " " * (missing - before)
@@ -40,9 +40,9 @@ class AlignedTable:
     heading_style: str = "dim"
 
     def on(self, console: Console, width: int, indent: int) -> RenderableType:
-        """The table as it is printed, with so many blanks before each line.
+        """Return the table to print, with ``indent`` blanks before each line.
 
-        Where it is too wide, its columns are made narrower.
+        If it is wider than ``width``, its columns become narrower.
         """
         texts = zip(*((text for text, _ in row) for row in self.rows), strict=True)
         widths = [
@@ -51,7 +51,7 @@ class AlignedTable:
         ]
         if indent + sum(widths) + _GAP * (len(widths) - 1) > width:
             return Padding(self._narrowed(), (0, 0, 0, indent), expand=False)
-        # Rich measures each cell of its own tables several times: it takes ten times as long.
+        # Rich's own tables take ten times as long, because they measure each cell several times.
         headings = [(column.heading, self.heading_style) for column in self.columns]
         segments = []
         for line, gap_style in ((headings, self.heading_style), *((row, "") for row in self.rows)):

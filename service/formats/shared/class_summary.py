@@ -1,4 +1,4 @@
-"""A class in a few lines of text: who passed, and what most of them should hear again."""
+"""A summary of a class in a few lines: how many passed, and the most frequent mistakes."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -15,7 +15,7 @@ _LONGEST: Final = 300
 
 
 def result_line(submission: GradedSubmission) -> Text:
-    """One submission in a line; the name stands last, for it may be long."""
+    """Return a line about one submission. The name is at the end, because it may be long."""
     name = visible(submission.name)
     if not submission.is_graded:
         return Text.assemble(("not graded", "magenta"), " " * 23, name)
@@ -25,13 +25,13 @@ def result_line(submission: GradedSubmission) -> Text:
 
 
 def pass_line(submission: GradedSubmission) -> Text:
-    """Whether the submission reaches the pass mark, in words."""
+    """Return a line that says whether the submission reaches the pass mark."""
     verdict = ("Passed", "bold green") if submission.passed else ("Not passed", "bold red")
     return Text.assemble(verdict, f": the pass mark is {percent(submission.pass_mark)}.")
 
 
 class ClassSummary:
-    """Submissions in, one by one, and a summary of them out; none of them is kept."""
+    """A summary of submissions that are added one by one; none of them is kept."""
 
     def __init__(self) -> None:
         self._statistics = ClassStatistics()
@@ -49,7 +49,7 @@ class ClassSummary:
                 self._statistics.add(self._count, file.report)
 
     def lines(self) -> Iterator[Text]:
-        """The summary."""
+        """Yield the lines of the summary."""
         scores, slips = self._statistics.scores, self._statistics.slips
         yield Text.assemble(
             (f"{self._count:,} submissions: ", "bold"),
@@ -67,7 +67,7 @@ class ClassSummary:
 
 
 def _listed(heading: str, slips: Sequence[CountedSlip]) -> Iterator[Text]:
-    """How many submissions have each slip, and the sentence that most of them were told."""
+    """Yield a heading and a line for each slip: its count, its sentence, its code and parts."""
     if slips:
         yield Text()
         yield Text(heading, "bold")

@@ -1,4 +1,4 @@
-"""Submissions with their reports: what every format is given."""
+"""Submissions with their reports: the input of every format."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -13,7 +13,7 @@ _ROUNDED = 5e-7
 
 @dataclass(frozen=True, slots=True)
 class AnsweredPart:
-    """A part of an exercise that was set, whether it was answered or not."""
+    """A part of an assigned exercise, answered or not."""
 
     id: str
     title: str
@@ -22,10 +22,10 @@ class AnsweredPart:
 
 @dataclass(frozen=True, slots=True)
 class AnsweredExercise:
-    """An exercise that was set, as far as a reader of results needs to know it.
+    """An assigned exercise, with the facts that formats need.
 
-    ``worth`` are the points that it counts in a submission: those of its parts, unless an
-    assignment weighs it otherwise.
+    ``worth`` is its points in a submission: the points of its parts, unless an assignment gives it
+    another weight.
     """
 
     id: str
@@ -36,29 +36,28 @@ class AnsweredExercise:
 
     @property
     def points(self) -> float:
-        """The points of all its parts."""
+        """Return the sum of the points of its parts."""
         return sum(part.points for part in self.parts)
 
 
 def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
-    """The exercise as it stands in results; it counts its own points, or else ``worth``."""
+    """Return an exercise for results. It is worth its own points, unless ``worth`` is given."""
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
     return AnsweredExercise(exercise.id, exercise.title, exercise.source, parts, worth)
 
 
 def is_answered(report: Report) -> bool:
-    """Whether any part of the exercise has an answer, readable or not."""
+    """True if any part of the exercise has an answer, readable or not."""
     return any(part.verdict is not Verdict.MISSING for part in report.parts)
 
 
 @dataclass(frozen=True, slots=True)
 class GradedFile:
-    """A file with its report, or with the problem because of which there is none.
+    """A file with its report, or with the problem that prevents one.
 
-    With both, a part of what was handed in could not be used.
-
-    ``file`` is its name; empty where an exercise has no file.
+    With both, only a part of the submission could be used. ``file`` is the name of the file, or
+    empty if there is no file for the exercise.
     """
 
     file: str
@@ -68,21 +67,20 @@ class GradedFile:
 
     @property
     def weight(self) -> float:
-        """What a point of the report counts in the submission."""
+        """Return the points in the submission for one point of the report."""
         return self.exercise.worth / self.exercise.points
 
     @property
     def points(self) -> float:
-        """The points that the file earns for the submission."""
+        """Return the points that the file earns in the submission."""
         return self.report.points * self.weight if self.report else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class GradedSubmission:
-    """What one learner handed in: a file for each exercise that was set.
+    """The submission of one learner: a file for each assigned exercise.
 
-    ``name`` tells it apart from the others, ``learner`` says whose it is. ``pass_mark`` is the
-    score to reach, of 1.
+    ``name`` is unique among all submissions. ``pass_mark`` is the score to reach, 0..1.
     """
 
     name: str
@@ -92,47 +90,47 @@ class GradedSubmission:
 
     @property
     def points(self) -> float:
-        """The points of all files; one without a report has none."""
+        """Return the points of all files; a file without a report has none."""
         return rounded_points(sum(file.points for file in self.files))
 
     @property
     def max_points(self) -> float:
-        """The most points that there are."""
+        """Return the maximum points."""
         return rounded_points(sum(file.exercise.worth for file in self.files))
 
     @property
     def score(self) -> float:
-        """The points as a share of the most points, 0..1."""
+        """Return the points as a share of the maximum points, 0..1."""
         return rounded_points(self.points / self.max_points)
 
     @property
     def is_graded(self) -> bool:
-        """Whether there is any report."""
+        """True if any file has a report."""
         return any(file.report for file in self.files)
 
     @property
     def is_gradable(self) -> bool:
-        """Whether anything that was handed in could be read."""
+        """True if anything in the submission could be read."""
         return any(file.report and file.report.gradable for file in self.files)
 
     @property
     def is_answered(self) -> bool:
-        """Whether anything was handed in, readable or not."""
+        """True if the submission has any answer, readable or not."""
         return any(file.report and is_answered(file.report) for file in self.files)
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """The problems of its files, each once."""
+        """Return the distinct problems of the files."""
         return tuple(dict.fromkeys(file.problem for file in self.files if file.problem))
 
     @property
     def passed(self) -> bool:
-        """Whether the submission was graded and reaches the pass mark."""
+        """True if the submission was graded and reaches the pass mark."""
         return self.is_graded and self.score >= self.pass_mark - _ROUNDED
 
 
 class Visibility(StrEnum):
-    """The time from which students see a result, on platforms that let a grader decide it.
+    """When students see a result, on platforms where the grader decides it.
 
     The names are Gradescope's.
     """

@@ -32,25 +32,25 @@ _SHARED_STYLE: Final = Path(__file__).with_name("templates") / "report.css"
 
 @dataclass(frozen=True, slots=True)
 class StyleSheet:
-    """A style sheet as it is printed in a page, and its hash as a policy of the page names it."""
+    """A style sheet to print in a page, and its hash for the page's Content-Security-Policy."""
 
     html: Markup
     hash: str
 
 
 def html(template: str, /, **values: object) -> bytes:
-    """Return the document of a template in UTF-8."""
+    """Return the document that a template makes, in UTF-8."""
     return environment().get_template(template).render(values).encode()
 
 
 def html_pieces(template: str, /, **values: object) -> Iterator[bytes]:
-    """Yield the document piece by piece; the template takes items of iterators one by one."""
+    """Yield the document that a template makes, piece by piece. It may iterate lazily."""
     for piece in environment().get_template(template).generate(values):
         yield piece.encode()
 
 
 def own_html(text: str) -> Markup:
-    """Return a text that templates print as it is. The service itself must have made it.
+    """Return HTML that templates do not escape. The service itself must have made it.
 
     There are three such texts: style sheets, statements (``statement_html``) and formulas in MathML
     (``formula_html``).
@@ -59,7 +59,7 @@ def own_html(text: str) -> Markup:
 
 
 def style_sheet(file: Path) -> StyleSheet:
-    """Return the style of all reports, followed by that of one kind of report."""
+    """Return the style of all reports, followed by the style in ``file``."""
     style = _SHARED_STYLE.read_text(encoding="utf-8") + file.read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     return StyleSheet(own_html(style), f"sha256-{digest}")
@@ -72,8 +72,8 @@ def lines(text: str) -> Markup:
 
 @cache
 def environment() -> "Environment":
-    """Return the environment; it compiles each template once in a process."""
-    # Only here: a program that writes no HTML starts without it.
+    """Return the Jinja2 environment; it compiles each template once in a process."""
+    # Imported here, so that a program that writes no HTML starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     made = Environment(
@@ -93,5 +93,5 @@ def environment() -> "Environment":
 
 
 def _finalize(value: object) -> str:
-    """Return a printed value as HTML that a template made, or as a visible text."""
+    """Return a printed value unchanged if it is HTML, otherwise as visible text."""
     return value if isinstance(value, Markup) else visible(str(value))

@@ -1,21 +1,21 @@
-"""JSON that may be printed as well as read."""
+"""JSON that is safe to print to a terminal or the log of a build."""
 
 import json
 import re
 from collections.abc import Mapping
 from typing import Final
 
-# In UTF-8: a build's command `##[…]`, and the controls that JSON may hold as they are.
+# In UTF-8: the start of a build's command (`##[…]`), and control characters that JSON allows.
 _UNPRINTABLE: Final = re.compile(rb"#(?=#)|\x7f|\xc2[\x80-\x9f]")
 
 
 def json_document(content: Mapping[str, object]) -> bytes:
-    """The content as UTF-8 JSON to be read by people, too."""
-    # Bytes that are not UTF-8, in the name of a file, are replaced.
+    """Return the content as indented UTF-8 JSON."""
+    # Names of files may contain bytes that are not UTF-8; these are replaced.
     text = json.dumps(content, indent=2, ensure_ascii=False)
     return printable(text.encode("utf-8", "replace")) + b"\n"
 
 
 def printable(document: bytes) -> bytes:
-    """The same JSON, in which a terminal finds no controls and a build no commands of its own."""
+    """Return equivalent JSON without control characters and without commands to builds."""
     return _UNPRINTABLE.sub(lambda sign: b"\\u%04x" % ord(sign[0].decode()), document)

@@ -1,4 +1,4 @@
-"""Markdown of whoever's text: GitHub's dialect, and what others make of the same characters."""
+"""Untrusted texts as Markdown: for GitHub, and safe in other dialects."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -9,32 +9,32 @@ from service.formats.shared.part_results import LONGEST, MESSAGES_TOLD, PartResu
 from service.formats.shared.plain_text import code_pieces, first_lines, shortened, visible
 from service.grading import RowReport
 
-# As a character reference a character is text in every dialect, while backslashes escape more
-# in one than in another. The point of `www.` and the colon of `://` make a link of what follows.
+# A character reference is plain text in every dialect; backslashes escape different characters in
+# different dialects. The point of `www.` and the colon of `://` would start a link.
 _MARKUP: Final = re.compile(
     r"[\\`*\[\]<>|~$&]|(?<!\w)_|_(?!\w)|#(?=\w)|(?<=www)\.|:(?=/)", re.IGNORECASE
 )
-# People and issues are looked for in the finished text; an invisible sign hides them.
+# GitHub looks for mentions and issues in the rendered text. An invisible character hides them.
 _MENTION: Final = re.compile(r"@(?=\w)|&#35;(?=\d)")
 _ROWS: Final = 40
 
 
 def escaped(text: str) -> str:
-    """The text as Markdown that says just this, within a line and within the cell of a table."""
+    """Return Markdown that shows exactly this text, in a line or in the cell of a table."""
     references = _MARKUP.sub(lambda sign: f"&#{ord(sign[0])};", visible(text))
     return _MENTION.sub(lambda sign: f"{sign[0]}&#8203;", references)
 
 
 def sentence(text: str) -> str:
-    """The text of a message, in which pairs of backticks mean code."""
-    # Nothing is markup inside, and no backtick is left there that could end it.
+    """Return Markdown for the text of a message, where pairs of backticks enclose code."""
+    # Code contains no markup, and no backtick that could end it early.
     told = (f"`{piece}`" if is_code else escaped(piece) for piece, is_code in code_pieces(text))
-    # Two pieces of code side by side would be one.
+    # Separate two adjacent pieces of code, which would be read as one.
     return "".join(told).replace("``", "` `")
 
 
 def part_details(result: PartResult) -> str:
-    """The part's rows as a table with a sign for each cell, and its messages as a list."""
+    """Return a part as Markdown: a table with a sign for each cell, and a list of messages."""
     report = result.report
     if report is None:
         return f"- {escaped(shortened(result.file.problem, LONGEST))}\n"

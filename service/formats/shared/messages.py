@@ -1,4 +1,4 @@
-"""The messages of a report in words: the places, what to do, and a counterexample."""
+"""The messages of a report as text: their places, corrections and counterexamples."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,11 +29,11 @@ SIGNS: Final[Mapping[Verdict, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message in words. All texts are visible ones, in one line.
+    """A message as visible texts of one line each.
 
-    ``places`` are the rows and cells in few words, ``text`` is the message itself, ``offers`` what
-    to write instead, ``example`` a counterexample; the latter may be empty. ``verdict`` is that on
-    the place.
+    ``places`` names the rows and cells, ``text`` is the message itself, ``offers`` says what to
+    write instead, and ``example`` is a counterexample; all but ``text`` may be empty. ``verdict``
+    is the verdict on the place.
     """
 
     severity: Severity
@@ -45,18 +45,18 @@ class Message:
 
     @property
     def label(self) -> str:
-        """The sign of the verdict for a message that costs points, else the severity in words."""
+        """Return the sign of the verdict for an error, otherwise the severity."""
         return SIGNS[self.verdict] if self.severity is Severity.ERROR else self.severity.value
 
     @property
     def line(self) -> str:
-        """All of it in one line, ``row 2 alpha: …`` for example."""
+        """Return the whole message in one line, such as ``row 2 alpha: …``."""
         pieces = (f"{self.places}:" if self.places else "", self.text, self.offers, self.example)
         return " ".join(filter(None, pieces))
 
 
 def messages(part: PartReport) -> Iterator[Message]:
-    """The messages on a part, its rows and cells."""
+    """Yield the messages on a part, its rows and its cells."""
     if part.verdict is Verdict.MISSING and not part.feedback and not part.rows:
         nothing = Feedback("missing", Severity.ERROR, "Nothing was handed in.")
         yield _message(nothing, (), Verdict.MISSING, ())
@@ -79,9 +79,10 @@ def _message(
 
 
 def places_in_words(places: Iterable[Place], rows: Sequence[RowReport] = ()) -> str:
-    """The places in few words: ``row 1 d, theta; rows 2, 3``.
+    """Return places in words, such as ``row 1 d, theta; rows 2, 3``.
 
-    Of ``rows`` all the cells are known, so that a whole one is not told cell by cell.
+    ``rows`` are the rows of the part. If the places include all cells of a row, only the row is
+    named.
     """
     complete = {row.label: [cell.label for cell in row.cells] for row in rows}
     cells: dict[str, list[str]] = {}
@@ -107,13 +108,13 @@ def _columns(labels: Sequence[str]) -> str:
 
 
 def _suggestion(feedback: Feedback) -> str:
-    """The repaired text as a question, unless the message asks it itself."""
+    """Return a question that offers the repaired text, unless the message already asks it."""
     question = f"Did you mean {feedback.suggestion}?"
     return "" if feedback.suggestion is None or question in feedback.message else question
 
 
 def _correction(feedback: Feedback, rows: Sequence[RowReport]) -> str:
-    """The instruction, or the right entry in a sentence: the one, or one for each place."""
+    """Return the correction of a message, and the corrections of its places, in sentences."""
     found = [] if feedback.correction is None else [_told(feedback.correction)]
     at: dict[Correction, list[Place]] = {}
     for place in feedback.places or ():
@@ -130,7 +131,7 @@ def _told(correction: Correction) -> str:
 
 
 def _counterexample(values: Mapping[str, float | str]) -> str:
-    """``(with q1 = 0.4, yours gives 1.2, not 0.9)``, from the values of one sample."""
+    """Return ``(with q1 = 0.4, yours gives 1.2, not 0.9)`` from the values of one sample."""
     given = [f"{name} = {value}" for name, value in values.items() if name not in (YOURS, EXPECTED)]
     at = f"with {', '.join(given)}" if given else ""
     yours = f"yours gives {values[YOURS]}" if YOURS in values else ""

@@ -1,4 +1,4 @@
-"""The parts of a submission as the tests that platforms know: one for each part that was set."""
+"""The results of a submission, part by part; platforms show each as a test."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -11,17 +11,16 @@ from service.formats.shared.plain_text import first_lines, points, shortened, vi
 from service.grading import PartReport, RowReport, Verdict
 from service.grading.report import rounded_points
 
-# Platforms bound what a result may hold: a message of an annotation 64 KB, a whole result 1 MB.
+# Platforms limit a result: an annotation to 64 KB, a whole result to 1 MB.
 MESSAGES_TOLD: Final = 30
 LONGEST: Final = 600
 
 
 @dataclass(frozen=True, slots=True)
 class PartResult:
-    """A part that was set, with its report, or with the problem because of which there is none.
+    """An assigned part with its report; without one, its file has a problem.
 
-    ``name`` is one line, and that of no other part of the submission. Points are those that count
-    in the submission.
+    ``name`` is one line, and unique in the submission. Points are weighted as in the submission.
     """
 
     name: str
@@ -31,35 +30,35 @@ class PartResult:
 
     @property
     def points(self) -> float:
-        """The points earned."""
+        """Return the points earned."""
         return rounded_points(self.report.points * self.file.weight) if self.report else 0.0
 
     @property
     def max_points(self) -> float:
-        """The most points that there are."""
+        """Return the maximum points."""
         return rounded_points(self.part.points * self.file.weight)
 
     @property
     def passed(self) -> bool:
-        """Whether all points were earned."""
+        """True if all points were earned."""
         return self.points >= self.max_points
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict on the part; unreadable where the file has no report."""
+        """Return the verdict on the part; unreadable if the part has no report."""
         return self.report.verdict if self.report else Verdict.UNREADABLE
 
     def row_points(self, row: RowReport) -> str:
-        """The points of one of its rows in words."""
+        """Return the points of a row as text."""
         weight = self.file.weight
         return points(row.points * weight, row.max_points * weight)
 
     def messages(self) -> Iterator[Message]:
-        """The messages on the part."""
+        """Return the messages on the part."""
         return messages(self.report) if self.report else iter(())
 
     def lines(self) -> list[str]:
-        """What is to be said of the part, a line for each message, bounded in length and number."""
+        """Return a line for each message; their length and number are limited."""
         if self.report is None:
             return [shortened(visible(self.file.problem), LONGEST)]
         lines = (shortened(f"{each.label} {each.line}", LONGEST) for each in self.messages())
@@ -67,7 +66,7 @@ class PartResult:
 
 
 def part_results(submission: GradedSubmission) -> list[PartResult]:
-    """The parts of all exercises of the submission, in order."""
+    """Return the results of all parts of all exercises of the submission, in order."""
     distinct = distinct_names()
     has_several = len(submission.files) > 1
     return [
@@ -82,13 +81,13 @@ def _title(part: AnsweredPart, file: GradedFile) -> str:
 
 
 def _reports(file: GradedFile) -> Iterator[tuple[AnsweredPart, PartReport | None]]:
-    """The parts that were set with their reports."""
+    """Yield the assigned parts of a file with their reports."""
     reports = {report.part: report for report in (file.report.parts if file.report else ())}
     return ((part, reports.get(part.id)) for part in file.exercise.parts)
 
 
 def distinct_names() -> Callable[[str], str]:
-    """Makes names visible and no two alike: the second of two that are gets a number."""
+    """Return a function that makes names visible, and adds a number to repeated names."""
     used: set[str] = set()
 
     def distinct(name: str) -> str:

@@ -1,25 +1,25 @@
-"""Texts and numbers as they are printed, whoever wrote them."""
+"""Untrusted texts, and numbers, in a form that is safe and short to print."""
 
 import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-# A build reads commands in what a program prints: GitHub lines that begin with `::` and `##[`
+# Builds read commands in the output of programs: GitHub `::` at the start of a line and `##[`
 # anywhere, Azure `##vso[`, TeamCity `##teamcity[`. No formula has these signs twice in a row.
 _COMMAND: Final = re.compile(r"(?<=([:#]))(?=\1)")
 
 
 def visible(text: str) -> str:
-    """The text in one line without control and invisible characters, or commands to a build."""
+    """Return the text in one line, without invisible characters and commands to builds."""
     if not text.isprintable():
         text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
     return _COMMAND.sub(" ", text)
 
 
 def code_pieces(text: str) -> list[tuple[str, bool]]:
-    """The visible text in pieces, and whether each is code: what stands between two backticks.
+    """Return the visible text in pieces, each with True if it is code between backticks.
 
-    A text whose backticks do not pair has no code.
+    A text with an odd number of backticks has no code.
     """
     pieces = visible(text).split("`")
     if len(pieces) % 2 == 0:
@@ -28,12 +28,12 @@ def code_pieces(text: str) -> list[tuple[str, bool]]:
 
 
 def shortened(text: str, most: int) -> str:
-    """The text, cut to ``most`` characters."""
+    """Return the text, cut to at most ``most`` characters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 def first_lines(lines: Iterable[str], most: int) -> Iterator[str]:
-    """The first lines, and how many more there are."""
+    """Yield the first ``most`` lines, then a line with the number of the other lines."""
     left = 0
     for i, line in enumerate(lines):
         if i < most:
@@ -45,7 +45,7 @@ def first_lines(lines: Iterable[str], most: int) -> Iterator[str]:
 
 
 def points(earned: float, most: float) -> str:
-    """Points out of the most there are: ``1.5 / 2``, never rounded up to the most."""
+    """Return points such as ``1.5 / 2``; they are never rounded up to the maximum."""
     shown = number(earned)
     if earned < most and shown == number(most):
         shown = number(int(earned * 100) / 100)
@@ -53,20 +53,20 @@ def points(earned: float, most: float) -> str:
 
 
 def percent(score: float) -> str:
-    """A score, 0..1, in per cent: ``87.5 %``, not rounded up to a mark that was not reached."""
+    """Return a score, 0..1, in per cent, such as ``87.5 %``. It is rounded down."""
     return f"{int(score * 1000 + 1e-6) / 10:g} %"
 
 
 def whole_percent(share: float) -> str:
-    """A share, 0..1, in whole per cent: ``67 %`` of two thirds, ``100 %`` of all alone."""
+    """Return a share, 0..1, in whole per cent; 2/3 is ``67 %``, only 1 is ``100 %``."""
     return f"{min(int(share * 100 + 0.5), 99) if share < 1 else 100} %"
 
 
 def whole_score(score: float) -> str:
-    """A score, 0..1, in whole per cent: ``87 %``, not rounded up to a mark not reached."""
+    """Return a score, 0..1, in whole per cent, such as ``87 %``. It is rounded down."""
     return f"{int(score * 100 + 1e-6)} %"
 
 
 def number(value: float) -> str:
-    """A number with two decimals at most."""
+    """Return a number with at most two decimals."""
     return f"{value:.2f}".rstrip("0").rstrip(".")

@@ -1,4 +1,4 @@
-"""A report format, and the setting that it writes in."""
+"""The type of report formats, and the setting in which they write."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from service.formats.shared.graded import AnsweredExercise, GradedSubmission, Visibility
 
 if TYPE_CHECKING:
-    from rich.console import Console  # a tenth of a second, which only one format needs
+    from rich.console import Console  # its import takes a tenth of a second
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What a format may know besides the submissions.
+    """The input of a format besides the submissions.
 
-    ``exercises`` are those that were set, in order. ``console`` has the width, colours and encoding
-    of the output. ``now`` is the time in UTC. ``environment`` are the environment variables, by
-    which platforms tell a grader what it grades.
+    ``exercises`` are the assigned exercises in order. ``console`` has the width, colours and
+    encoding of the output. ``now`` is the time in UTC. ``environment`` has the environment
+    variables, in which platforms describe the submission.
     """
 
     exercises: tuple[AnsweredExercise, ...]
@@ -28,12 +28,12 @@ class Setting:
 
 
 class UnusableSettingError(ValueError):
-    """A format lacks what it needs here; the text says what."""
+    """A format cannot write in this setting; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A file of a folder: its path there, in which ``/`` stands between names, and its content."""
+    """A file of a folder: its path in the folder, with ``/`` between names, and its content."""
 
     path: str
     pieces: Iterable[bytes]
@@ -41,16 +41,17 @@ class Document:
 
 @dataclass(frozen=True, slots=True)
 class ReportFormat:
-    """One format of reports.
+    """A report format.
 
-    ``pieces`` takes submissions one by one and yields the document piece by piece; it decides
-    nothing: no points, no verdicts. It raises UnusableSettingError before its first piece.
-    ``is_single`` says that a document holds one submission. ``is_stream`` says that the pieces so
-    far are of use without those to come. ``for_students`` says that students
-    read the document, so that it tells no more than the exercise allows unless more is asked for.
-    ``shows_entries`` says that it shows how each cell was read. ``folder`` writes several
-    submissions as files of one folder, one after the other, each to be written before the next is
-    asked for.
+    - ``pieces`` takes submissions one by one and yields the document piece by piece. It decides no
+      points and no verdicts. It may raise UnusableSettingError before its first piece.
+    - ``is_single``: a document holds exactly one submission.
+    - ``is_stream``: the first pieces are useful before the others are written.
+    - ``for_students``: students read the document, so by default it shows no more than the
+      exercise allows.
+    - ``shows_entries``: it shows how each cell was read.
+    - ``folder`` writes several submissions as files of one folder. Each file must be written before
+      the next one is taken.
     """
 
     pieces: Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
@@ -64,9 +65,9 @@ class ReportFormat:
 def single(
     document: Callable[[GradedSubmission, Setting], bytes],
 ) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
-    """The pieces of a format whose document holds one submission.
+    """Return the ``pieces`` of a format whose document holds exactly one submission.
 
-    They raise UnusableSettingError where there is another number of submissions.
+    They raise UnusableSettingError for any other number of submissions.
     """
 
     def pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:

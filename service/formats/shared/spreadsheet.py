@@ -1,4 +1,4 @@
-"""Lines of comma-separated values (RFC 4180) in UTF-8 that no spreadsheet takes for formulas."""
+"""Lines of comma-separated values (RFC 4180, UTF-8) that no spreadsheet reads as formulas."""
 
 import csv
 import io
@@ -7,7 +7,7 @@ from typing import Final
 
 from service.formats.shared.plain_text import visible
 
-# A cell that begins so is run as a formula by one spreadsheet or another (OWASP, "CSV Injection").
+# Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection").
 _FORMULA_SIGNS: Final = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
 
 # The headings of a list of grades, as Moodle names them.
@@ -15,7 +15,7 @@ GRADEBOOK_HEAD: Final = ("Identifier", "Grade", "Maximum Grade", "Feedback comme
 
 
 def line(cells: Iterable[str | float | None]) -> bytes:
-    """One line. Texts are visible ones, those that look like formulas behind an apostrophe."""
+    """Return one line of visible texts; one like a formula gets a leading apostrophe."""
     written = io.StringIO(newline="")
     csv.writer(written, lineterminator="\r\n").writerow([_cell(cell) for cell in cells])
     return written.getvalue().encode()

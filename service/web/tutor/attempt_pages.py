@@ -1,4 +1,4 @@
-"""The pages of recorded attempts as HTML: forms, and empty places that scripts fill."""
+"""The pages of recorded attempts as HTML: forms, and empty elements that scripts fill."""
 
 from service.api.http.lookup import Catalogue
 from service.catalogue import Exercise
@@ -9,8 +9,8 @@ from service.web.pages import page
 def attempts_page(catalogue: Catalogue, assets: Assets, *, of_all: bool = True) -> bytes:
     """Return the page with the list of attempts, its filters, the export, and the deletion.
 
-    Without ``of_all``, the list is always of one exercise, and nothing can be deleted: a deletion
-    is always of all exercises.
+    Without ``of_all``, the list always shows one exercise, and there is no deletion, because it
+    concerns all exercises.
     """
     all_of_them = [("", "All exercises")] if of_all else []
     choices = [*all_of_them, *((each.id, each.title) for each in catalogue.values())]

@@ -1,4 +1,4 @@
-"""The routes of the pages of recorded attempts; scripts ask the service for what they show."""
+"""The routes of the pages of recorded attempts; scripts load the attempts themselves."""
 
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
@@ -17,7 +17,7 @@ from service.web.tutor.tutor_routes import Tutoring
 
 
 def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """The pages of recorded attempts."""
+    """Return the routes of the pages of recorded attempts."""
     router = APIRouter(prefix="/tutor", include_in_schema=False)
     access = tutoring.access
 
@@ -27,7 +27,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
-        """The list of attempts; with a key for certain exercises, of one of them."""
+        """Answer with the list of attempts. A restricted key sees one exercise at a time."""
         caller = access.caller(request)
         require_reach(caller, exercise or None)
         shown = reachable_exercises(catalogue, caller)
@@ -35,12 +35,12 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts/{attempt_id}")
     async def attempt(attempt_id: str) -> Response:
-        """One attempt."""
+        """Answer with the page of an attempt."""
         return answer(attempt_page(attempt_id, assets), "../../")
 
     @router.get("/statistics/{exercise_id}")
     async def statistics(exercise_id: str) -> Response:
-        """The statistics of an exercise, and its regrade."""
+        """Answer with the page of an exercise's statistics and regrade."""
         exercise = exercise_or_404(catalogue, exercise_id)
         return answer(statistics_page(exercise, assets), "../../")
 

@@ -13,20 +13,20 @@ from contextlib import suppress
 from service.web.tutor.checking import DONE, IDLE_SECONDS, READY, received, send
 from service.web.tutor.exercise_check import CheckRequest, checked
 
-# Students come before a tutor's checks.
+# Grading for students has priority over a tutor's checks.
 _NICE = 5
 
 
 def main() -> None:
-    """Answer each request with the findings, or with nothing where the checks fail."""
+    """Answer each request with its findings, or with an empty message if the checks crash."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    # What is printed by mistake must not stand among the answers.
+    # Text that is printed by mistake must not get into the answers.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     if hasattr(os, "nice"):
         os.nice(_NICE)
     bodies: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(bodies,), daemon=True).start()
-    # Loads the algebra system, so that no check has to wait for it.
+    # Load the algebra system now, so that no check has to wait for it.
     import service.authoring  # noqa: F401
 
     with suppress(BrokenPipeError, queue.Empty):
@@ -42,7 +42,7 @@ def main() -> None:
 
 
 def _read(bodies: "queue.SimpleQueue[bytes]") -> None:
-    """Pass on what is asked; end the process, in the midst of a check, when the service is gone."""
+    """Queue each request. End the process, even during a check, when the service has ended."""
     with suppress(EOFError):
         while True:
             bodies.put(received(sys.stdin.buffer)[1])

@@ -1,4 +1,4 @@
-"""The checks of the editor in a process of their own, which is ended where they take too long."""
+"""The checks of the editor, in a separate process that is killed if they take too long."""
 
 import os
 import subprocess
@@ -11,20 +11,20 @@ from typing import IO, Final
 from service.api.http.problems import ProblemError
 from service.web.tutor.exercise_check import CheckRequest
 
-# What `exercises check` takes for the largest exercise of the catalogue is a tenth of it.
+# Ten times what `exercises check` takes for the largest exercise of the catalogue.
 SECONDS: Final = 20.0
-# A process without work ends by itself; it holds about 120 MB.
+# An idle process ends, because it holds about 120 MB.
 IDLE_SECONDS: Final = 300.0
-# Seconds until a new process is ready, on a machine that is very busy.
+# Seconds until a new process is ready, even on a very busy machine.
 _START: Final = 60.0
-# The first byte of an answer.
+# The first byte of a message.
 READY: Final = b"r"
 DONE: Final = b"d"
 _MODULE: Final = "service.web.tutor.check_process"
 
 
 class Checking:
-    """Checks texts one by one; the process starts with the first of them."""
+    """Checks texts one by one in a process that starts with the first check."""
 
     def __init__(self, seconds: float = SECONDS) -> None:
         self._seconds = seconds
@@ -35,7 +35,7 @@ class Checking:
     def checked(self, body: CheckRequest) -> bytes:
         """Return the findings on a text as JSON. Only one thread may call it at a time.
 
-        Raises ProblemError where the checks take too long, or the service ends.
+        Raises ProblemError if the checks take too long, or if the service ends.
         """
         if self._process is None or self._process.poll() is not None:
             self._start()
@@ -50,7 +50,7 @@ class Checking:
             if isinstance(error, _TooLongError):
                 raise _too_long(self._seconds) from error
             if isinstance(error, OSError) and process.returncode == 0:
-                # It had nothing to do for long, and ended just now.
+                # The idle process has ended just now.
                 return self.checked(body)
             raise
         if not content:
@@ -58,7 +58,7 @@ class Checking:
         return content
 
     def close(self) -> None:
-        """End the process, whatever it is at."""
+        """Kill the process, even during a check."""
         self._closed = True
         if self._process is not None:
             # The thread that waits for its answer finds the pipe closed.
@@ -67,7 +67,7 @@ class Checking:
     def _start(self) -> None:
         if self._closed:
             raise _ending()
-        # A session of its own: a Ctrl+C of the terminal is for the service, which ends this one.
+        # In a new session, Ctrl+C in the terminal reaches only the service, which kills this one.
         self._process = subprocess.Popen(
             [sys.executable, "-m", _MODULE],
             stdin=subprocess.PIPE,
@@ -78,8 +78,8 @@ class Checking:
         weakref.finalize(self, _end, self._process)
 
     def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
-        """Return what the process answers; nothing if it failed. Raises OSError, _TooLongError."""
-        # The end of the service may have come before this process could be ended with it.
+        """Return the answer of the process, empty if it failed. Raises OSError, _TooLongError."""
+        # The service may have ended just before this process was started.
         if self._closed:
             raise ConnectionResetError
         if not self._is_ready:
@@ -139,14 +139,14 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
             try:
                 pipe.close()
             except OSError:
-                # Something of the last message was still to be written.
+                # A part of the last message was not written.
                 continue
 
 
 def _too_long(seconds: float) -> ProblemError:
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY,
-        f"The checks of this exercise take more than {seconds:g} seconds, so they were ended. "
+        f"The checks of this exercise take more than {seconds:g} seconds, so they were stopped. "
         "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
         "checks-too-long",
         "The checks take too long",
@@ -156,6 +156,6 @@ def _too_long(seconds: float) -> ProblemError:
 def _ending() -> ProblemError:
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
-        "The service is ending. Send this request again in a minute.",
+        "The service is shutting down. Send this request again in a minute.",
         headers={"Retry-After": "60"},
     )

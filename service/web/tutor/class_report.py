@@ -1,4 +1,4 @@
-"""The report on a class from files that a browser chose, as ``dh-grader grade`` makes it."""
+"""The report on a class from uploaded files, as ``dh-grader grade`` makes it."""
 
 import io
 import tempfile
@@ -22,21 +22,21 @@ from service.submissions.assignment import PASS_MARK, Assignment, UnknownPartNam
 from service.submissions.handed_in import MAX_FILES, HandedIn, all_handed_in
 from service.submissions.strict_json import MAX_BODY_SIZE
 
-# Unpacked. A body holds 256 KiB, and what students hand in is much alike.
+# Bytes after unpacking. A body has at most 256 KiB, but similar submissions compress well.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
 MAX_SUBMISSIONS: Final = 500
-# Seconds. What a class hands in takes one or two; only files made to be costly take longer.
+# Seconds. An ordinary class takes one or two; only files made to be costly take longer.
 MOST_SECONDS: Final = 60.0
 _LONGEST_PATH: Final = 1_000
-# Characters outside the texts of an upload, and quotation marks around texts: each may take a
-# hundred bytes once it is read. The page sends 7 and 8 for each file.
+# The most characters of JSON outside texts, including the quotation marks around texts. Each may
+# take a hundred bytes of memory when it is parsed. The page sends 15 for each file.
 _MOST_MARKS: Final = 50 * MAX_FILES
-# In bytes of UTF-8; no file system that is common takes more.
+# In bytes of UTF-8; no common file system allows more.
 _LONGEST_NAME: Final = 255
 
 
 class UploadedFile(BaseModel):
-    """A file as a student named it; of one that is no text the bytes, of one too large neither."""
+    """A file of a student: its text, or its bytes if it is not text; neither if it is too large."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -46,14 +46,14 @@ class UploadedFile(BaseModel):
 
     @property
     def content(self) -> bytes:
-        """The bytes; those of a file that is too large only as many as say so."""
+        """Return the bytes; for a file that is too large, zeros that exceed the limit."""
         if self.text is not None:
             return self.text.encode(errors="replace")
         return b"\0" * (MAX_BODY_SIZE + 1) if self.base64 is None else self.base64
 
 
 class ClassUpload(BaseModel):
-    """All files of a class, and the exercise that they answer, or one part of it."""
+    """All files of a class, and the exercise or the part that they answer."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -63,7 +63,7 @@ class ClassUpload(BaseModel):
 
 
 def unpacked(body: bytes) -> ClassUpload:
-    """The upload in a body, JSON packed by gzip. Raises ProblemError."""
+    """Return the upload in a body: JSON packed by gzip. Raises ProblemError."""
     unpacker = zlib.decompressobj(16 + zlib.MAX_WBITS)
     try:
         content = unpacker.decompress(body, MAX_UPLOAD)
@@ -84,18 +84,18 @@ def unpacked(body: bytes) -> ClassUpload:
 
 
 def _marks(content: bytes) -> int:
-    """Return how many characters of JSON are outside texts, the quotation marks included."""
+    """Return the number of characters of JSON outside texts, including the quotation marks."""
     content = content.replace(rb"\\", b"").replace(rb"\"", b"")
     quotes = content.count(b'"')
-    # Too many for a list of what is between them.
+    # With too many quotation marks, do not build the list of pieces between them.
     return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
 
 
 def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
-    """The folder that the command line writes, as a ZIP archive. Raises ProblemError.
+    """Grade a class, and return the folder of its reports as a ZIP archive. Raises ProblemError.
 
-    The files stand in a temporary folder as long as they are read, so that they are found and
-    named as everywhere else.
+    The files are in a temporary folder while they are graded, so that they are found and read as on
+    the command line.
     """
     exercise = require_exercise(catalogue, upload.exercise)
     try:
@@ -137,7 +137,7 @@ def _write(upload: ClassUpload, folder: Path) -> None:
 
 
 def _archive(found: list[HandedIn], assignment: Assignment, folder: Path) -> bytes:
-    # Only here: half of what grading over HTTP does not need.
+    # Imported here, because grading over HTTP does not need them.
     from rich.console import Console
 
     from service.formats import report_format
@@ -159,7 +159,7 @@ def _archive(found: list[HandedIn], assignment: Assignment, folder: Path) -> byt
 def _all_graded(
     found: list[HandedIn], terms: GradingTerms, folder: Path
 ) -> Iterator[GradedSubmission]:
-    """Each with names that are seen from the folder of the class."""
+    """Yield the graded submissions, with file names relative to the folder of the class."""
     above = f"{folder}/"
     end = time.monotonic() + MOST_SECONDS
     for handed in found:

@@ -17,17 +17,17 @@ _HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(frame_sr
 
 
 def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> APIRouter:
-    """The page to choose files on, the frame of the reports, and the grading."""
+    """Return the routes of the upload form, the frame of the reports, and the grading."""
     router = APIRouter(prefix="/tutor")
 
     @router.get("/class")
     async def class_form() -> Response:
-        """The page to choose the files of a class on."""
+        """Answer with the form to choose the files of a class."""
         return HTMLResponse(class_page(catalogue, assets), headers=_HEADERS)
 
     @router.get("/class/report")
     async def class_frame() -> Response:
-        """The empty frame that the reports are shown in, with the policy of their styles."""
+        """Answer with the empty frame for the reports; its policy allows their styles."""
         from service.formats.class_page.index import STYLE as INDEX_STYLE
         from service.formats.documents.html import STYLE as REPORT_STYLE
 
@@ -41,7 +41,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.post("/class")
     async def report(request: Request) -> Response:
-        """The folder of a class as a ZIP archive; nothing of it is kept."""
+        """Grade a class, and answer with its folder as a ZIP archive. Nothing is stored."""
         packed = await request.body()
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue))
         return ChunkedResponse(content, headers=NO_STORE, media_type="application/zip")

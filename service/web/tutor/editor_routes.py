@@ -29,13 +29,13 @@ def editor_routes(
     work: BoundedWork,
     checking: Checking,
 ) -> APIRouter:
-    """The editor, the check of its text, and the writing of its file."""
+    """Return the routes of the editor, of the checks of its text, and of saving its file."""
     router = APIRouter(prefix="/tutor")
 
     @router.get("/editor")
     async def editor(request: Request, exercise: str | None = None) -> Response:
-        """The editor with the file of an exercise, or with a new one."""
-        # Only here: they bring an algebra system with them.
+        """Answer with the editor of an exercise's file, or of a new file."""
+        # Imported here, because it loads an algebra system.
         from service.authoring import template
 
         exercise_id = exercise or _NEW
@@ -54,17 +54,17 @@ def editor_routes(
 
     @router.post("/check")
     async def check(request: Request) -> Response:
-        """The findings on a text, which is not kept."""
+        """Answer with the findings on a text, which is not stored."""
         body = await read_body(CheckRequest, request)
         content = await work.do(partial(checking.checked, body))
         return Response(content, headers=NO_STORE, media_type="application/json")
 
     @router.post("/files")
     async def save(request: Request) -> Response:
-        """Write a file to the editor's folder."""
+        """Save a file in the editor's folder."""
         if folder.can_write and not is_at_the_machine(request):
             raise ProblemError(
-                HTTPStatus.FORBIDDEN, "Files are written for whoever is at this machine only."
+                HTTPStatus.FORBIDDEN, "Files can be saved only from the machine of the service."
             )
         body = await read_body(SaveRequest, request)
         mark = await work.do(partial(folder.save, body))

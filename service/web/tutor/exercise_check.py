@@ -1,4 +1,4 @@
-"""An exercise file as its author types it: the checks of ``exercises check``, and a preview."""
+"""The findings of ``exercises check`` on a text in the editor, and a preview of the exercise."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ MAX_CHARACTERS: Final = 64 * 1024
 
 
 class CheckRequest(BaseModel):
-    """The text of an exercise file; it is checked and not kept."""
+    """The text of an exercise file to check."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -45,7 +45,7 @@ class FileFinding:
 
 @dataclass(frozen=True, slots=True)
 class ExercisePreview:
-    """What students will see, in short."""
+    """A short preview of what students will see."""
 
     title: str
     source: str
@@ -56,7 +56,7 @@ class ExercisePreview:
 
 @dataclass(frozen=True, slots=True)
 class CheckAnswer:
-    """The findings; the preview is there where the file can be used."""
+    """The findings, and a preview if the file can be used."""
 
     findings: tuple[FileFinding, ...]
     summary: str
@@ -67,13 +67,13 @@ _ANSWER: Final = TypeAdapter(CheckAnswer)
 
 
 def checked(body: CheckRequest) -> bytes:
-    """The answer as JSON."""
+    """Return the CheckAnswer for a request as JSON."""
     return _ANSWER.dump_json(check(body.id, body.text))
 
 
 def check(exercise_id: str, text: str) -> CheckAnswer:
-    """The checks that ``exercises check`` makes of a file with this text."""
-    # Only here: they bring an algebra system with them.
+    """Return the findings of ``exercises check`` on a file with this text."""
+    # Imported here, because it loads an algebra system.
     from service.authoring import examine, lazy_shares
 
     try:
@@ -92,7 +92,7 @@ def check(exercise_id: str, text: str) -> CheckAnswer:
 
 
 def exercise_of(exercise_id: str, text: str) -> Exercise:
-    """The exercise of the text that a file of this name would hold. Raises CatalogueError."""
+    """Return the exercise of a file with this name and text. Raises CatalogueError."""
     file = Path(f"{exercise_id}.toml")
     if not is_exercise_id(exercise_id):
         raise CatalogueError([Fault(file, "", f"the id is the name of the file: {ID_ADVICE}")])
@@ -104,7 +104,7 @@ def exercise_of(exercise_id: str, text: str) -> Exercise:
 def _summary(exercise: Exercise, lazy: Mapping[str, float]) -> str:
     told = [_count(len(exercise.parts), "part"), _count(len(exercise.checks), "check")]
     earned = ", ".join(f"{int(100 * share)} % of {part}" for part, share in lazy.items())
-    return f"{', '.join(told)}; a lazy answer earns {earned}."
+    return f"{', '.join(told)}. Writing only zeros and joint variables earns {earned}."
 
 
 def _preview(exercise: Exercise) -> ExercisePreview:

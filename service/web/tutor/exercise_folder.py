@@ -1,4 +1,4 @@
-"""The exercise files that the editor opens, and the one folder that it may write to."""
+"""The exercise files that the editor opens, and the folder in which it saves them."""
 
 import hashlib
 import os
@@ -27,21 +27,21 @@ _LARGEST: Final = 4 * MAX_CHARACTERS
 
 
 class SaveRequest(CheckRequest):
-    """The text to write; ``before`` is the mark of the file that it takes the place of."""
+    """The text to save; ``before`` is the mark of the file that it replaces."""
 
     before: Annotated[str, Field(max_length=64)] = ""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenedFile:
-    """The text of a file, and its mark; "" where the editor's folder has no such file yet."""
+    """The text of a file, and its mark: a hash, or "" if the editor's folder lacks the file."""
 
     text: str
     mark: str
 
 
 class ExerciseFolder:
-    """The files of the catalogue's folders, and of the folder that may be written to."""
+    """The files in the catalogue's folders and in the editor's own folder."""
 
     def __init__(self, folders: Sequence[Path], written: Path | None) -> None:
         self._folders = folders
@@ -50,11 +50,11 @@ class ExerciseFolder:
 
     @property
     def can_write(self) -> bool:
-        """Whether there is a folder to write to."""
+        """True if the editor may save files."""
         return self._written is not None
 
     def opened(self, exercise_id: str) -> OpenedFile | None:
-        """The file of an exercise; that of the editor's own folder comes first."""
+        """Return the file of an exercise, preferably from the editor's own folder, or None."""
         if not is_exercise_id(exercise_id):
             return None
         own = self._own(exercise_id)
@@ -70,24 +70,24 @@ class ExerciseFolder:
         return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
 
     def save(self, body: SaveRequest) -> str:
-        """Write the file and return its mark. Raises ProblemError where that may not be.
+        """Save the file and return its mark. Raises ProblemError if that is not possible.
 
         The file has the old content or the new one, never half of it.
         """
         if self._written is None:
-            raise _refused("This service writes no files: it has no DH_GRADER_EDITOR_DIR.")
+            raise _refused("This service cannot save files: DH_GRADER_EDITOR_DIR is not set.")
         if not is_exercise_id(body.id):
             raise _refused(f"This cannot be the id of an exercise: {ID_ADVICE}.")
         try:
             exercise_of(body.id, body.text)
         except CatalogueError as error:
-            raise _refused("A file that cannot be used is not written: mend it first.") from error
+            raise _refused("The file cannot be used. Fix it before you save it.") from error
         content = body.text.encode()
         with self._writing:
             try:
                 self._write(self._written / f"{body.id}.toml", content, body)
             except OSError as error:
-                raise _refused(f"The file cannot be written: {error.strerror}.") from error
+                raise _refused(f"The file cannot be saved: {error.strerror}.") from error
         return _mark(content)
 
     def _write(self, file: Path, content: bytes, body: SaveRequest) -> None:
@@ -103,7 +103,7 @@ class ExerciseFolder:
             if (_mark(own) if own is not None else "") != body.before:
                 raise _changed(body.id)
             if own is None:
-                # Unlike a move, this fails where the file has come meanwhile.
+                # Unlike a move, this fails if the file was created meanwhile.
                 os.link(written, file)
             else:
                 written.replace(file)
@@ -113,7 +113,7 @@ class ExerciseFolder:
             written.unlink(missing_ok=True)
 
     def _own(self, exercise_id: str) -> bytes | None:
-        """The file of the folder that may be written to, or None. Raises OSError."""
+        """Return the content of a file in the editor's own folder, or None. Raises OSError."""
         if self._written is None:
             return None
         try:
@@ -132,6 +132,6 @@ def _refused(detail: str) -> ProblemError:
 
 def _changed(exercise_id: str) -> ProblemError:
     return _refused(
-        f"{exercise_id}.toml has changed since it was opened here, and stays as it is. Download "
-        "your text, open the file anew, and join the two."
+        f"{exercise_id}.toml has changed since you opened it, so it was not overwritten. Download "
+        "your text, open the file again, and merge the two."
     )

@@ -13,22 +13,22 @@ from service.solutions import solve
 from service.web.assets import Assets
 from service.web.pages import page
 
-# The first line of tables in LaTeX. Model solutions write cells between dollars, and a line a row.
+# The start of tables in LaTeX. Model solutions have cells between dollars, and a line for each row.
 _TABULAR: Final = r"\begin{tabular}"
 
 
 def tutor_page(catalogue: Catalogue, assets: Assets, *, of_all: bool = True) -> bytes:
-    """Return the page that leads to all pages for tutors.
+    """Return the page with links to all pages for tutors.
 
-    Without ``of_all``, it does not lead to the editor and the report on a class.
+    Without ``of_all``, it has no links to the editor and the report on a class.
     """
     return _page("home", assets, "", exercises=list(catalogue.values()), of_all=of_all)
 
 
 def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) -> bytes:
-    """Return the page with the right answer to each part, and the steps that lead to it.
+    """Return the page with the right answer to each part, and the steps of the solution.
 
-    Without ``of_all``, it does not lead to the editor.
+    Without ``of_all``, it has no link to the editor.
     """
     solution = solve(exercise)
     pose, answered = solution.pose, [part.text for part in solution.parts]
@@ -52,7 +52,7 @@ def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) ->
 def editor_page(
     exercise_id: str, text: str, mark: str, assets: Assets, *, can_write: bool
 ) -> bytes:
-    """Return the page of the editor with a text in it."""
+    """Return the page of the editor with the text of a file."""
     return _page(
         "editor",
         assets,
@@ -66,7 +66,7 @@ def editor_page(
 
 
 def class_page(catalogue: Catalogue, assets: Assets) -> bytes:
-    """Return the page with the form to choose exercise and files, and the place of the report."""
+    """Return the page with the form to choose exercise and files, and the frame of the report."""
     return _page("class", assets, "../", "class.js", exercises=list(catalogue.values()))
 
 

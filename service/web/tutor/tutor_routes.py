@@ -27,9 +27,11 @@ from service.web.tutor.tutor_pages import solution_page, tutor_page
 
 @dataclass(frozen=True, slots=True)
 class Tutoring:
-    """Who may see solutions, the folders of exercise files, and the one that may be written to.
+    """The settings of the tutor's pages.
 
-    ``records`` says whether the service records attempts; ``checking`` checks the editor's text.
+    ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
+    in ``editor_dir``. ``records`` is true if the service records attempts. ``checking`` checks the
+    text in the editor.
     """
 
     access: Access
@@ -40,7 +42,7 @@ class Tutoring:
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """The pages, and the routes that they call."""
+    """Return the routes of the tutor's pages, and the routes that these pages call."""
     access = tutoring.access
 
     router = APIRouter(include_in_schema=False)
@@ -55,7 +57,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """What there is for tutors; with a key for certain exercises, for tutors of these."""
+        """Answer with the page for tutors; a restricted key sees only its exercises."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(shown, assets, of_all=caller.exercises is None)
@@ -70,7 +72,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
-        """The model solution of an exercise."""
+        """Answer with the model solution of an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
         of_all = access.caller(request).exercises is None
         key = (exercise.id, exercise.version, exercise.title, of_all)
@@ -80,7 +82,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:
-        """The robot with the frames of the reference's table."""
+        """Answer with a drawing of the robot with the frames of the reference table."""
         exercise = exercise_or_404(catalogue, exercise_id)
         if not isinstance(exercise.reference, Robot):
             raise ProblemError(HTTPStatus.NOT_FOUND, "The exercise has no frames to draw.")

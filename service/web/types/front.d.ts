@@ -1,11 +1,11 @@
-// The types that several scripts of the pages share; those of the HTTP interface are in api.d.ts.
+// Types that several scripts share. The types of the HTTP interface are in api.d.ts.
 declare namespace Front {
   // Elements: the name of an attribute that is a listener begins with "on" and says what its event is.
   type Child = Node | string | null | undefined | false;
   // deno-lint-ignore no-explicit-any
   type Attributes = Record<string, string | number | boolean | null | undefined | ((event: any) => unknown)>;
 
-  // A part of an exercise: its grids of cells, and what stands in them.
+  // A part of an exercise: its grids of cells, and their contents.
   type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity };
   type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity };
   type Grid = { title: string; look: "table" | "matrix" | "list"; columns: Column[]; rows: Row[] };
@@ -18,7 +18,7 @@ declare namespace Front {
   type Answers = { unit: Api.AngleUnit; parts: Record<string, PartState> };
   type Context = { exercise: string; angle_unit: Api.AngleUnit };
 
-  // A cell: where it is, how its text is read, and who hears of what happens to it.
+  // A cell: its place, how its text is read, and the owner that gets its events.
   type CellPlace = { id: string; label: string; spoken: string };
   type PartPlace = CellPlace & { part: string; quantity: Api.Quantity; row: RowView };
   type PlayPlace = CellPlace & { at: [number, number] };
@@ -48,7 +48,7 @@ declare namespace Front {
     preview(body: Api.PreviewRequest): Promise<Api.Preview>;
     previews(body: Api.PreviewManyRequest): Promise<Api.PreviewManyResponse>;
   };
-  // What a part asks of its exercise.
+  // What a part needs from its host.
   interface PartHost {
     service: PreviewService;
     previewer: import("../static/student/previewer.js").Previewer;
@@ -64,7 +64,7 @@ declare namespace Front {
     check(): void;
   }
 
-  // The 3D view: numbers by the service, drawn by three.js or shown as a drawing.
+  // The 3D view: pictures from the service, drawn by three.js or shown as a drawing.
   type Frame = number[][];
   type Picture = { frames: Frame[] | null; mechanism: Api.DrawnConfiguration | null };
   type Subject = {
@@ -104,6 +104,6 @@ declare namespace Front {
   // The pages of recorded attempts.
   type Filter = { exercise?: string; learner?: string; since?: string; until?: string };
   type FilterField = HTMLInputElement | HTMLSelectElement;
-  // A file in an archive: where its bytes are, and whether they are packed.
+  // A file in an archive: the place of its bytes, and true if they are packed.
   type ZipEntry = { from: number; size: number; packed: boolean };
 }

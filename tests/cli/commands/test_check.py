@@ -39,8 +39,8 @@ def test_a_new_file_passes_as_it_is(run: Run, tmp_path: Path) -> None:
     )
     result = run("exercises", "check", "--strict", folder)
     assert (result.exit_code, result.stderr) == (0, "")
-    lazy = "a lazy answer earns 16 % of table, 7 % of pose"
-    assert result.stdout == f"elbow-arm: ok, 2 parts, 4 checks; {lazy}\n"
+    lazy = "Writing only zeros and joint variables earns 16 % of table, 7 % of pose."
+    assert result.stdout == f"elbow-arm: ok, 2 parts, 4 checks. {lazy}\n"
 
 
 def test_a_copy_of_an_exercise_is_graded_like_it(run: Run, tmp_path: Path) -> None:
@@ -81,8 +81,8 @@ def test_a_failed_check_gives_exit_code_1_and_its_line(run: Run, arm: Path) -> N
     result = run("exercises", "check", arm)
     assert result.exit_code == 1
     first, second = result.stdout.splitlines()
-    lazy = "a lazy answer earns 16 % of table, 7 % of pose"
-    assert first == f"arm: failed, 2 parts, 4 checks; {lazy}"
+    lazy = "Writing only zeros and joint variables earns 16 % of table, 7 % of pose."
+    assert first == f"arm: failed, 2 parts, 4 checks. {lazy}"
     line = 1 + arm.read_text(encoding="utf-8").splitlines().index(
         'title = "The twist has the wrong sign"'
     )

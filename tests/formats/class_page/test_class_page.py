@@ -1,4 +1,4 @@
-"""The overview of a class: its files, its figures, and whatever anybody wrote in it."""
+"""The overview of a class: its files, its figures, and hostile texts in it."""
 
 import re
 import unicodedata
@@ -32,7 +32,7 @@ ALLOWED_IN_INDEX = {
 
 
 def folder(*submissions: GradedSubmission) -> dict[str, str]:
-    """The files of the class by their paths."""
+    """Return the files of the class by their paths."""
     writes = report_format("html").folder
     assert writes is not None
     documents = writes(submissions, setting())
@@ -48,7 +48,7 @@ def told(page: str) -> str:
     return re.sub(r"\s+", " ", " ".join(read(page).texts))
 
 
-def test_a_page_for_each_submission_and_an_index_that_leads_to_each() -> None:
+def test_the_index_links_to_a_page_for_each_submission() -> None:
     files = folder(*class_of_seven())
     names = ("anna", "ben", "cleo", "dana", "emre", "fritz", "gina")
     assert list(files) == [*(f"reports/{name}.html" for name in names), "index.html"]
@@ -58,7 +58,7 @@ def test_a_page_for_each_submission_and_an_index_that_leads_to_each() -> None:
     assert files["reports/ben.html"] == document("html", class_of_seven()[1])
 
 
-def test_the_index_tells_the_counts() -> None:
+def test_the_index_shows_the_counts() -> None:
     words = told(folder(*class_of_seven())["index.html"])
     for sentence in (
         "Submissions 7 1 not graded",
@@ -77,32 +77,32 @@ def test_the_index_tells_the_counts() -> None:
     assert words.index("gina – – ? not graded") > anna
 
 
-def test_submissions_that_count_nothing_are_told_from_those_that_are_left_out() -> None:
+def test_unreadable_submissions_count_and_unusable_files_do_not() -> None:
     words = told(folder(cases()["unreadable"], cases()["unusable"])["index.html"])
     assert "Nothing in it could be read. counts 0 / 16 points" in words
     assert "is left out" in words
 
 
-def test_a_file_that_could_be_used_in_part_is_listed_with_the_reason() -> None:
+def test_a_partly_usable_file_is_listed_with_the_reason() -> None:
     [file] = class_of_seven()[1].files
     half = replace(class_of_seven()[1], files=(replace(file, problem="answers nothing for pose"),))
     words = told(folder(half)["index.html"])
     assert "ben answers nothing for pose counts 13.89 / 16 points" in words
 
 
-def test_what_the_feedback_level_keeps_back_is_said() -> None:
+def test_the_index_says_if_the_feedback_level_hides_slips() -> None:
     scores = [graded({"table": {"rows": []}}, each, FeedbackLevel.SCORE) for each in "ab"]
-    assert "2 reports tell no slips" in told(folder(*scores)["index.html"])
+    assert "2 reports without misconceptions" in told(folder(*scores)["index.html"])
 
 
-def test_a_class_of_none() -> None:
+def test_a_class_without_submissions_has_an_index() -> None:
     files = folder()
     assert list(files) == ["index.html"]
     assert "Nothing was graded." in told(files["index.html"])
 
 
 @pytest.mark.parametrize("case", cases())
-def test_whatever_was_written_is_text(case: str) -> None:
+def test_hostile_texts_stay_texts(case: str) -> None:
     pair = [cases()[case], replace(cases()[case], name="another")]
     for page in folder(*pair).values():
         read(page)
@@ -116,7 +116,7 @@ def test_whatever_was_written_is_text(case: str) -> None:
         assert "<script>alert(1)</script> <img src=x onerror=alert(1)>" in told(index)
 
 
-def test_names_lead_to_files_in_the_folder_alone() -> None:
+def test_hostile_names_stay_in_the_folder() -> None:
     names = ("../../etc/passwd", "/etc/passwd", "..", HOSTILE, 'x" onload="y', "a\\b:c", "CON", "")
     submissions = [replace(class_of_seven()[0], learner=name) for name in (*names, *names)]
     files = folder(*submissions)
@@ -127,7 +127,7 @@ def test_names_lead_to_files_in_the_folder_alone() -> None:
     assert all(re.fullmatch(r"reports/[\w%-]+\.html", link) for link in links)
 
 
-def test_learners_of_one_name_are_told_apart() -> None:
+def test_learners_with_the_same_name_get_the_names_of_their_submissions() -> None:
     submissions = [replace(class_of_seven()[0], name=f"{group}/anna.json") for group in "ab"]
     words = told(folder(*submissions)["index.html"])
     assert "a/anna.json" in words
@@ -149,7 +149,7 @@ def test_each_submission_is_written_before_the_next_is_graded() -> None:
         assert taken == min(written, 7)
 
 
-# The least contrast of any text with what is behind it, by the formula of WCAG 2.
+# The lowest contrast of any text with its background, by the formula of WCAG 2.
 CONTRAST = """(() => {
   const canvas = document.createElement('canvas')
     .getContext('2d', {willReadFrequently: true});
@@ -178,7 +178,7 @@ CONTRAST = """(() => {
 })()"""
 
 
-def test_a_browser_shows_it_readably_and_asks_for_nothing(
+def test_a_browser_shows_it_with_contrast_and_without_requests(
     visit: Callable[..., Visit], tmp_path: Path
 ) -> None:
     file = tmp_path / "index.html"

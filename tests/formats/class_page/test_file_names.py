@@ -39,7 +39,7 @@ def test_a_name_is_short_enough_for_any_system() -> None:
         assert len(file.encode()) < 255
 
 
-def test_no_two_are_alike_on_any_system() -> None:
+def test_names_are_distinct_on_any_system() -> None:
     distinct = distinct_file_names(".html")
     files = [
         distinct(name) for name in ("Anna", "anna", "ANNA", "anna-2", "éa", "e\u0301a", "ﬁ", "fi")

@@ -14,7 +14,7 @@ def read(*names: str, format_name: str = "csv") -> list[list[str]]:
     return list(csv.reader(io.StringIO(text, newline=""), strict=True))
 
 
-def test_a_line_for_each_submission_and_a_column_for_each_part() -> None:
+def test_each_submission_is_a_line_and_each_part_a_column() -> None:
     head, right, wrong, empty = read("right", "wrong", "empty")
     assert head == COLUMNS
     assert right == ["folder/anna.json", "16", "16", "1", "yes", "", "", "8", "8"]
@@ -33,7 +33,7 @@ def test_a_file_that_cannot_be_used_has_no_points() -> None:
     assert unusable[6:] == ["", "", ""]
 
 
-def test_a_line_stays_a_line_whatever_the_file_is_called() -> None:
+def test_a_hostile_file_name_stays_in_one_line() -> None:
     names = [name for name in cases() if name != "assignment"]
     lines = read(*names)
     assert len(lines) == 1 + len(names)
@@ -42,7 +42,7 @@ def test_a_line_stays_a_line_whatever_the_file_is_called() -> None:
     assert "\n" not in text.replace("\r\n", "")
 
 
-def test_no_cell_is_a_formula() -> None:
+def test_no_cell_starts_like_a_formula() -> None:
     assert HOSTILE.startswith("=")
     for format_name in ("csv", "gradebook"):
         for line in read(*cases(), format_name=format_name):

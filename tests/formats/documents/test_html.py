@@ -17,43 +17,43 @@ def read(*names: str) -> str:
 
 
 @pytest.mark.parametrize("case", cases())
-def test_whatever_was_written_is_text(case: str) -> None:
+def test_a_page_has_only_allowed_elements(case: str) -> None:
     read(case)
 
 
-def test_all_submissions_on_one_page() -> None:
+def test_all_submissions_are_on_one_page() -> None:
     told = read(*cases())
     for word in ("16 / 16 points", "10.79 / 16 points", "Not graded", "Nothing was handed in."):
         assert word in told
 
 
-def test_the_entries_stand_in_the_cells_with_their_signs() -> None:
+def test_each_cell_shows_its_entry_and_its_sign() -> None:
     told = re.sub(r"\s+", " ", read("wrong"))
     assert "✓ l1 ✗ pi/2 ✓ 0 ✓ q2 0.42 / 2.53" in told
     assert "row 2 alpha:" in told
 
 
-def test_hostile_text_comes_through_as_text() -> None:
+def test_hostile_text_is_shown_as_text() -> None:
     told = read("hostile words")
     assert "<script>alert(1)</script> <img src=x onerror=alert(1)>" in HOSTILE
     assert "<script>alert(1)</script> <img src=x onerror=alert(1)>" in told
 
 
-def test_nothing_is_fetched() -> None:
+def test_a_page_loads_no_other_file() -> None:
     page = document("html", cases()["right"])
     assert "url(" not in page
     assert "@import" not in page
     assert "default-src 'none'; style-src 'sha256-" in page
 
 
-# Those of the page: behind the text, and of the text.
+# The colours of the page: of its background and of its text.
 COLOURS = """() => {
   const style = getComputedStyle(document.body);
   return [style.backgroundColor, style.color];
 }"""
 
 
-def test_a_browser_shows_it_light_dark_and_on_paper(
+def test_a_browser_shows_it_light_dark_and_printed(
     visit: Callable[..., Visit], tmp_path: Path
 ) -> None:
     file = tmp_path / "page.html"
@@ -72,17 +72,17 @@ def test_a_browser_shows_it_light_dark_and_on_paper(
     assert paper[0] == 255
     assert paper[1] < 60
     page.emulate_media(media="screen")
-    # What is wider than its card can be scrolled to.
+    # A table that is wider than its card scrolls.
     scrolls = "every(each => getComputedStyle(each).overflowX === 'auto')"
     assert page.evaluate(f"[...document.querySelectorAll('.cells')].{scrolls}")
-    # Nothing of a student was run, and nothing was asked for but the page.
+    # No text of a student ran as a script, and only the page was requested.
     assert opened.requests == [file.as_uri()]
     assert page.locator("script").count() == 0
-    # Long texts widen no page.
+    # Long texts do not make the page wider.
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 def brightness(colour: str) -> float:
-    """That of ``rgb(r, g, b)``, 0..255."""
+    """Return the brightness of ``rgb(r, g, b)``, 0..255."""
     red, green, blue = map(int, re.findall(r"\d+", colour)[:3])
     return 0.3 * red + 0.59 * green + 0.11 * blue

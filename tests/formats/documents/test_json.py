@@ -32,7 +32,7 @@ PART = PartReport("table", "dh_table", Verdict.INCORRECT, 0.0, 1.0, False, (ROW,
 REPORT = Report("arm", "v1", "1.0", FeedbackLevel.HINTS, True, 0.0, 1.0, 0.0, (PART,))
 
 
-def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None:
+def test_a_report_matches_the_contract_without_empty_fields() -> None:
     cell = {
         "label": "a",
         "verdict": "incorrect",
@@ -65,7 +65,7 @@ def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None
     assert b"\n" not in rendered(REPORT)
 
 
-def test_a_value_that_json_does_not_have_is_still_json() -> None:
+def test_nan_is_written_as_valid_json() -> None:
     undefined = Feedback("u", Severity.ERROR, "m", values={"yours": float("nan")})
     part = PartReport("t", "k", Verdict.INCORRECT, 0, 1, False, (), (undefined,))
     report = Report("arm", "v1", "1.0", FeedbackLevel.HINTS, True, 0, 1, 0, (part,))
@@ -74,7 +74,7 @@ def test_a_value_that_json_does_not_have_is_still_json() -> None:
     json.loads(content, parse_constant=pytest.fail)
 
 
-def test_a_list_has_an_entry_for_each_file_however_many_there_are() -> None:
+def test_the_list_has_an_entry_for_each_file() -> None:
     assert json.loads(document("json")) == []
     [right] = json.loads(document("json", cases()["right"]))
     assert right == {
@@ -89,11 +89,11 @@ def test_a_list_has_an_entry_for_each_file_however_many_there_are() -> None:
     assert [entry["file"] for entry in entries[-2:]] == ["anna/one.json", ""]
 
 
-def test_no_text_is_lost() -> None:
+def test_hostile_texts_come_back_unchanged() -> None:
     [entry] = json.loads(document("json", cases()["hostile words"]))
     [message, *_] = entry["report"]["parts"][0]["feedback"]
     assert message["message"] == message["suggestion"] == WRITTEN
-    # A byte that is not UTF-8, in the name of a file, is no character.
+    # In names of files, a byte that is not UTF-8 is replaced.
     assert entry["file"] == HOSTILE.replace("\udc80", "?")
 
 

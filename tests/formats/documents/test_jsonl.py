@@ -3,7 +3,7 @@ import json
 from tests.formats.submissions import cases, document
 
 
-def test_each_file_is_a_line_that_is_the_entry_of_the_list() -> None:
+def test_each_line_is_an_entry_of_the_json_list() -> None:
     submissions = list(cases().values())
     text = document("jsonl", *submissions)
     listed = json.loads(document("json", *submissions))
@@ -12,5 +12,5 @@ def test_each_file_is_a_line_that_is_the_entry_of_the_list() -> None:
     assert len(listed) == len(submissions) + 1
 
 
-def test_no_submission_is_no_line() -> None:
+def test_without_submissions_there_are_no_lines() -> None:
     assert document("jsonl") == ""

@@ -1,4 +1,4 @@
-"""Markdown, read by a parser of CommonMark with GitHub's tables and strikethrough."""
+"""Markdown, parsed as CommonMark with GitHub's tables and strikethrough."""
 
 import re
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from service.formats.shared.markdown_text import escaped, sentence
 from tests.formats.submissions import HOSTILE, cases, document
 
 READER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
-# What the format writes; all else would come from a text.
+# The tokens of the format itself. Any other token would come from a text.
 MEANT = {"text", "code_inline", "strong_open", "strong_close", "softbreak"}
 
 
@@ -39,8 +39,8 @@ def test_no_text_becomes_markup(name: str, case: str) -> None:
 
 
 @pytest.mark.parametrize("case", cases())
-def test_nobody_is_called_and_nothing_linked(case: str) -> None:
-    # GitHub looks for these in the finished text, outside of code.
+def test_no_text_becomes_a_mention_or_a_link(case: str) -> None:
+    # GitHub looks for mentions in the rendered text, outside of code.
     texts = [each.content for each in inline(document("markdown", cases()[case]))]
     plain = [
         token.content
@@ -49,12 +49,12 @@ def test_nobody_is_called_and_nothing_linked(case: str) -> None:
     ]
     assert texts
     assert [found for text in plain for found in re.findall(r"@\w|#\d", text)] == []
-    # Links without brackets are looked for in the source.
+    # GitHub looks for bare links in the source.
     source = re.sub("`[^`]*`", "", document("markdown", cases()[case]))
     assert re.findall(r"www\.|https?://", source) == []
 
 
-def test_an_escaped_text_is_shown_as_it_is() -> None:
+def test_an_escaped_text_is_shown_unchanged() -> None:
     for text in ("_a_ * b_c ~x~ <b> &amp; | \\ [x](y) `z`", "1. x", "# x", "http://x.y", "a_1"):
         assert shown(f"x {escaped(text)}") == f"x {text}"
     seen = shown(f"x {escaped(HOSTILE)}")
@@ -62,7 +62,7 @@ def test_an_escaped_text_is_shown_as_it_is() -> None:
     assert "**bold** _em_ ~~s~~ `code` ![i](http://e.vil)" in seen
 
 
-def test_backticks_of_a_message_are_code() -> None:
+def test_backticks_in_a_message_enclose_code() -> None:
     assert [(each.type, each.content) for each in inline(sentence("write `a*b`, not `<b>`"))] == [
         ("text", "write "), ("code_inline", "a*b"), ("text", ", not "), ("code_inline", "<b>"),
     ]  # fmt: skip
@@ -71,7 +71,7 @@ def test_backticks_of_a_message_are_code() -> None:
         assert {each.type for each in inline(f"x {sentence(hostile)}")} <= {"text", "code_inline"}
 
 
-def test_a_table_of_all_and_the_parts_of_each() -> None:
+def test_a_table_of_submissions_precedes_the_parts_of_each() -> None:
     page = document("markdown", cases()["wrong"], cases()["unusable"])
     cells = [
         token.content

@@ -1,4 +1,4 @@
-"""The report for a terminal; reports are written by hand, so no grading is involved."""
+"""The report for a terminal, from handwritten reports without grading."""
 
 import io
 
@@ -95,7 +95,7 @@ def test_each_row_is_a_line_of_marks_with_its_points() -> None:
     assert line(page, "Total").strip() == "Total for arm: 2.5 / 8 points, 31.2 %"
 
 
-def test_messages_stand_beneath_with_their_place_and_counterexample() -> None:
+def test_messages_are_below_with_place_and_counterexample() -> None:
     page = text(report(TABLE))
     assert line(page, "✗ row 1 alpha:").strip() == (
         "✗ row 1 alpha: Wrong sign. It should be -90°. (with q1 = 0.5, yours gives 2.0,"
@@ -110,7 +110,7 @@ def test_a_message_has_the_mark_and_the_names_of_its_places() -> None:
 
 
 def said(*places: Place, correction: Correction | None = None) -> str:
-    """The line of a message with these places of a matrix of three rows."""
+    """Return the line of a message with these places in a matrix of three rows."""
     cells = tuple(CellReport(str(j), V.INCORRECT) for j in (1, 2, 3))
     rows = [RowReport(label, V.INCORRECT, 0, 1, cells) for label in ("1", "2", "3")]
     message = Feedback("x", Severity.ERROR, "Bad.", places, correction=correction)
@@ -121,7 +121,7 @@ def cells_of(row: str, *columns: int) -> list[Place]:
     return [Place(row, str(j)) for j in columns]
 
 
-def test_places_in_few_words() -> None:
+def test_places_are_grouped_in_few_words() -> None:
     assert said(*cells_of("3", 1, 2)) == "✗ row 3 columns 1, 2: Bad."
     assert said(*cells_of("1", 2), *cells_of("3", 2)) == "✗ rows 1, 3 column 2: Bad."
     assert said(*cells_of("1", 1, 2, 3), *cells_of("2", 1, 2, 3)) == "✗ rows 1, 2: Bad."
@@ -129,7 +129,7 @@ def test_places_in_few_words() -> None:
     assert said(Place("2")) == "✗ row 2: Bad."
 
 
-def test_a_correction_for_each_place() -> None:
+def test_each_place_has_its_correction() -> None:
     one, other = Correction("1", "1"), Correction("0", "0")
     places = [Place("1", "1", one), Place("2", "2", one), Place("3", "3", other)]
     message = Feedback("x", Severity.ERROR, "Bad.", tuple(places))
@@ -140,7 +140,7 @@ def test_a_correction_for_each_place() -> None:
     )
 
 
-def test_a_repaired_text_is_offered_once() -> None:
+def test_a_repair_is_offered_only_once() -> None:
     for asked in ("Bad.", "Bad. Did you mean q1?"):
         unread = Feedback("x", Severity.ERROR, asked, suggestion="q1")
         assert text(report(part(feedback=(unread,)))).count("Did you mean q1?") == 1
@@ -168,17 +168,17 @@ def test_no_line_is_wider_than_the_terminal_or_than_reads_well(width: int) -> No
     assert max(len(each) for each in page.splitlines()) <= min(width, 100)
 
 
-def test_colour_only_where_it_is_wanted() -> None:
+def test_colours_are_only_used_on_request() -> None:
     assert "\x1b[" not in text(report(TABLE))
     assert "\x1b[" in text(report(TABLE), colour=True)
 
 
-def test_an_encoding_without_the_marks_gets_plain_ones() -> None:
+def test_an_encoding_without_the_marks_gets_ascii() -> None:
     page = text(report(TABLE), encoding="cp1252")
     assert line(page, "1 ").split() == ["1", "+", "x", "+", "?", "1.5", "/", "2"]
 
 
-def test_student_text_reaches_neither_the_terminal_nor_the_markup() -> None:
+def test_student_text_is_neither_terminal_control_nor_markup() -> None:
     hostile = Feedback("x", Severity.ERROR, "[red]\x1b[2J\x07[/red] \u202e\r")
     page = text(report(part(*TABLE.rows, feedback=(hostile,))))
     assert "[red]\ufffd[2J\ufffd[/red] \ufffd\ufffd" in page
@@ -190,7 +190,7 @@ def test_points_are_written_short() -> None:
     assert points(10 / 3, 10.0) == "3.33 / 10"
 
 
-def test_points_are_not_rounded_up_to_all_of_them() -> None:
+def test_points_are_not_rounded_up_to_the_maximum() -> None:
     assert points(7.999, 8.0) == "7.99 / 8"
     assert points(8.0, 8.0) == "8 / 8"
 
@@ -199,22 +199,22 @@ def of_class(*names: str) -> str:
     return document("text", *(cases()[name] for name in names))
 
 
-def test_one_submission_is_told_to_pass_or_not() -> None:
+def test_a_single_submission_has_a_pass_line() -> None:
     assert of_class("right").endswith("\nPassed: the pass mark is 80 %.\n")
     assert of_class("wrong").endswith("\nNot passed: the pass mark is 80 %.\n")
     assert "submissions" not in of_class("right")
 
 
-def test_several_are_summed_up() -> None:
+def test_several_submissions_have_a_summary() -> None:
     page = of_class("right", "wrong", "wrong", "unusable")
     assert page.count("(dh_table)") == 3
     summary = page[page.index("4 submissions: ") :]
     assert "1 of 3 graded passed (pass mark 80 %), 1 not graded" in summary
-    # The twist of link 2 is a quarter turn off; it is counted in submissions, and told in words.
+    # The twist of link 2 is a quarter turn off, in two submissions.
     assert "   2  α is not right: compare z1 and z2. (quarter_turn in table)" in summary
 
 
-def test_a_class_has_a_line_each() -> None:
+def test_each_submission_of_a_class_is_one_line() -> None:
     names = ["right", *["wrong"] * 7, "unusable", "unreadable"]
     page = of_class(*names)
     assert "(dh_table)" not in page

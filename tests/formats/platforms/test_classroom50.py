@@ -5,11 +5,11 @@ from tests.formats.submissions import CLASSROOM, cases, checked_json, document
 
 
 @pytest.mark.parametrize("case", cases())
-def test_the_result_keeps_the_schema(case: str) -> None:
+def test_the_result_matches_the_schema(case: str) -> None:
     result = checked_json("classroom50", cases()[case])
     tests = result["tests"]
     assert len({test["test-name"] for test in tests}) == len(tests) > 0
-    # Rules that the schema leaves to the code of its runner.
+    # Rules of the runner that are not in the schema.
     assert result["score"] == sum(test["score"] for test in tests) <= result["max-score"]
     assert result["max-score"] == sum(test["max-score"] for test in tests)
     for test in tests:
@@ -25,7 +25,7 @@ def test_scores_are_hundredths_of_a_point() -> None:
     assert [test["score"] for test in wrong["tests"]] == [378, 700]
 
 
-def test_the_runner_says_what_is_graded() -> None:
+def test_the_runners_variables_identify_the_submission() -> None:
     result = checked_json("classroom50", cases()["right"])
     assert (result["classroom"], result["assignment"]) == ("robotics", "planar")
     assert (result["owner"], result["assignment_type"]) == ("anna", "individual")
@@ -38,7 +38,7 @@ def test_the_runner_says_what_is_graded() -> None:
     assert result["review"] == "https://example.org/diff"
 
 
-def test_outside_of_the_runner_it_says_what_is_lacking() -> None:
+def test_missing_variables_are_named() -> None:
     told = {**CLASSROOM, "SUBMISSION_TAG": ""}
     del told["OWNER"]
     with pytest.raises(UnusableSettingError, match=r"not here: OWNER, SUBMISSION_TAG$"):

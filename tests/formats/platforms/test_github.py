@@ -1,4 +1,4 @@
-"""Annotations, read as the runner does: src/Runner.Common/ActionCommand.cs of actions/runner."""
+"""Annotations, parsed like actions/runner does in src/Runner.Common/ActionCommand.cs."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ def unescaped(text: str, *, is_property: bool) -> str:
 
 
 def parsed(line: str) -> Command:
-    """What the runner makes of a line: up to the next `::` stand name and properties."""
+    """Return the command that the runner parses from a line: name, properties, message."""
     assert line.lstrip().startswith("::")
     head, _, data = line.lstrip()[2:].partition("::")
     name, _, properties = head.partition(" ")
@@ -39,18 +39,18 @@ def read(case: str) -> list[Command]:
 @pytest.mark.parametrize("case", cases())
 def test_every_line_is_one_annotation(case: str) -> None:
     commands = read(case)
-    # More than ten of a kind are not shown.
+    # GitHub shows at most ten of each kind.
     assert 0 < len(commands) <= 10
     for command in commands:
         assert command.name in ("error", "warning", "notice")
         assert set(command.properties) <= {"file", "title"}
         assert command.properties["title"]
         assert command.data
-        # 64 KB are what a message may have.
+        # A message has at most 64 KB.
         assert len(command.data.encode()) < 65_536
 
 
-def test_a_part_is_told_with_its_messages() -> None:
+def test_an_annotation_has_the_messages_of_its_part() -> None:
     table, pose, total = read("wrong")
     assert table.name == "warning"
     assert table.properties == {
@@ -63,7 +63,7 @@ def test_a_part_is_told_with_its_messages() -> None:
     assert total.data == "10.79 / 16 points, 67.4 %. 80 % is needed to pass."
 
 
-def test_a_right_one_has_a_notice_alone() -> None:
+def test_a_right_submission_has_only_a_notice() -> None:
     [total] = read("right")
     assert (total.name, total.properties["title"]) == ("notice", "Passed")
     assert total.data == "16 / 16 points, 100 %. 80 % is needed to pass."
@@ -75,9 +75,9 @@ def test_a_file_that_cannot_be_used_is_an_error() -> None:
     assert (total.name, total.properties["title"]) == ("error", "Not graded")
 
 
-def test_hostile_text_comes_through_whole_and_as_text() -> None:
+def test_hostile_text_arrives_complete_and_as_text() -> None:
     first = read("hostile words")[0]
-    # All but the controls and the signs of commands, in the title, the file and the message.
+    # In title, file and message, all but control characters and the starts of commands.
     for word in ("/C calc'!A0", "<script>", "a||b".replace("||", " || "), "100% %0A, $x$"):
         assert word in HOSTILE
         assert word in first.properties["file"]

@@ -5,7 +5,7 @@ from tests.formats.submissions import cases, checked_json
 
 
 @pytest.mark.parametrize("case", cases())
-def test_the_result_keeps_the_rules_of_gradescope(case: str) -> None:
+def test_the_result_follows_the_rules_of_gradescope(case: str) -> None:
     result = checked_json("gradescope", cases()[case])
     tests = result["tests"]
     assert len({test["name"] for test in tests}) == len(tests) > 0
@@ -15,7 +15,7 @@ def test_the_result_keeps_the_rules_of_gradescope(case: str) -> None:
         assert (test["status"] == "passed") == (test["score"] == test["max_score"])
 
 
-def test_each_part_is_a_test_with_its_rows_inside() -> None:
+def test_each_part_is_a_test_that_shows_its_rows() -> None:
     result = checked_json("gradescope", cases()["wrong"])
     table, pose = result["tests"]
     assert (table["name"], table["max_score"], table["status"]) == (
@@ -30,14 +30,14 @@ def test_each_part_is_a_test_with_its_rows_inside() -> None:
     assert result["score"] == table["score"] + 7.0
 
 
-def test_a_file_that_cannot_be_used_earns_nothing_and_says_why() -> None:
+def test_an_unusable_file_earns_nothing_and_has_a_reason() -> None:
     result = checked_json("gradescope", cases()["unusable"])
     assert result["score"] == 0
     assert result["output"].startswith("Nothing could be graded: is no JSON")
     assert [test["max_score"] for test in result["tests"]] == [8.0, 8.0]
 
 
-def test_an_assignment_is_weighed() -> None:
+def test_exercises_of_an_assignment_are_weighted() -> None:
     result = checked_json("gradescope", cases()["assignment"])
     told = [(test["name"], test["score"], test["max_score"]) for test in result["tests"]]
     arm = "Planar RRR arm, proximal convention"
@@ -51,7 +51,7 @@ def test_an_assignment_is_weighed() -> None:
     assert "| 1 | ✓ | ✓ | ✓ | ✓ | 0.08 / 0.08 |" in result["tests"][0]["output"]
 
 
-def test_the_time_of_release_is_told() -> None:
+def test_the_visibility_is_written() -> None:
     assert checked_json("gradescope", cases()["right"])["visibility"] == "visible"
     late = checked_json("gradescope", cases()["right"], visibility=Visibility.AFTER_PUBLISHED)
     assert late["visibility"] == "after_published"

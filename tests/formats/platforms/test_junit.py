@@ -8,7 +8,7 @@ import pytest
 
 from tests.formats.submissions import cases, document
 
-# Of each element: the attributes that it must have, those that it may have, and its children.
+# For each element: its required attributes, its optional attributes, and its children.
 RULES: Mapping[str, tuple[set[str], set[str], set[str]]] = {
     "testsuites": (set(), {"name", "time", "tests", "failures", "errors"}, {"testsuite"}),
     "testsuite": (
@@ -52,7 +52,7 @@ def read(*names: str) -> Element:
     return root
 
 
-def test_every_document_keeps_the_rules() -> None:
+def test_every_document_follows_the_schema() -> None:
     root = read(*cases())
     keys = [(case.get("classname"), case.get("name")) for case in root.iter("testcase")]
     # GitLab drops the second of two with the same class and name.
@@ -61,7 +61,7 @@ def test_every_document_keeps_the_rules() -> None:
         assert int(suite.get("tests", "")) == len(suite.findall("testcase")) > 0
         assert int(suite.get("failures", "")) == len(suite.findall("testcase/failure"))
         assert int(suite.get("errors", "")) == len(suite.findall("testcase/error"))
-        # The actions of GitHub read numbers here.
+        # GitHub Actions reads numbers here.
         assert {float(each.get("time", "nan")) for each in (suite, *suite)} == {0.0}
 
 
@@ -72,15 +72,15 @@ def test_a_right_part_passes_and_a_wrong_one_fails() -> None:
     table = suite[0][0]
     assert (table.tag, table.get("type")) == ("failure", "partial")
     assert table.get("message") == "partial, 3.79 / 8 points"
-    # GitLab shows the text alone.
+    # GitLab shows only the text.
     assert str(table.text).startswith("3.79 / 8 points\n✗ row 2 alpha: ")
 
 
 @pytest.mark.parametrize("case", ["unreadable", "unusable"])
-def test_what_cannot_be_read_is_an_error(case: str) -> None:
+def test_an_unreadable_part_is_an_error(case: str) -> None:
     [suite] = read(case)
     assert [[child.tag for child in each] for each in suite] == [["error"], ["error"]]
 
 
-def test_no_submission_is_a_document_too() -> None:
+def test_without_submissions_there_is_an_empty_document() -> None:
     assert len(read()) == 0

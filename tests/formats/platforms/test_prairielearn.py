@@ -4,7 +4,7 @@ from tests.formats.submissions import HOSTILE, cases, checked_json, document, gr
 
 
 @pytest.mark.parametrize("case", cases())
-def test_the_result_keeps_the_rules_of_prairielearn(case: str) -> None:
+def test_the_result_follows_the_rules_of_prairielearn(case: str) -> None:
     result = checked_json("prairielearn", cases()[case])
     for test in result.get("tests", []):
         assert test["points"] <= test["max_points"]
@@ -21,14 +21,14 @@ def test_a_score_is_a_share_of_1() -> None:
 
 
 @pytest.mark.parametrize("case", ["unreadable", "hostile", "empty", "unusable"])
-def test_what_cannot_be_read_costs_no_attempt(case: str) -> None:
+def test_an_unreadable_submission_is_not_gradable(case: str) -> None:
     result = checked_json("prairielearn", cases()[case])
     assert result["gradable"] is False
     assert result["score"] == 0
     assert "tests" not in result
 
 
-def test_the_reasons_are_told_once() -> None:
+def test_each_reason_is_given_once() -> None:
     empty = checked_json("prairielearn", cases()["empty"])
     assert empty["format_errors"] == [
         "Denavit-Hartenberg table: – Nothing was handed in.",

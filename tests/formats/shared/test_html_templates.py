@@ -1,4 +1,4 @@
-"""Templates escape every text, and only named places print HTML of the service itself."""
+"""Templates escape every text; only listed functions may pass unescaped HTML."""
 
 import ast
 import re
@@ -14,7 +14,7 @@ from tests.formats.submissions import HOSTILE
 
 SERVICE = Path(__file__).parents[3] / "service"
 TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
-# The functions that call `own_html`, with the HTML that they pass.
+# The functions that call `own_html`, with the HTML that each one passes.
 TRUSTED = {
     "formats/shared/html_templates.py style_sheet": "the style sheets of reports",
     "web/pages.py _markdown": "statements and prompts: statement_html()",
@@ -93,6 +93,6 @@ def test_no_template_turns_escaping_off(file: Path) -> None:
     )
 
 
-def test_the_html_that_is_not_escaped_comes_from_named_places() -> None:
+def test_only_listed_functions_pass_unescaped_html() -> None:
     assert set(calls("own_html")) == set(TRUSTED)
     assert list(calls("Markup")) == ["formats/shared/html_templates.py own_html"]

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { entries, textOf } from "../../../service/web/static/tutor/zip.js";
 
-// By the module zipfile of Python: index.html is stored, zoë/report.html is deflated ("right " fifty times).
+// Made by Python's zipfile: index.html is stored, zoë/report.html is deflated ("right " fifty times).
 const ARCHIVE = [
   "UEsDBBQAAAAAAAAAIVx/ducWCQAAAAkAAAAKAAAAaW5kZXguaHRtbDxwPs64PC9wPlBLAwQUAAAICAAAACFcGLZRqAwAAAAsAQAAEAAAAHpvw6",
   "svcmVwb3J0Lmh0bWwrykzPKFEoGiWJIAFQSwECFAMUAAAAAAAAACFcf3bnFgkAAAAJAAAACgAAAAAAAAAAAAAAgAEAAAAAaW5kZXguaHRtbFBL",
@@ -16,13 +16,13 @@ test("an archive has its files by name", () => {
   assert.deepEqual([...entries(bytes(ARCHIVE)).keys()], ["index.html", "zoë/report.html"]);
 });
 
-test("the text of a file is read, stored or deflated", async () => {
+test("stored and deflated files are read", async () => {
   const archive = bytes(ARCHIVE);
   const found = entries(archive);
   assert.equal(await textOf(archive, found.get("index.html")), "<p>θ</p>");
   assert.equal(await textOf(archive, found.get("zoë/report.html")), "right ".repeat(50));
 });
 
-test("anything else is refused", () => {
+test("a file that is not a ZIP archive is refused", () => {
   for (const text of ["", "AAAA", btoa("x".repeat(100))]) assert.throws(() => entries(bytes(text)), /no ZIP archive/);
 });

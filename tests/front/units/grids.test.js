@@ -15,20 +15,20 @@ test("a quoted cell loses its quotes, and a doubled one becomes single", () => {
   assert.deepEqual(blockOf('"say ""x"""\t 2 '), [['say "x"', "2"]]);
 });
 
-test("one value, an uneven block and a table of another program are no block", () => {
+test("a single value, an uneven block and a table of another program are not blocks", () => {
   for (const text of ["a1", "a1\t0\na2", "[1, 2]\n[3, 4]", "1 & 2 \\\\\n3 & 4 \\\\", "1 0 0\n0 1 0", "1, 0\n0, 1"]) {
     assert.equal(blockOf(text), null, text);
   }
 });
 
-test("a block goes where the cursor is, if it fits", () => {
+test("a block fills the cells from the cursor on, if it fits", () => {
   const rows = [["a", "b", "c"], ["d", "e", "f"]];
   assert.deepEqual(placedFrom("b", rows, [["1", "2"], ["3", "4"]]), [["b", "1"], ["c", "2"], ["e", "3"], ["f", "4"]]);
   assert.equal(placedFrom("c", rows, [["1", "2"]]), null);
   assert.equal(placedFrom("d", rows, [["1"], ["2"]]), null);
 });
 
-// Three cells above two; the cursor stands behind the only letter of the cell.
+// Rows of three and two cells; the cursor is after the only letter of the cell.
 const cell = (name, from = 1, to = from) => ({ name, input: { value: "x", selectionStart: from, selectionEnd: to } });
 const press = (key, more = {}) => ({ key, ctrlKey: false, metaKey: false, altKey: false, shiftKey: false, ...more });
 
@@ -47,7 +47,7 @@ test("arrows and Enter move between cells", () => {
   assert.equal(to("x", a), null);
 });
 
-test("sideways a key leaves the cell only at the end of its text", () => {
+test("the left and right arrows leave the cell only at the ends of its text", () => {
   const [left, start, whole, right] = [cell("left"), cell("start", 0), cell("whole", 0, 1), cell("right")];
   const rows = [[left, start, whole, right]];
   const to = (key, from, more) => target(press(key, more), from, rows)?.name ?? null;
@@ -73,7 +73,7 @@ test("the keys for undo and redo of all systems", () => {
 const columns = ["a", "alpha", "d", "theta"].map((label) => ({ label }));
 const layout = { grids: [{ columns, rows: [{}, {}] }] };
 
-test("a recorded table fills its cells in whichever form it was sent", () => {
+test("a recorded table fills its cells in all forms of an answer", () => {
   const cells = ["1", "0", "0", "q1", "2", "", "0", "q2"];
   const rows = [{ a: 1, alpha: "0", d: 0, theta: "q1" }, { a: "2", d: "0", theta: "q2" }];
   assert.deepEqual(cellsOf(layout, { rows, convention: "modified" }), { cells, choice: "modified" });
@@ -81,7 +81,7 @@ test("a recorded table fills its cells in whichever form it was sent", () => {
   assert.deepEqual(cellsOf(layout, lists), { cells, choice: "" });
 });
 
-test("nothing handed in is empty cells, and no row is a choice", () => {
+test("a missing answer has empty cells, and the answer no row is a choice", () => {
   assert.deepEqual(cellsOf(layout, undefined), { cells: Array(8).fill(""), choice: "" });
   assert.deepEqual(cellsOf(layout, null), { cells: Array(8).fill(""), choice: "" });
   assert.equal(cellsOf(layout, { none: true }).choice, "none");

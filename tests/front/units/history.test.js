@@ -20,7 +20,7 @@ class Cell {
   }
 }
 
-test("steps are taken back in reverse order, and made again", () => {
+test("steps are undone in reverse order, and redone", () => {
   const history = new History();
   const [one, other] = [new Cell(history), new Cell(history)];
   one.change("a");
@@ -33,7 +33,7 @@ test("steps are taken back in reverse order, and made again", () => {
   assert.deepEqual([one.text, other.text], ["a", ""]);
 });
 
-test("what is typed at once into one cell is one step", (t) => {
+test("fast keys in one cell are one step", (t) => {
   let now = 0;
   t.mock.method(performance, "now", () => now);
   const history = new History();
@@ -56,7 +56,7 @@ test("another cell begins another step", () => {
   assert.deepEqual([one.text, other.text], ["a", ""]);
 });
 
-test("changes that were made together are taken back together", () => {
+test("changes that were made together are undone together", () => {
   const history = new History();
   const cells = [new Cell(history, "1"), new Cell(history, "2"), new Cell(history, "3")];
   history.note(cells.map((cell) => ({ target: cell, before: "", after: cell.text })));
@@ -64,7 +64,7 @@ test("changes that were made together are taken back together", () => {
   assert.deepEqual(cells.map((cell) => cell.text), ["", "", ""]);
 });
 
-test("a change ends what could be made again, and no change is no step", () => {
+test("a change clears the steps to redo, and an unchanged text is not a step", () => {
   const history = new History();
   const cell = new Cell(history);
   cell.change("a");

@@ -16,13 +16,13 @@ test("the rows of a DH table are posted by the names of their columns", () => {
   assert.equal(choices, null);
 });
 
-test("in the modified convention a and alpha have the index before the row's", () => {
+test("in the modified convention a and alpha have the index i−1", () => {
   const indices = (convention) => layoutOf(table(convention)).grids[0].columns.map((column) => column.index);
   assert.deepEqual(indices("standard"), ["i", "i", "i", "i"]);
   assert.deepEqual(indices("modified"), ["i−1", "i−1", "i", "i"]);
 });
 
-test("a table in either convention is posted with the one that was chosen", () => {
+test("a table in either convention is posted with the chosen convention", () => {
   const { answer, choices } = layoutOf(table("either"));
   assert.deepEqual(Object.keys(choices), ["", "standard", "modified"]);
   assert.equal(answer(Array(8).fill("0"), "modified").convention, "modified");

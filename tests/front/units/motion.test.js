@@ -34,7 +34,7 @@ test("an answer has a picture for each set of joint values, or none", () => {
   assert.deepEqual(pictureOf({}), { frames: null, mechanism: null });
 });
 
-test("half of a quarter turn is an eighth, and the frame stays a frame", () => {
+test("half of a quarter turn is an eighth turn, and the frame stays orthonormal", () => {
   const half = between(
     { frames: [turned(0, 0, 0)], mechanism: null },
     { frames: [turned(Math.PI / 2, 2, 4)], mechanism: null },
@@ -76,7 +76,7 @@ test("a mechanism keeps its base, and its axes the length 1", () => {
   assert.deepEqual(mechanism.base, [0, 0, 0]);
 });
 
-test("a sweep asks three times, each time for pictures between those it has", async () => {
+test("a sweep sends three requests, each for pictures between the earlier ones", async () => {
   const asked = [];
   const request = (sets) => (asked.push(sets), service(sets));
   const sweep = new Sweep(request, [0.1, 0.2], 1, { low: -1, high: 1 });

@@ -7,13 +7,13 @@ const row = (kind, ...cells) => ({ kind, cells });
 // A joint that turns, one that slides, one that turns.
 const RPR = [row("R", "a1", "0", "0", "theta1"), row("P", "0", "pi/2", "d2", "0"), row("R", "a3", "0", "0", "theta3")];
 
-test("joints are counted without the rows that have none", () => {
+test("fixed rows are not counted as joints", () => {
   const rows = [row("R"), row("F"), row("P")];
   assert.deepEqual(jointNumbers(rows), [1, null, 2]);
   assert.equal(jointCount(rows), 2);
 });
 
-test("a row of a pasted table turns or slides by where its variable stands", () => {
+test("a row of a pasted table is revolute or prismatic by the column of its variable", () => {
   const cells = [["a1", "0", "0", "theta1"], ["0", "-pi/2", "d2", "0"], ["0", "0", "theta3 + l", "pi/2"]];
   assert.deepEqual(rowsOf(cells), [
     row("R", "a1", "0", "0", "theta1"),
@@ -23,11 +23,11 @@ test("a row of a pasted table turns or slides by where its variable stands", () 
   ]);
 });
 
-test("a row with both variables turns", () => {
+test("a row with both variables is revolute", () => {
   assert.deepEqual(rowsOf([["0", "0", "d1", "theta1"]]).map(({ kind }) => kind), ["R"]);
 });
 
-test("after a row without a joint the numbers of joints go on", () => {
+test("a fixed row does not interrupt the numbers of joints", () => {
   const cells = [["a1", "0", "0", "theta1"], ["0", "pi/2", "0", "0"], ["a2", "0", "0", "theta2"]];
   assert.deepEqual(rowsOf(cells).map(({ kind }) => kind), ["R", "F", "R"]);
 });
@@ -36,29 +36,29 @@ test("theta1 is not theta10", () => {
   assert.deepEqual(rowsOf([["0", "0", "0", "theta10"]]).map(({ kind }) => kind), ["F"]);
 });
 
-test("another kind moves the variable to the column that moves", () => {
+test("a change of the kind moves the variable to the other column", () => {
   assert.deepEqual(withKind(RPR, 0, "P")[0], row("P", "a1", "0", "d1", "0"));
   assert.deepEqual(withKind(RPR, 1, "R")[1], row("R", "0", "pi/2", "0", "theta2"));
 });
 
-test("what the author wrote stays when the kind changes", () => {
+test("a formula stays in its cell when the kind changes", () => {
   const rows = [row("R", "0", "0", "l1 + 0.2", "theta1 + pi/2")];
   assert.deepEqual(withKind(rows, 0, "P")[0].cells, ["0", "0", "l1 + 0.2", "theta1 + pi/2"]);
 });
 
-test("a joint less gives the variables of later joints their new numbers", () => {
+test("removing a joint renumbers the variables of later joints", () => {
   const rows = withKind(RPR, 1, "F");
   assert.deepEqual(rows[1], row("F", "0", "pi/2", "0", "0"));
   assert.deepEqual(rows[2], row("R", "a3", "0", "0", "theta2"));
   assert.deepEqual(without(RPR, 0), [row("P", "0", "pi/2", "d1", "0"), row("R", "a3", "0", "0", "theta2")]);
 });
 
-test("a joint more does so, too", () => {
+test("adding a joint renumbers the variables of later joints", () => {
   const rows = withKind(withKind(RPR, 0, "F"), 0, "R");
   assert.deepEqual(rows, RPR);
 });
 
-test("the robots to begin with have the right shape", () => {
+test("the robots to start from have the right shape", () => {
   for (const [name, robot] of Object.entries(ROBOTS)) {
     assert.deepEqual(robotOf(structuredClone(robot)), robot, name);
     // A name ends with its structure: RRPR, or 6R.
@@ -67,7 +67,7 @@ test("the robots to begin with have the right shape", () => {
   }
 });
 
-test("a stored or linked robot of another shape is none", () => {
+test("a stored or linked robot of another shape is ignored", () => {
   const rows = [row("R", "0", "0", "0", "theta1")];
   assert.deepEqual(robotOf({ rows, unit: "x", more: 1 }), { convention: "standard", unit: "radians", rows });
   const wrong = [

@@ -21,13 +21,13 @@ function keep(room = Infinity) {
 
 beforeEach(() => keep());
 
-test("a value is packed as base64 of UTF-8, in letters for addresses", () => {
+test("a value is packed as URL-safe base64 of UTF-8", () => {
   // printf '{"a":"θ?>"}' | base64 | tr '+/' '-_' | tr -d =
   assert.equal(packed({ a: "θ?>" }), "eyJhIjoizrg_PiJ9");
   assert.deepEqual(unpacked("eyJhIjoizrg_PiJ9"), { a: "θ?>" });
 });
 
-test("any other text is no value", () => {
+test("any other text is unpacked as null", () => {
   for (const text of ["", "%%%", "eyJhIjoi", "_w", "a".repeat(60_001)]) assert.equal(unpacked(text), null);
 });
 
@@ -37,27 +37,27 @@ test("answers go into a link and come back", () => {
   assert.equal(answersIn(""), null);
 });
 
-test("what has not the shape of answers is none", () => {
+test("a value of another shape is ignored", () => {
   const wrong = [null, 1, [], {}, { parts: null }, { parts: { a: null } }, { parts: { a: { cells: "x" } } }, {
     parts: { a: { cells: [1] } },
   }, { parts: { a: { cells: ["x"] }, b: {} } }];
   for (const value of wrong) assert.equal(answersIn(`#answers=${packed(value)}`), null, JSON.stringify(value));
 });
 
-test("what is left out of answers has a default, and what is more is dropped", () => {
+test("missing fields of answers have defaults, and unknown ones are dropped", () => {
   const answers = answersIn(
     `#answers=${packed({ unit: "gradians", parts: { a: { cells: [], choice: 1, more: 2 } } })}`,
   );
   assert.deepEqual(answers, { unit: "radians", parts: { a: { cells: [], choice: "" } } });
 });
 
-test("a part may have the name of something that all objects have", () => {
+test("a part may be named like a property of every object", () => {
   const text = '{"unit":"radians","parts":{"__proto__":{"cells":["1"]}}}';
   const answers = answersIn(`#answers=${btoa(text).replaceAll("=", "")}`);
   assert.deepEqual(Object.keys(answers.parts), ["__proto__"]);
 });
 
-test("answers are kept for each service and exercise", () => {
+test("answers are saved for each service and exercise", () => {
   const kept = keep();
   const store = new Store("https://a.example/", "scara");
   assert.equal(store.save(ANSWERS), true);
@@ -67,14 +67,14 @@ test("answers are kept for each service and exercise", () => {
   assert.equal(kept.size, 0);
 });
 
-test("a browser that keeps nothing is no error", () => {
+test("a browser without storage is not an error", () => {
   keep(10);
   const store = new Store("https://a.example/", "scara");
   assert.equal(store.save(ANSWERS), false);
   assert.equal(store.load(), null);
 });
 
-test("what another program has left there is no answer", () => {
+test("a value that another program stored is ignored", () => {
   keep().set("dh-grader:https://a.example/:scara", "{");
   assert.equal(new Store("https://a.example/", "scara").load(), null);
 });

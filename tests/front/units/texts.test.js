@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { decimal, message, number, points, visible } from "../../../service/web/static/shared/dom.js";
 import { count, dayName, earned, percent, query, startOf } from "../../../service/web/static/tutor/records/records.js";
 
-test("invisible characters are written out by their numbers", () => {
+test("invisible characters are shown as code points", () => {
   assert.equal(visible("a\u202eb\u200bc"), "a[U+202E]b[U+200B]c");
   assert.equal(visible("a\nb\tθ₁ é 😀"), "a b θ₁ é 😀");
   assert.equal(visible("\u{e0041}"), "[U+E0041]");
@@ -14,7 +14,7 @@ test("a message without code, or with a single backtick, is one text", () => {
   assert.deepEqual(message("a ` b"), ["a ` b"]);
 });
 
-test("points are never rounded up to the most", () => {
+test("points are never rounded up to the maximum", () => {
   assert.equal(points(2, 3), "2 / 3");
   assert.equal(points(7 / 3, 3), "2.33 / 3");
   assert.equal(points(2.999, 3), "2.99 / 3");
@@ -37,13 +37,13 @@ test("a share is 100 % only if it is all", () => {
   assert.deepEqual([0, 0.004, 0.5, 0.999, 1].map(percent), ["0 %", "0 %", "50 %", "99 %", "100 %"]);
 });
 
-test("points that a tutor gave count instead of the report's", () => {
+test("an override counts instead of the points of the report", () => {
   assert.equal(earned({ points: 2, max_points: 4 }), "2 / 4");
   assert.equal(earned({ points: 2, max_points: 4, awarded: 4.5 }), "4.5 / 4");
   assert.equal(earned({ points: 2, max_points: 4, awarded: 0 }), "0 / 4");
 });
 
-test("a query has the parameters that have a value", () => {
+test("a query has only the parameters with a value", () => {
   assert.equal(query({ exercise: "scara", learner: "", since: undefined }), "?exercise=scara");
   assert.equal(query({ learner: "a&b=c d" }), "?learner=a%26b%3Dc+d");
   assert.equal(query({ learner: "" }), "");

@@ -1,4 +1,4 @@
-"""The process of the editor's checks: it is ended in time, and started again."""
+"""The process of the editor's checks is killed after its time limit, and restarted."""
 
 import os
 import signal
@@ -58,7 +58,7 @@ def test_one_process_checks_one_text_after_the_other(checking: Checking) -> None
     assert process_of(checking) is first
 
 
-def test_checks_that_take_too_long_are_ended(checking: Checking) -> None:
+def test_checks_that_take_too_long_are_killed(checking: Checking) -> None:
     checking.checked(QUICK)
     first = process_of(checking)
     checking._seconds = 0.5
@@ -71,7 +71,7 @@ def test_checks_that_take_too_long_are_ended(checking: Checking) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
-def test_a_process_that_was_ended_is_started_again(checking: Checking) -> None:
+def test_a_killed_process_is_restarted(checking: Checking) -> None:
     checking.checked(QUICK)
     first = process_of(checking)
     os.kill(first.pid, signal.SIGKILL)
@@ -79,7 +79,7 @@ def test_a_process_that_was_ended_is_started_again(checking: Checking) -> None:
     assert b"unusable" in checking.checked(QUICK)
 
 
-def test_a_check_that_fails_costs_no_other(checking: Checking) -> None:
+def test_a_crashed_check_does_not_affect_the_next_one(checking: Checking) -> None:
     checking.checked(QUICK)
     first = process_of(checking)
     with pytest.raises(RuntimeError, match="the log"):
@@ -109,7 +109,7 @@ def test_the_end_of_the_service_ends_a_check(checking: Checking) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc")
-def test_no_check_outlives_a_service_that_was_killed() -> None:
+def test_the_process_ends_after_the_service_was_killed() -> None:
     with subprocess.Popen(
         [sys.executable, "-c", STARTS_A_CHECK], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as service:
@@ -121,6 +121,6 @@ def test_no_check_outlives_a_service_that_was_killed() -> None:
         time.sleep(0.5)
         assert process.exists()
         service.kill()
-    # Whoever inherits it may not have asked for its exit code yet.
+    # An ended process stays as a zombie (Z) until its new parent reads the exit code.
     while process.exists() and ") Z " not in (process / "stat").read_text():
         time.sleep(0.05)

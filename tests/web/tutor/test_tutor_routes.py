@@ -1,4 +1,4 @@
-"""A tutor's pages over the wire: for nobody else, bounded, and the same as the command line."""
+"""The tutor's pages: who may see them, their limits, and the same results as the command line."""
 
 import asyncio
 import gzip
@@ -40,7 +40,7 @@ RIGHT = "a\talpha\td\ttheta\na1\t0\t0\ttheta1\na2\t0\t0\ttheta2\n"
 
 
 class Tutor:
-    """Asks the application in this process, from the machine itself unless ``host`` says other."""
+    """Sends requests to an application in this process, by default from the same machine."""
 
     def __init__(self, catalogue: Mapping[str, Exercise], editor_dir: Path | None = None) -> None:
         access = Access(solutions=None)
@@ -82,13 +82,13 @@ def tutor(catalogue: Mapping[str, Exercise], tmp_path: Path) -> Tutor:
     return Tutor(catalogue, tmp_path)
 
 
-def test_no_page_or_file_of_a_tutor_s_is_for_anybody_else(tutor: Tutor) -> None:
+def test_only_tutors_see_the_tutors_pages(tutor: Tutor) -> None:
     for method, path in ROUTES:
         filled = path.replace("{exercise_id}", "scara")
         answer = tutor.ask(method, filled, "grader.example.edu")
         assert (answer.status_code, filled) == (403, filled)
         assert "theta" not in answer.text
-    # A person is told of keys, not of the setting that gives solutions to everybody.
+    # The page explains keys, but not the setting that shows solutions to everybody.
     page = tutor.ask("GET", "/tutor", "grader.example.edu", accept="text/html")
     assert (page.status_code, "<main" in page.text) == (403, True)
     assert "keys create" in page.text
@@ -102,7 +102,7 @@ def test_every_solution_is_drawn(tutor: Tutor, catalogue: Mapping[str, Exercise]
         page = tutor.ask("GET", f"/tutor/solutions/{name}")
         assert page.status_code == 200
         assert page.headers["cache-control"] == "no-store"
-        # A formula that could not be turned to MathML would stand there as it is written.
+        # A formula that could not be converted to MathML would be shown as LaTeX.
         assert "<code>\\" not in page.text.replace('<pre tabindex="0"><code>', "")
         for part in catalogue[name].parts:
             assert part.title in page.text
@@ -135,7 +135,7 @@ def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> No
     assert tutor.check(SCARA, "../scara")["findings"][0]["level"] == "unusable"
 
 
-def test_only_few_checks_wait(tutor: Tutor) -> None:
+def test_only_a_few_checks_may_wait(tutor: Tutor) -> None:
     async def all_at_once() -> list[int]:
         body = {"id": "scara", "text": SCARA}
         asked = (tutor.asked("POST", "/tutor/check", json=body) for _ in range(WAITING + 4))
@@ -144,7 +144,7 @@ def test_only_few_checks_wait(tutor: Tutor) -> None:
     assert asyncio.run(all_at_once()) == [200] * (WAITING + 1) + [503] * 3
 
 
-def test_a_file_is_written_only_where_the_service_is_told_to(
+def test_a_file_is_saved_only_in_the_editors_folder(
     tutor: Tutor, catalogue: Mapping[str, Exercise], tmp_path: Path
 ) -> None:
     def save(text: str, before: str = "", exercise: str = "scara", by: Tutor = tutor) -> Any:
@@ -159,14 +159,14 @@ def test_a_file_is_written_only_where_the_service_is_told_to(
     changed = SCARA.replace("SCARA manipulator", "A robot", 1)
     assert save(changed, mark).status_code == 200
     assert file.read_text(encoding="utf-8") == changed
-    # Opened before the last change, or not at all.
+    # The mark is that of an older version, or missing.
     for old in (mark, ""):
         refused = save(SCARA, old)
         assert (refused.status_code, "has changed" in refused.json()["detail"]) == (409, True)
     for name in ("../scara", "/tmp/scara", "scara.toml", "Scara", ".", "a" * 61):
         assert save(SCARA, "", name).status_code == 409
     assert save("title = 1", "", "broken").status_code == 409
-    # A link leads nowhere else: it is replaced or refused, and what it names stays.
+    # A symbolic link is refused, and its target stays unchanged.
     outside = tmp_path.parent / f"{tmp_path.name}-outside.toml"
     outside.write_text("outside", encoding="utf-8")
     (tmp_path / "linked.toml").symlink_to(outside)
@@ -210,7 +210,7 @@ def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) 
     }
 
 
-def test_what_no_class_is_is_refused(tutor: Tutor) -> None:
+def test_an_unusable_upload_is_refused(tutor: Tutor) -> None:
     refused = [
         tutor.ask("POST", "/tutor/class", content=b"no gzip"),
         tutor.ask("POST", "/tutor/class", content=gzip.compress(b" " * (MAX_UPLOAD + 1))),

@@ -1,4 +1,4 @@
-// <dh-play>: any table of any robot, with its 3D view, its pose, and its equivalent in the other convention.
+// <dh-play>: a DH table of any robot, with its 3D view, its pose, and the table in the other convention.
 
 import { h, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
@@ -55,7 +55,7 @@ export class DhPlay extends HTMLElement {
     );
     this.unit = h(
       "select",
-      { "aria-label": "Plain numbers in angles are", onchange: () => this.#edited() },
+      { "aria-label": "Angles without a unit", onchange: () => this.#edited() },
       option("radians"),
       option("degrees"),
     );
@@ -98,7 +98,7 @@ export class DhPlay extends HTMLElement {
           "header",
           {},
           h("h1", { id: "title" }, "Free play"),
-          h("p", { class: "quiet" }, "Write any DH table, see the robot that it builds, and move it."),
+          h("p", { class: "quiet" }, "Write any DH table, see its robot, and move it."),
         ),
         view.element,
       ),
@@ -112,7 +112,7 @@ export class DhPlay extends HTMLElement {
             "div",
             { class: "tools" },
             this.convention,
-            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
           ),
           h("div", { class: "grids" }, this.table.element),
           h(
@@ -157,14 +157,14 @@ export class DhPlay extends HTMLElement {
     this.#rows = rows;
     this.table.show({ rows, convention });
     this.add.disabled = rows.length >= MOST_ROWS;
-    this.results.title.textContent = `The same in the ${
+    this.results.title.textContent = `This table in the ${
       convention === "standard" ? "modified (proximal)" : "standard (distal)"
     } convention`;
     this.view?.refit();
     this.changed();
   }
 
-  /** What every request says of the table; null if it has no joint. */
+  /** Return the fields of every request about the table, or null if it has no joint. */
   #body() {
     const { convention, unit, rows } = this.state;
     const structure = rows.map(({ kind }) => kind).filter((kind) => kind !== "F").join("");
@@ -178,10 +178,10 @@ export class DhPlay extends HTMLElement {
     this.#saving = setTimeout(() => keep(this.state), 250);
   }
 
-  // What changes the table. Each change is a step that can be taken back.
+  // The methods that change the table. Each change is one step for undo.
 
   /**
-   * Note that the table was changed; what is typed into one cell is one step.
+   * Add a change of the table to the history. Keys typed into one cell are one step.
    *
    * @param {Front.PlayCell | null} [cell]
    */
@@ -193,7 +193,7 @@ export class DhPlay extends HTMLElement {
   }
 
   /**
-   * What puts a table of the past back, and the cursor where it was changed.
+   * Return the target of a step in the history: it restores a table, and puts the cursor where it was changed.
    *
    * @param {[number, number]} at
    */
@@ -241,7 +241,7 @@ export class DhPlay extends HTMLElement {
   filled(pairs) {
     for (const [cell, text] of pairs) cell.put(text);
     this.#edited();
-    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; Ctrl+Z takes it back`);
+    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; press Ctrl+Z to undo`);
   }
 
   /**
@@ -274,7 +274,7 @@ export class DhPlay extends HTMLElement {
   /** @param {number} i */
   removed(i) {
     const { rows, ...rest } = this.state;
-    if (rows.length === 1) return this.#say("A table has a row at least");
+    if (rows.length === 1) return this.#say("A table needs at least one row");
     this.#change({ ...rest, rows: without(rows, i) });
     this.#focus(i);
     return this.announce(`Row ${i + 1} is removed.`);
@@ -298,13 +298,13 @@ export class DhPlay extends HTMLElement {
       }
       this.view?.forget();
       this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
-      return this.#say("The pasted table is filled in; Ctrl+Z takes it back");
+      return this.#say("The pasted table is filled in; press Ctrl+Z to undo");
     } catch (error) {
       return this.#say(error.message);
     }
   }
 
-  // What the service says.
+  // The answers of the service.
 
   /** @param {Api.Frames} answer @param {boolean} isKept */
   #answered({ table }, isKept) {
@@ -316,7 +316,7 @@ export class DhPlay extends HTMLElement {
   /** @param {Api.ConvertedRow[]} converted */
   #useConverted(converted) {
     const { rows, unit, convention } = this.state;
-    // A fixed row more stands before or after those of the joints.
+    // The converted table may have one more fixed row, before or after the joints.
     const kinds = rows.map(({ kind }) => kind);
     while (kinds.length < converted.length) converted[0].label === "b" ? kinds.unshift("F") : kinds.push("F");
     this.#change({
@@ -330,7 +330,7 @@ export class DhPlay extends HTMLElement {
   #share() {
     return this.#copy(
       this.service.address("play") + NAME + packed(this.state),
-      "Link copied: it holds the table",
+      "Link copied, with the table",
       true,
     );
   }
@@ -342,7 +342,7 @@ export class DhPlay extends HTMLElement {
       this.#say(told);
     } catch {
       if (isLink) history.replaceState(null, "", new URL(text).hash);
-      this.#say(isLink ? "The link is in the address bar" : "The browser does not let this page copy");
+      this.#say(isLink ? "The link is in the address bar" : "The browser did not allow copying");
     }
   }
 }
@@ -360,6 +360,6 @@ function keep(state) {
   try {
     localStorage.setItem(KEPT, JSON.stringify(state));
   } catch {
-    // The table then lasts as long as the page.
+    // Without storage, the table is lost when the page is closed.
   }
 }

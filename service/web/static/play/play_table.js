@@ -1,4 +1,4 @@
-// The table of free play: rows that come and go, each of a joint that turns or slides, or of none.
+// The table of free play. Rows can be added and removed; each is revolute, prismatic or fixed.
 
 import { Cell } from "../shared/cell.js";
 import { h } from "../shared/dom.js";
@@ -42,7 +42,7 @@ export class PlayTable {
   }
 
   /**
-   * Draw all rows anew.
+   * Redraw all rows.
    *
    * @param {Pick<Front.Robot, "rows" | "convention">} robot
    */
@@ -122,7 +122,7 @@ export class PlayTable {
     );
   }
 
-  // What a cell tells.
+  // The methods that the cells call.
 
   /** @param {Front.PlayCell} cell */
   changed(cell) {
@@ -168,7 +168,7 @@ export class PlayTable {
   }
 
   /**
-   * A block smaller than a table goes where the cursor is; what a whole table is, the service says.
+   * Fill the cells from the cursor on with a pasted block. The service reads a text that may be a whole table.
    *
    * @param {ClipboardEvent} event
    * @param {Front.PlayCell} cell

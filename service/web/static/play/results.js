@@ -1,4 +1,4 @@
-// What the service says of a table in free play: the pose of its last frame, and the table in the other convention.
+// The results of a table in free play: the pose of its last frame, and the table in the other convention.
 
 import { decimal, h, visible } from "../shared/dom.js";
 import { mathml, matrix } from "../shared/markup.js";
@@ -33,7 +33,7 @@ export class Results {
   }
 
   /**
-   * Show an answer of the service, or fade the one before because its table cannot be read now.
+   * Show an answer of the service. If `isKept`, fade the earlier answer instead: the table cannot be read now.
    *
    * @param {Api.FramesOfTable} table
    * @param {Api.Convention} convention
@@ -81,7 +81,7 @@ export class Results {
 }
 
 /**
- * Return a section with a head.
+ * Return a section with a header.
  *
  * @param {Node[]} head
  * @param {...Node} children

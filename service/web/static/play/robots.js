@@ -1,4 +1,4 @@
-// Robots to begin free play with, as tables of the distal convention.
+// The robots to start free play with, as tables in the standard convention.
 
 /** @type {(a: string, alpha: string, d: string, theta: string) => Front.PlayRow} */
 const R = (a, alpha, d, theta) => ({ kind: "R", cells: [a, alpha, d, theta] });

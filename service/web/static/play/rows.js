@@ -1,4 +1,4 @@
-// The rows of a table in free play: cells, and a joint that turns (R), slides (P) or is not there (F).
+// The rows of a table in free play: cells, and the kind of joint: revolute (R), prismatic (P) or none (F).
 
 export const MOST_ROWS = 12;
 export const MOST_JOINTS = 10;
@@ -48,14 +48,14 @@ export function rowsOf(cells) {
     const slides = own(d) && !new RegExp(`\\b(theta|q)_?${number}\\b`).test(theta);
     const kind = slides ? "P" : own(theta) ? "R" : "F";
     if (kind !== "F") joints = number;
-    // The service was asked to read all joints as turning.
+    // The service has read all joints as revolute.
     const named = slides ? d.replace(new RegExp(`\\btheta${number}\\b`), `d${number}`) : d;
     return { kind, cells: [a, alpha, named, theta] };
   });
 }
 
 /**
- * Return the rows after row `i` got a joint of another kind: its variable moves to the column that now moves.
+ * Return the rows after row `i` got a joint of another kind. The joint variable moves to the column of this kind.
  *
  * @param {Front.PlayRow[]} rows
  * @param {number} i
@@ -83,7 +83,7 @@ export function without(rows, i) {
 }
 
 /**
- * Return the rows after a change, with the variables that stand alone in a cell named by their new joints.
+ * Return the rows after a change. A cell that holds only its joint variable gets the new number of the joint.
  *
  * @param {(number | null)[]} old the joint of each row before
  * @param {Front.PlayRow[]} rows

@@ -1,4 +1,4 @@
-// The robot in a browser without WebGL: a drawing by the service, at the joint values as they are.
+// The robot in a browser without WebGL: a drawing by the service at the current joint values.
 
 import { h } from "../shared/dom.js";
 import { isDark } from "./palette.js";
@@ -11,7 +11,7 @@ export class FlatScene {
   #address = null;
 
   /**
-   * `stage` is the element that the drawing fills; `draw(theme)` gives its SVG, or null.
+   * The drawing fills the element `stage`. `draw(theme)` returns its SVG, or null.
    *
    * @param {HTMLElement} stage
    * @param {Front.DrawSvg} draw
@@ -32,14 +32,14 @@ export class FlatScene {
 
   reset() {}
 
-  /** Ask for the picture as it is; while one is on its way, once more after it. */
+  /** Request the current drawing. While a request is running, repeat it once afterwards. */
   async move() {
     this.#asked = true;
     if (this.#busy) return;
     this.#busy = true;
     while (this.#asked && !this.#closed) {
       this.#asked = false;
-      // That the service cannot be reached is said by the request for the numbers.
+      // The request for the numbers shows that the service cannot be reached.
       const svg = await this.draw(isDark(this.stage) ? "dark" : "light").catch(() => null);
       if (svg && !this.#closed) this.#put(svg);
     }
@@ -47,7 +47,7 @@ export class FlatScene {
   }
 
   /**
-   * As an image a drawing can do nothing, whatever is in it.
+   * Show the drawing as an image, in which no script can run.
    *
    * @param {string} svg
    */

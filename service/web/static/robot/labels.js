@@ -1,5 +1,5 @@
-// The names in the 3D view: texts that face the viewer, of a fixed size in pixels. All are drawn at once,
-// from one picture that holds each text once.
+// The labels of the 3D view: texts that face the viewer, with a fixed size in pixels. One call draws all
+// of them, from one texture that holds each text once.
 
 import {
   CanvasTexture,
@@ -12,7 +12,7 @@ import {
   Vector2,
 } from "../vendor/three-0.185.1.module.min.js";
 
-// Pixels of a text in that picture, and the share of it that letters fill.
+// The height of a text in the texture in pixels, and the share of it that letters fill.
 const LINE = 48;
 const LETTERS = 0.72;
 const HALO = 6;
@@ -30,12 +30,12 @@ const FRAGMENT = `
   void main() { gl_FragColor = texture2D(texts, at); }`;
 
 /**
- * A text in that picture: how wide it is for its height, and from where to where it goes.
+ * A text in the texture: its ratio of width to height, and the piece of the texture that it fills.
  *
  * @typedef {{ text: string, colour: keyof Front.Palette, ratio: number, piece: [number, number, number, number] }} Written
  */
 
-/** All labels of a scene; like a `Batch` of shapes. */
+/** All labels of a scene, with the methods of a `Batch` of shapes. */
 export class Labels {
   /** @type {Map<string, Written>} */
   #texts = new Map();
@@ -56,7 +56,8 @@ export class Labels {
   }
 
   /**
-   * A text `height` pixels high, whose `centre` (from its lower left corner, of size 1) is where the part is.
+   * Return a part with a text that is `height` pixels high. Its `centre`, as shares of its size from the lower left
+   * corner, is at the part's position.
    *
    * @param {string} text
    * @param {keyof Front.Palette} colour
@@ -91,7 +92,7 @@ export class Labels {
     for (const name of ["place", "piece", "box"]) geometry.attributes[name].needsUpdate = true;
   }
 
-  /** What draws the labels that there are by now. */
+  /** The mesh that draws all labels added so far. */
   get mesh() {
     return (this.#mesh ??= this.make());
   }
@@ -106,7 +107,7 @@ export class Labels {
       geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(size * this.#parts), size));
     }
     const texts = new CanvasTexture(this.#written());
-    // Otherwise the halo would be mixed with the black of what is transparent.
+    // Otherwise the halo would mix with the black of transparent pixels.
     texts.premultiplyAlpha = true;
     const uniforms = { texts: { value: texts }, stage: { value: this.stage } };
     const drawn = {
@@ -123,7 +124,7 @@ export class Labels {
     return mesh;
   }
 
-  /** The picture of all texts, one below the other. */
+  /** Return the texture with all texts, one below the other. */
   #written() {
     const canvas = document.createElement("canvas");
     const texts = [...this.#texts.values()];

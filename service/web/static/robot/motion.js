@@ -1,12 +1,12 @@
-// Where everything is at some joint values, as POST /v1/frames says it: one picture, or a sweep of one
-// joint, between whose pictures is interpolated. There is no kinematics here.
+// Pictures: where everything is at given joint values, by POST /v1/frames. A sweep has pictures of one
+// moving joint, and interpolates between them. There is no kinematics here.
 
-// The pictures of a request, and how many requests a sweep is: the first is coarse, the others refine it.
+// The pictures in a request, and the requests in a sweep: the first is coarse, the others refine it.
 const PICTURES = 30;
 const REQUESTS = 3;
 
 /**
- * One picture of an answer: `{frames, mechanism}`, either null where there is none.
+ * Return a picture of an answer: `{frames, mechanism}`; either may be null.
  *
  * @param {Api.Frames} answer
  * @param {number} [i]
@@ -17,13 +17,13 @@ export function pictureOf(answer, i = 0) {
   return { frames: table?.frames[i] ?? null, mechanism: mechanism?.configurations[i] ?? null };
 }
 
-/** The pictures of one joint from one end of its range to the other. */
+/** Pictures of one joint from one end of its range to the other. */
 export class Sweep {
   /** @type {{ amount: number, picture: Front.Picture }[]} */
   #shots = [];
 
   /**
-   * `request` posts joint sets; `values` are those of all joints, `index` is that of the one swept.
+   * `request` posts sets of joint values, `values` are the values of all joints, `index` is the joint to sweep.
    *
    * @param {(sets: number[][]) => Promise<Api.Frames>} request
    * @param {number[]} values
@@ -64,7 +64,7 @@ export class Sweep {
   }
 
   /**
-   * The picture at a value of the joint's variable.
+   * Return the picture at a value of the joint variable.
    *
    * @param {number} amount
    */
@@ -78,7 +78,7 @@ export class Sweep {
 }
 
 /**
- * The picture a share of the way from one to another, which lie close together.
+ * Return the interpolation of two pictures that lie close together.
  *
  * @param {Front.Picture} from
  * @param {Front.Picture} to
@@ -111,7 +111,7 @@ export function between(from, to, share) {
 }
 
 /**
- * Column `j` of a frame: 0 to 2 are its axes, 3 its origin.
+ * Return column `j` of a frame: 0 to 2 are its axes, 3 is its origin.
  *
  * @param {Front.Frame} frame
  * @param {number} j
@@ -120,7 +120,7 @@ export function between(from, to, share) {
 export const column = (frame, j) => [frame[0][j], frame[1][j], frame[2][j]];
 
 /**
- * Turned on the way and still a frame: z and x are interpolated, and made square and of length 1.
+ * Return the interpolation of two frames: z and x are interpolated by `point`, then made orthonormal.
  *
  * @param {Front.Frame} from
  * @param {Front.Frame} to

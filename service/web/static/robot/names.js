@@ -1,4 +1,4 @@
-// The names of symbols as they are printed: theta1 is θ with the index 1.
+// Prints the names of symbols: theta1 is θ with the index 1.
 
 import { h } from "../shared/dom.js";
 

@@ -1,6 +1,6 @@
-// The colours of the figures, for the 3D view: light and dark.
+// The colours of the 3D view, light and dark; they are those of the figures.
 
-/** The first of the two; the other one has the same names. */
+/** The light colours; the dark ones have the same names. */
 export const LIGHT = {
   rod: 0xc3cad4,
   turning: 0x7fb0e6,
@@ -31,7 +31,7 @@ const DARK = {
 };
 
 /**
- * Whether an element's text is light, on a dark ground.
+ * Return true if an element has light text, so that its background is dark.
  *
  * @param {Element} element
  */
@@ -41,7 +41,7 @@ export function isDark(element) {
 }
 
 /**
- * The colours that suit an element's own.
+ * Return the palette that suits an element: dark if its text is light.
  *
  * @param {Element} element
  * @returns {Front.Palette}

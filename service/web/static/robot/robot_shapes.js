@@ -1,11 +1,11 @@
-// The two things that the 3D view shows: the mechanism of an exercise, drawn as in its figure, and the
-// chain that a table builds. Both are moved by pictures of `motion.js`.
+// The two robots in the 3D view: the mechanism of an exercise, drawn as in its figure, and the chain of a
+// table. The pictures of `motion.js` move both.
 
 import { Group, Vector3 } from "../vendor/three-0.185.1.module.min.js";
 import { column, dot } from "./motion.js";
 import { lay, layRods, vector } from "./shapes.js";
 
-// The sizes of the figure, as shares of the mechanism's: service/figures/geometry/mechanism.py has them.
+// Sizes as shares of the mechanism's size, as in service/figures/geometry/mechanism.py.
 const JOINT_LENGTH = 0.15;
 const JOINT_RADIUS = 0.046;
 const ROD = 0.018;
@@ -94,8 +94,8 @@ function ground(shapes, size, base, normal) {
 }
 
 /**
- * The chain of a table: `solid` as a robot of its own, otherwise as lines over another one. `kinds` are those of the
- * rows' joints, null for a row without one.
+ * The chain of a table: a robot of its own if it is `solid`, otherwise lines over another robot. `kinds` has the kind
+ * of joint of each row, or null for a fixed row.
  */
 export class ChainShape {
   /**
@@ -130,7 +130,7 @@ export class ChainShape {
 }
 
 /**
- * The line from a frame to the next: along z and along x, in the order of the convention.
+ * Return the corners of the line from one frame to the next: along z and x, in the order of the convention.
  *
  * @param {Front.Frame} from
  * @param {Front.Frame} to
@@ -143,7 +143,7 @@ function linkOf(from, to, convention) {
   return [start, start.map((value, i) => value + far * first[i]), end];
 }
 
-/** The frames of a table, with their names; `shown` says which. */
+/** The frames of a table with their names. */
 export class FramesShape {
   /** @param {Front.Shapes} shapes @param {number} count @param {number} length */
   constructor(shapes, count, length) {
@@ -165,7 +165,7 @@ export class FramesShape {
       this.frames[i].matrix.set(a, b, c, x, d, e, f, y, g, k, l, z, 0, 0, 0, 1);
       this.frames[i].matrixWorldNeedsUpdate = true;
       const origin = new Vector3(x, y, z);
-      // The names of frames at one place stand side by side.
+      // If several frames are at one place, their names are side by side.
       const before = taken.filter((other) => other.distanceTo(origin) < 0.05 * this.length).length;
       taken.push(origin);
       this.labels[i].position.copy(origin);

@@ -1,5 +1,5 @@
-// The view of a robot that moves, 3D where the browser can: what is asked of the service, and when. The
-// picture stands in `stage.js`, all around it in `view_panels.js`; it draws what the service computes.
+// The view of a moving robot: it decides what to request from the service, and when. The service computes
+// the pictures, `stage.js` shows them, in 3D if the browser can, and `view_panels.js` has the controls.
 
 import { h, message } from "../shared/dom.js";
 import { column, pictureOf, Sweep } from "./motion.js";
@@ -32,8 +32,9 @@ export class RobotView {
   structure = null;
 
   /**
-   * `host`: `service`; `body()`, what every request says, or null; `descriptions`, of symbols by name; `announce`;
-   * `answered`, which hears of each answer, and whether the picture of the one before stays; `moved`, of each picture.
+   * `host` has: `service`; `body()`, the fields of every request, or null; `descriptions` of symbols by name;
+   * `announce`; `answered`, called with each answer, and with true if the earlier picture stays; `moved`, called with
+   * each picture.
    *
    * @param {Front.ViewHost} host
    */
@@ -67,7 +68,7 @@ export class RobotView {
     );
   }
 
-  /** Load what draws, and draw. */
+  /** Load the stage, and draw. */
   async open() {
     await this.stage.open();
     await this.#refresh();
@@ -86,12 +87,12 @@ export class RobotView {
     return { box, label: h("label", {}, box, " ", text) };
   }
 
-  // What the service says.
+  // Requests to the service.
 
-  /** The table has changed: ask again after a pause. */
+  /** Request a new picture after a pause, because the table has changed. */
   changed() {
     this.#sweep = null;
-    // What is on its way is about the table as it was.
+    // Ignore the answers of running requests: they are about the earlier table.
     this.#turn += 1;
     clearTimeout(this.#timer);
     this.#isWaiting = true;
@@ -99,16 +100,16 @@ export class RobotView {
     this.#timer = setTimeout(() => this.#refresh(), AFTER_A_KEY);
   }
 
-  /** Have the next picture shown whole. */
+  /** Reset the view with the next picture. */
   refit() {
     this.#refit = true;
   }
 
-  /** Forget the numbers of joints and symbols: they belong to another robot. */
+  /** Forget the values of joints and symbols, because another robot follows. */
   forget() {
     this.#values = {};
     this.#symbols = {};
-    // Another robot may have the same joints: their numbers are not known all the same.
+    // Another robot may have the same structure; its joint values are unknown, too.
     this.structure = null;
     this.frames.showAll();
   }
@@ -124,7 +125,7 @@ export class RobotView {
   }
 
   /**
-   * Say to whoever cannot see it that the picture is about to change.
+   * Tell screen readers whether the picture is about to change.
    *
    * @param {number} step
    */
@@ -134,7 +135,7 @@ export class RobotView {
   }
 
   /**
-   * Ask for the picture at the joint values as they are.
+   * Request the picture at the current joint values.
    *
    * @returns {Promise<void>}
    */
@@ -149,11 +150,11 @@ export class RobotView {
       const values = this.#answer && this.#current;
       const answer = await this.#request(values && this.#isSame(body) ? [values] : null);
       if (turn !== this.#turn || this.#closed) return undefined;
-      // While a cell is typed, its table cannot be read: the robot of before is better than none.
+      // While the student types, the table may be unreadable. The earlier picture is better than none.
       if (!answer.mechanism && isUnread(answer) && this.picture && this.#isSame(body)) return this.#keep(answer);
       const missing = answer.joints.some(({ variable }) => !(variable in this.#values));
       this.#remember(answer, body);
-      // Joint values that were moved before the joints changed are asked for once more.
+      // The answer is for home values if the joints had changed. Repeat the request with the user's values.
       if (!missing && !(values && this.#isSame(body)) && this.#moved(answer)) return this.#refresh();
       this.#show(answer);
     } catch (error) {
@@ -165,7 +166,7 @@ export class RobotView {
   }
 
   /**
-   * Tell what cannot be read, beside the picture of what could be.
+   * Show what cannot be read, and keep the earlier picture.
    *
    * @param {Api.Frames} answer
    */
@@ -204,7 +205,7 @@ export class RobotView {
   }
 
   /**
-   * The picture as the service draws it, for a browser without WebGL.
+   * Request the current picture as SVG, for a browser without WebGL.
    *
    * @param {Api.Theme} figure
    */
@@ -224,7 +225,7 @@ export class RobotView {
     this.sliders.show(answer.joints, this.#values);
     this.symbols.show(answer.symbols);
     this.#showTold(answer);
-    // A drawing shows all that there is, as one.
+    // A drawing has no switches: it shows everything.
     this.over.hidden = this.stage.isFlat || !(answer.mechanism && answer.table);
     if (!this.stage.isFlat) this.frames.show(this.picture.frames?.length ?? 0);
     this.#showScene(answer, this.picture);
@@ -235,7 +236,7 @@ export class RobotView {
   #showScene({ joints, mechanism, table }, picture) {
     const { frames } = picture;
     const kinds = new Map(joints.map(({ joint, kind }) => [joint, kind]));
-    // The sizes of parts stay while joints move.
+    // The sizes of parts do not change while joints move.
     /** @type {Front.Subject} */
     const subject = {
       kinds: joints.map(({ kind }) => kind),
@@ -257,22 +258,22 @@ export class RobotView {
   // Joints and symbols.
 
   /**
-   * Fetch the sweep of a joint, unless it is there.
+   * Fetch the sweep of a joint, unless it is already there.
    *
    * @param {number} i
    */
   prepare(i) {
     const body = this.host.body();
-    // Where the table has other joints since, their values are still to come.
+    // If the joints have changed since the answer, the new joint values are not known yet.
     if (!this.#answer || !body || !this.#isSame(body)) return;
     const values = this.#current;
     const others = JSON.stringify([body, this.#symbols, values.with(i, 0)]);
     if (this.#sweep?.index === i && this.#sweep.others === others) return;
-    // The table as it is now: by the sweep's later requests it may have other joints.
+    // All requests of the sweep are about the current table, even if its joints change meanwhile.
     const asked = withoutFormulas(body);
     const sweep = new Sweep((sets) => this.#request(sets, asked), values, i, this.#answer.joints[i], others);
     this.#sweep = sweep;
-    // A picture at the very place where the slider was left is better than one from the sweep.
+    // After the slider was released, an exact picture follows, which the sweep must not replace.
     sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() =>
       sweep === this.#sweep && (this.#sweep = null)
     );
@@ -293,7 +294,7 @@ export class RobotView {
     this.#refresh();
   }
 
-  /** Draw the joint that is moved where its slider is. */
+  /** Draw the moving joint at the value of its slider. */
   #follow() {
     const sweep = this.#sweep;
     if (!sweep?.isReady || this.#closed) return;
@@ -328,9 +329,9 @@ export class RobotView {
     const lost = table?.lost_freedoms.map((each) => each.message) ?? [];
     const isKept = this.stage.element.classList.contains("stale");
     const ends = reason && isKept
-      ? " The picture is the one of before."
+      ? " The view shows your last valid table."
       : reason && table?.frames[0]?.length
-      ? " The frames end before it."
+      ? " The view shows the frames before it."
       : "";
     this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
     this.told.hidden = !this.told.textContent;
@@ -347,7 +348,7 @@ export class RobotView {
 const isUnread = ({ table }) => Boolean(table?.error || table?.unread.length);
 
 /**
- * A sweep and a drawing need no formulas.
+ * Return a request without formulas, which sweeps and drawings do not need.
  *
  * @param {Api.FramesRequest} body
  */
@@ -356,7 +357,7 @@ function withoutFormulas({ table, ...body }) {
 }
 
 /**
- * A size for the parts of a chain without a mechanism.
+ * Return a size for the parts of a chain without a mechanism.
  *
  * @param {Front.Frame[]} frames
  */

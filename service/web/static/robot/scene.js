@@ -1,5 +1,4 @@
-// The stage of the 3D view: a camera that goes around, and what is drawn. Nothing is drawn again before
-// something has changed.
+// The 3D scene and its orbiting camera. It is only redrawn after a change.
 
 import {
   Color,
@@ -21,24 +20,24 @@ import { Shapes, vector } from "./shapes.js";
 
 const FIELD_OF_VIEW = 28;
 const STEEPEST = 1.55;
-// A processor that draws has to leave out what a graphics card does for nothing: it draws coarsely while
-// something moves, and finely after so many milliseconds without.
+// Without a graphics card, the scene is drawn coarsely while something moves, and finely after this many
+// milliseconds of rest.
 const AT_REST = 200;
 const FINE = 2;
 
 export class RobotScene {
-  // Both are there from the first call of `show` on.
+  // Both are set by the first call of `show`.
   /** @type {Front.Picture} */
   #picture;
   /** @type {Front.Subject} */
   #subject;
   #asked = 0;
   #fitted = false;
-  // How far beside the robot a table's own chain is drawn.
+  // The offset of a table's chain from the robot, if they are shown side by side.
   aside = new Vector3();
 
   /**
-   * `stage` is the element that the canvas fills; `inSoftware` says that no graphics card draws.
+   * The canvas fills the element `stage`. `inSoftware` is true if the browser draws without a graphics card.
    *
    * @param {HTMLElement} stage
    * @param {boolean} [inSoftware]
@@ -56,14 +55,14 @@ export class RobotScene {
     const lamp = new DirectionalLight(new Color(1, 1, 1), 2.1);
     lamp.position.set(0.5, 1, 0.6);
     this.camera.add(lamp);
-    // What lies over the solids is drawn after them, whatever is nearer.
+    // Lines and labels are drawn over the solids, even if they are farther away.
     this.solids = new Scene();
     this.over = new Scene();
     this.solids.add(this.camera, new HemisphereLight(0xffffff, 0x8890a0, 1.9));
     stage.append(this.canvas);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.mouseButtons.MIDDLE = MOUSE.PAN;
-    // A page scrolls on past a view that nobody has touched.
+    // The wheel scrolls the page until the user has clicked the view.
     this.controls.enableZoom = false;
     this.canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), { capture: true });
     this.canvas.addEventListener("focusout", () => (this.controls.enableZoom = false));
@@ -79,7 +78,7 @@ export class RobotScene {
   }
 
   /**
-   * Say what is drawn: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`.
+   * Draw a subject: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`.
    *
    * @param {Front.Subject} subject
    * @param {Front.Picture} picture
@@ -124,7 +123,7 @@ export class RobotScene {
   }
 
   /**
-   * Move everything to another picture of the same subject.
+   * Show another picture of the same subject.
    *
    * @param {Front.Picture} picture
    */
@@ -143,7 +142,7 @@ export class RobotScene {
     this.draw();
   }
 
-  /** The view from the beginning, with everything in it. */
+  /** Restore the initial view, with everything in it. */
   reset() {
     const { azimuth, elevation, beside } = this.#subject;
     const [turn, height] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180);
@@ -183,7 +182,7 @@ export class RobotScene {
   }
 
   /**
-   * Go around by angles in radians, and nearer by a factor.
+   * Orbit by angles in radians, and zoom by a factor.
    *
    * @param {number} right
    * @param {number} up
@@ -215,13 +214,13 @@ export class RobotScene {
     this.#render();
   }
 
-  /** Draw before the next picture of the screen. */
+  /** Redraw in the next frame of the screen. */
   draw() {
     if (!this.#asked) this.#asked = requestAnimationFrame(() => this.#render());
   }
 
   /**
-   * Pixels of the canvas to those of the page.
+   * Return the number of canvas pixels for each pixel of the page.
    *
    * @param {boolean} fine
    */

@@ -1,5 +1,5 @@
-// What the 3D view is made of: rods, joints, frames and labels, from shared shapes of size 1. A part is
-// a place in the scene; all parts of one shape are drawn at once, which is what pictures cost most.
+// The parts of the 3D view: rods, joints, frames and labels, made of shared shapes of size 1. A part is a
+// place in the scene. All parts of a shape are drawn in one call, because draw calls take the most time.
 
 import {
   BoxGeometry,
@@ -30,7 +30,7 @@ const SHAPES = {
 /** @param {number[]} numbers */
 export const vector = (numbers) => new Vector3(...numbers);
 
-/** All parts of one shape, in any colours. */
+/** All parts of one shape; each has its own colour. */
 class Batch {
   #parts = 0;
   /** @type {InstancedMesh | null} */
@@ -69,7 +69,7 @@ class Batch {
     if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
   }
 
-  /** What draws the parts that there are by now. */
+  /** The mesh that draws all parts added so far. */
   get mesh() {
     if (!this.#mesh) {
       this.#mesh = new InstancedMesh(this.geometry, this.material, this.#parts);
@@ -117,12 +117,12 @@ export class Shapes {
     return [...this.#batches.values(), ...(this.#labels ? [this.#labels] : [])];
   }
 
-  /** Nothing is added from here on. */
+  /** Add all batches to the scene, after the last part was created. */
   finish() {
     for (const batch of this.#all) this.scene.add(batch.mesh);
   }
 
-  /** Put all parts that are visible where they are in the scene by now. */
+  /** Update the drawn position of each visible part. */
   put() {
     for (const batch of this.#all) batch.begin();
     this.scene.updateMatrixWorld();
@@ -131,7 +131,7 @@ export class Shapes {
   }
 
   /**
-   * A rod along `count` corners, with round elbows.
+   * Return a rod along `count` corners, with round elbows.
    *
    * @param {number} count
    * @param {keyof Front.Palette} colour
@@ -147,7 +147,7 @@ export class Shapes {
   }
 
   /**
-   * Three arrows from the origin: x red, y green, z blue, each with its letter.
+   * Return three arrows from the origin, each with its letter: x red, y green, z blue.
    *
    * @param {number} length
    */
@@ -181,7 +181,7 @@ export class Shapes {
 }
 
 /**
- * Lay a mesh whose shape is along y from one point to another.
+ * Place a mesh whose shape is along y between two points.
  *
  * @param {Object3D} mesh
  * @param {Vector3} from
@@ -199,7 +199,7 @@ export function lay(mesh, from, to, radius) {
 }
 
 /**
- * Lay the rods of `Shapes.rods` along corners.
+ * Place the rods of `Shapes.rods` along corners.
  *
  * @param {Group} group
  * @param {number[][]} corners

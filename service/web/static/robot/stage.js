@@ -1,5 +1,5 @@
-// Where the robot is shown: a 3D view with buttons and keys for whoever has no mouse, or, in a browser
-// without WebGL, a drawing by the service.
+// Shows the robot: in 3D, with buttons and keys to move without a mouse, or, in a browser without WebGL,
+// as a drawing by the service.
 
 import { h } from "../shared/dom.js";
 
@@ -7,7 +7,7 @@ const TURN = Math.PI / 12;
 const NEARER = 1.25;
 const IN_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
-/** How the browser draws in 3D: "hardware", "software", or null where it does not at all. */
+/** Return how the browser draws in 3D: "hardware", "software", or null if it cannot. */
 function webGl() {
   try {
     const context = document.createElement("canvas").getContext("webgl2");
@@ -27,7 +27,7 @@ export class Stage {
   #closed = false;
 
   /**
-   * `draw(theme)` gives the SVG of the picture as it is, for a browser without WebGL.
+   * `draw(theme)` returns the SVG of the current picture, for a browser without WebGL.
    *
    * @param {Front.DrawSvg} draw
    */
@@ -38,7 +38,7 @@ export class Stage {
     this.isFlat = false;
   }
 
-  /** Load what draws. */
+  /** Load the 3D view, or the drawing if that fails. */
   async open() {
     const drawnBy = webGl();
     try {
@@ -91,7 +91,7 @@ export class Stage {
     canvas.setAttribute("role", "img");
     canvas.setAttribute(
       "aria-label",
-      "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.",
+      "The robot in 3D. Arrow keys rotate the view, plus and minus zoom, 0 resets the view.",
     );
     canvas.addEventListener("keydown", (event) => this.#pressed(event, scene));
     /** @type {(text: string, name: string, act: () => void) => HTMLElement} */

@@ -1,4 +1,4 @@
-// What stands around the picture of a robot: sliders, numbers of symbols, which frames are shown, points.
+// The panels around the picture of a robot: sliders, values of symbols, frame switches, coordinates.
 
 import { decimal, h, visible } from "../shared/dom.js";
 import { column } from "./motion.js";
@@ -11,7 +11,7 @@ const LARGEST = 1e6;
 /** A slider for each joint variable. */
 export class JointSliders {
   /**
-   * `host` hears: prepare(i) before a slider moves, dragged(i, value), released().
+   * Calls of `host`: prepare(i) before a slider moves, dragged(i, value), released().
    *
    * @param {{ prepare(i: number): void, dragged(i: number, value: number): void, released(): void }} host
    */
@@ -72,10 +72,10 @@ export class JointSliders {
   }
 }
 
-/** A number for each symbol that is no joint variable, folded away. */
+/** A field for the value of each symbol that is not a joint variable; folded at first. */
 export class SymbolFields {
   /**
-   * `chosen(name, value)` hears of each number; `descriptions` are those of the symbols by name.
+   * `chosen(name, value)` is called for each new value. `descriptions` describes the symbols by name.
    *
    * @param {(name: string, value: number) => void} chosen
    * @param {Record<string, string>} [descriptions]
@@ -126,7 +126,7 @@ export class SymbolFields {
   }
 }
 
-/** Which frames of the table are shown. */
+/** Checkboxes that show or hide each frame of the table. */
 export class FrameSwitches {
   /** @type {Set<number>} */
   #hidden = new Set();
@@ -170,7 +170,7 @@ export class FrameSwitches {
   }
 }
 
-/** Where the tool and the last frame are. */
+/** The coordinates of the tool and of the last frame. */
 export class PoseNumbers {
   constructor() {
     this.element = h("div", { class: "pose-numbers" });

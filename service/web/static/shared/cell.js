@@ -1,4 +1,4 @@
-// One cell: a native input, how its text is understood, and its mark after a check.
+// A cell: an input, how the service reads its text, and its mark after a check.
 
 import { h, visible } from "./dom.js";
 import { mathml } from "./markup.js";
@@ -10,7 +10,7 @@ export class Cell {
   #before = "";
 
   /**
-   * `place` says where the cell is, and its name aloud (`spoken`); `owner` hears of all that happens.
+   * `place` says where the cell is, and how screen readers name it (`spoken`). `owner` gets all events.
    *
    * @param {Place} place
    * @param {Front.CellOwner<Place>} owner
@@ -49,7 +49,7 @@ export class Cell {
   }
 
   /**
-   * Put another text here, without a step for undo.
+   * Replace the text without adding a step for undo.
    *
    * @param {string} text
    */
@@ -72,7 +72,7 @@ export class Cell {
   }
 
   /**
-   * Show how the text is understood: an answer of the preview, or null for an empty cell.
+   * Show how the service reads the text; null for an empty cell.
    *
    * @param {Front.Reading | null} reading
    */
@@ -97,7 +97,7 @@ export class Cell {
   }
 
   /**
-   * The button that writes the repaired text.
+   * Return a button that replaces the text by a suggestion.
    *
    * @param {string} suggestion
    * @returns {HTMLElement}
@@ -113,7 +113,7 @@ export class Cell {
   }
 
   /**
-   * Underline [from, to) of the text, which is counted in code points.
+   * Underline [from, to) of the text, counted in code points.
    *
    * @param {[number, number] | null} span
    */
@@ -132,7 +132,7 @@ export class Cell {
   }
 
   /**
-   * Mark the cell as its report says; null takes the mark away.
+   * Show the mark of a report; null removes it.
    *
    * @param {Api.CellReport | null} report
    */

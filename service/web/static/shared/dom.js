@@ -1,4 +1,4 @@
-// Elements are made here and nowhere from text: whatever a student or a file says stays text.
+// Creates elements. No element is made from a string, so the texts of students and files are never markup.
 
 /**
  * Return an element with attributes, listeners and children; a child that is null or false is left out.
@@ -20,7 +20,7 @@ export function h(tag, attributes = {}, ...children) {
 }
 
 /**
- * Return the element of the page that has this id, and is of this class.
+ * Return the element of the page with this id. Throws an Error if it is missing or of another class.
  *
  * @template {HTMLElement} Kind
  * @param {string} id
@@ -32,11 +32,11 @@ export function byId(id, kind) {
   return element;
 }
 
-// Characters that are not seen, or that turn the text around them.
+// Characters that are invisible, or that change the direction of the text.
 const UNSEEN = /[\p{Cc}\p{Cf}\p{Co}\p{Cn}\u2028\u2029]/gu;
 
 /**
- * The text with every invisible character written out by its number, so that it cannot mislead.
+ * Return the text with every invisible character replaced by its code point, such as [U+202E].
  *
  * @param {unknown} text
  */
@@ -51,7 +51,7 @@ export function visible(text) {
 }
 
 /**
- * A message of the service: what stands between two backticks is code.
+ * Return a message of the service as nodes and texts; text between two backticks is code.
  *
  * @param {string} text
  */
@@ -62,7 +62,7 @@ export function message(text) {
 }
 
 /**
- * Points as a report gives them: two decimals at most.
+ * Return a number with at most two decimals.
  *
  * @param {number} value
  */
@@ -71,7 +71,7 @@ export function number(value) {
 }
 
 /**
- * Points out of the most there are, never rounded up to the most.
+ * Return points such as "1.5 / 2"; they are never rounded up to full marks.
  *
  * @param {number} earned
  * @param {number} most

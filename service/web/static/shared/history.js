@@ -1,7 +1,7 @@
-// Undo and redo over all cells of an exercise. A step is a list of changes that were made together.
+// Undo and redo for all cells of an exercise. A step is a list of changes that were made together.
 
 const STEPS = 500;
-// Keys that follow each other so fast in one cell are one step.
+// Keys in one cell with at most this many milliseconds between them are one step.
 const ONE_STEP = 800;
 
 /** @template {{ put(value: any): void }} Target @template Value */
@@ -15,7 +15,7 @@ export class History {
   #at = 0;
 
   /**
-   * Note changes `{target, before, after}`; those by typing are joined with the last ones.
+   * Add changes `{target, before, after}` as a step. Typing may extend the last step instead.
    *
    * @param {Front.Change<Target, Value>[]} changes
    * @param {boolean} [typed]
@@ -34,12 +34,12 @@ export class History {
     this.#future = [];
   }
 
-  /** Take the last step back; the target that is to be shown, or null where there is none. */
+  /** Undo the last step. Return the target to show, or null if there is no step. */
   undo() {
     return this.#move(this.#past, this.#future, "before");
   }
 
-  /** Make the step again that was taken back last. */
+  /** Redo the step that was undone last. Return the target to show, or null if there is no step. */
   redo() {
     return this.#move(this.#future, this.#past, "after");
   }

@@ -34,7 +34,7 @@ export function target(event, cell, rows) {
 }
 
 /**
- * Return "undo" or "redo" if the keys say so, else null.
+ * Return "undo" or "redo" if the pressed keys mean it, or else null.
  *
  * @param {KeyboardEvent} event
  * @returns {Front.Direction | null}

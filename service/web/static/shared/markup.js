@@ -1,5 +1,5 @@
-// Markup from the service, MathML and statements: parsed without being run, and copied element by
-// element where it is known. What is unknown loses its tags and keeps its text.
+// Markup from the service: MathML and statements. It is parsed without running scripts, and only known
+// elements are copied. Of an unknown element, only the content is kept.
 
 const MATHML = "http://www.w3.org/1998/Math/MathML";
 const XHTML = "http://www.w3.org/1999/xhtml";
@@ -46,7 +46,7 @@ function copied(node) {
 }
 
 /**
- * The one `<math>` element in the text, or null where it is none.
+ * Return the `<math>` element of the text, or null if the text is something else.
  *
  * @param {string | undefined} text
  */
@@ -56,7 +56,7 @@ export function mathml(text) {
 }
 
 /**
- * A page that the service wrote, to be shown where a policy lets no script run.
+ * Return a page of the service as a document. Show it only under a policy that blocks scripts.
  *
  * @param {string} text
  */
@@ -65,7 +65,7 @@ export function documentOf(text) {
 }
 
 /**
- * The statement of an exercise as nodes.
+ * Return the statement of an exercise as nodes.
  *
  * @param {string} text
  */
@@ -74,7 +74,7 @@ export function html(text) {
 }
 
 /**
- * A matrix of formulas, each the text of a `<math>` element.
+ * Return a matrix of formulas; each is given as the text of a `<math>` element.
  *
  * @param {string[][]} rows
  */
@@ -88,6 +88,6 @@ export function matrix(rows) {
   /** @type {(text: string) => Element} */
   const entry = (text) => make("mtd", ...(mathml(text)?.childNodes ?? []));
   const table = make("mtable", ...rows.map((row) => make("mtr", ...row.map(entry))));
-  // Its brackets are drawn by the style sheet: not every system has a font whose brackets grow.
+  // The style sheet draws the brackets, because not every system has a font with brackets that grow.
   return make("math", table);
 }

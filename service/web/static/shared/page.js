@@ -1,4 +1,4 @@
-// What the service's own pages add: the choice of light or dark, and the search in the catalogue.
+// The script of the service's own pages: the choice of light or dark, and the search in the catalogue.
 
 import { byId, h } from "./dom.js";
 
@@ -25,7 +25,7 @@ function choose(theme) {
   try {
     localStorage.setItem(NAME, theme);
   } catch {
-    // The choice then lasts as long as the page.
+    // Without storage, the choice is lost when the page is closed.
   }
 }
 

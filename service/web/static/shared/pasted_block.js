@@ -1,23 +1,24 @@
-// A block of cells from a spreadsheet, smaller than the table: it goes where the cursor is.
+// A block of cells from a spreadsheet that is smaller than the table. It fills the cells from the cursor on.
 
-// What another program would mean by several values: a table for the service to read.
+// A text with one of these may be a table of another program, which the service reads.
 const OF_A_TABLE = /[&|[\]{}]|\\\\/;
 
 /**
- * The cells of a text as spreadsheets copy them, row by row; null where it is no block of two cells or more.
+ * Return the rows of cells of a text that was copied from a spreadsheet, or null if it is not a block of at least two
+ * cells.
  *
  * @param {string} text
  */
 export function blockOf(text) {
   const rows = text.replace(/\r\n?/g, "\n").replace(/\n$/, "").split("\n").map((row) => row.split("\t").map(unquoted));
   const isBlock = rows.every((row) => row.length === rows[0].length) && rows.length * rows[0].length > 1;
-  // One column is also how a table looks whose values stand side by side.
+  // A single column with separators may be a table with a row in each line.
   const isTable = OF_A_TABLE.test(text) || (rows[0].length === 1 && /[ ,;]/.test(text.trim()));
   return isBlock && !isTable ? rows : null;
 }
 
 /**
- * A cell that holds quotes is copied in quotes, with its own doubled.
+ * Return the text of a cell. Spreadsheets copy a cell that contains quotes in quotes, with the inner ones doubled.
  *
  * @param {string} text
  */
@@ -27,7 +28,7 @@ function unquoted(text) {
 }
 
 /**
- * The cells that a block fills from `cell` on in `rows` (lists of cells), with their texts; null where it does not fit.
+ * Return the cells of `rows` that a block fills from `cell` on, with their texts, or null if it does not fit.
  *
  * @template Cell
  * @param {Cell} cell
@@ -44,7 +45,7 @@ export function placedFrom(cell, rows, block) {
 }
 
 /**
- * Return a cell and its text, as two values and not as a list of either.
+ * Return a cell and its text as a pair; the type checker would infer a list.
  *
  * @template Cell
  * @param {Cell} cell

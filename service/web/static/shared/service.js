@@ -1,9 +1,9 @@
-// The service over HTTP: each failure is one kind of error with words for the student.
+// Requests to the service. Each failure is a ServiceError with a message for the student.
 
-// Longer than any grading: whoever waits so long has no connection.
+// Milliseconds until a request fails; longer than any grading.
 const PATIENCE = 20_000;
-// A student has no key: that is the course's site's.
-const KEY_NEEDED = "Open this exercise from your course's site: here it needs a key.";
+// Students have no key; the course's site has it.
+const KEY_NEEDED = "Please open this exercise from your course page.";
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
 export class ServiceError extends Error {
@@ -17,7 +17,7 @@ export class ServiceError extends Error {
 
 export class Service {
   /**
-   * `base` is the address of the service, with a slash at its end; `token` gives that of the learner, if any.
+   * `base` is the address of the service, with a slash at its end. `token` returns the learner's token, or null.
    *
    * @param {string} base
    * @param {() => string | null} [token]
@@ -66,7 +66,7 @@ export class Service {
       options.method = "POST";
       headers.set("Content-Type", "application/json");
       options.body = JSON.stringify(body);
-      // What is only read needs none, and is asked for without a question beforehand.
+      // Other requests need no token; without this header, the browser sends them without a preflight.
       const token = this.token();
       if (token) headers.set("Authorization", `Bearer ${token}`);
     }
@@ -76,7 +76,7 @@ export class Service {
       content = await answer.json();
     } catch {
       throw answer === undefined || answer.ok
-        ? new ServiceError("offline", "The service cannot be reached. Your answers are kept in this browser.")
+        ? new ServiceError("offline", "The service cannot be reached. Your answers are saved in this browser.")
         : failure(answer.status, {});
     }
     if (!answer.ok) throw failure(answer.status, content ?? {});
@@ -87,7 +87,7 @@ export class Service {
 /** @param {number} status @param {Partial<Api.Problem>} problem */
 function failure(status, problem) {
   if (status === 429 || status === 503) {
-    return new ServiceError("busy", "The service has a lot to do. Try again in a few seconds.", status);
+    return new ServiceError("busy", "The service is busy. Try again in a few seconds.", status);
   }
   const kind = status >= 500 ? "failed" : "refused";
   if (problem.type?.endsWith("key-needed")) return new ServiceError(kind, KEY_NEEDED, status);

@@ -1,11 +1,11 @@
-// Answers that survive a reload, and links that carry them. A browser that keeps nothing is no error.
+// Saves answers in the browser, and packs them into links. A browser without storage is no error.
 
 const PREFIX = "dh-grader";
 // The fragment of an address is never sent to a server.
 const NAME = "#answers=";
 const LONGEST = 60_000;
 
-/** The answers to an exercise of one service, in this browser. */
+/** The saved answers to one exercise of one service. */
 export class Store {
   /** @param {string} base @param {string} exercise */
   constructor(base, exercise) {
@@ -21,7 +21,7 @@ export class Store {
   }
 
   /**
-   * Keep the answers; false where the browser does not.
+   * Save the answers; null deletes them. Return false if the browser does not allow it.
    *
    * @param {Front.Answers | null} answers
    */
@@ -37,7 +37,7 @@ export class Store {
 }
 
 /**
- * The answers as a fragment.
+ * Return the answers as the fragment of an address.
  *
  * @param {Front.Answers} answers
  */
@@ -46,7 +46,7 @@ export function fragment(answers) {
 }
 
 /**
- * A value as letters that may stand in an address.
+ * Return a value as URL-safe base64.
  *
  * @param {unknown} value
  */
@@ -57,7 +57,7 @@ export function packed(value) {
 }
 
 /**
- * The value that was packed; null for any other text.
+ * Return the value that `packed` encoded, or null for any other text.
  *
  * @param {string} letters
  * @returns {unknown}
@@ -74,7 +74,7 @@ export function unpacked(letters) {
 }
 
 /**
- * The answers in a fragment, or null.
+ * Return the answers in a fragment, or null.
  *
  * @param {string} hash
  */
@@ -83,7 +83,7 @@ export function answersIn(hash) {
 }
 
 /**
- * Answers of the right shape, whatever was stored or linked: `{unit, parts: {id: {cells, choice}}}`.
+ * Return a stored or linked value as answers `{unit, parts: {id: {cells, choice}}}`, or null if it has another shape.
  *
  * @param {any} value
  * @returns {Front.Answers | null}
@@ -97,7 +97,7 @@ function checked(value) {
     Array.isArray(part?.cells) && part.cells.every((/** @type {unknown} */ cell) => typeof cell === "string");
   const given = Object.entries(value.parts);
   if (!given.every(([, part]) => isPart(part))) return null;
-  // Made from entries, so that a part named __proto__ is a part like any other.
+  // Made from entries, so that a part may be named __proto__.
   const parts = Object.fromEntries(
     given.map(([id, { cells, choice }]) => [id, { cells, choice: typeof choice === "string" ? choice : "" }]),
   );

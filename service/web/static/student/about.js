@@ -1,10 +1,10 @@
-// What an exercise asks: its title and source, its statement with the robot, and its symbols.
+// The task of an exercise: title and source, statement with the robot, and symbols.
 
 import { h, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
 
 /**
- * Return what is asked; beside the cells it scrolls by itself, also by keyboard.
+ * Return the section with the task. Beside the cells, it scrolls separately, also by keyboard.
  *
  * @param {Api.Exercise} exercise
  * @param {"h1" | "h2"} level of the title
@@ -27,7 +27,7 @@ export function about({ title, source, statement, statement_html: markup, symbol
     "section",
     { class: "about", tabindex: 0, "aria-labelledby": "title" },
     header,
-    // The button stands before what it opens: it stays in sight, and Tab goes on into the view.
+    // The button comes before the view that it opens, so that it stays visible and Tab leads into the view.
     h("div", { class: "statement" }, robot?.button, robot?.figure, ...text),
     terms.length ? h("section", { class: "symbols" }, head, h("dl", {}, ...terms)) : null,
   );

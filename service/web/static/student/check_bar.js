@@ -1,4 +1,4 @@
-// The bar below an exercise: the button that has it graded, the points, and what went wrong on the way.
+// The bar below an exercise: the Check button, the points, and errors of the connection.
 
 import { h, points, visible } from "../shared/dom.js";
 
@@ -21,7 +21,7 @@ export class CheckBar {
   }
 
   /**
-   * Show why the service does not answer, or nothing; return whether this was not shown before.
+   * Show an error of the service, or none. Return true if the error is a new one.
    *
    * @param {Error | null} error
    */
@@ -40,7 +40,7 @@ export class CheckBar {
     this.total.classList.remove("outdated");
   }
 
-  /** The points are about earlier answers. */
+  /** Fade the points, because the answers have changed since. */
   outdated() {
     if (this.total.childNodes.length) this.total.classList.add("outdated");
   }

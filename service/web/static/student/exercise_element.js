@@ -1,9 +1,9 @@
 // <dh-exercise exercise="scara">: an exercise to read, fill in and check, on any page.
 //
-// Attributes: exercise, its id; api, the address of the service (that of this script by default);
-// parts, the ids of those to show; feedback, the most that a report tells; token, the learner's, where
-// the service needs keys; theme, "light", "dark" or "auto" (by default that of the page). `linked`
-// belongs to the service's own page: the element takes answers from the address. The event `graded`
+// Attributes: exercise, its id; api, the address of the service (by default that of this script);
+// parts, the ids of the parts to show; feedback, the highest feedback level; token, the learner's token
+// if the service needs keys; theme, "light", "dark" or "auto" (by default that of the page). `linked`
+// is for the service's own page: the element reads answers from the address. The event `graded`
 // (bubbling, composed) has the report as its detail.
 
 import { h, points, visible } from "../shared/dom.js";
@@ -31,7 +31,7 @@ export class DhExercise extends HTMLElement {
   #loading = 0;
   #onOnline = () => this.#online();
 
-  // Set when an exercise is loaded, and again for another one.
+  // Set whenever an exercise has been loaded.
 
   /** @type {Service} */
   service;
@@ -56,7 +56,7 @@ export class DhExercise extends HTMLElement {
     super();
     const root = this.attachShadow({ mode: "open" });
     this.live = h("p", { class: "aloud", role: "status", "aria-live": "polite" });
-    // Until there is an exercise, what the page itself holds is shown.
+    // Shows the page's own content until the exercise has been loaded.
     this.main = h("div", { class: "exercise" }, h("slot"));
     this.state = h("div", { class: "state" });
     this.received = h("div", { class: "card notice" });
@@ -80,7 +80,7 @@ export class DhExercise extends HTMLElement {
     if (this.isConnected && before !== after) this.#begin();
   }
 
-  /** Load once per turn, however many attributes change. */
+  /** Load the exercise once, even if several attributes change at the same time. */
   #begin() {
     const turn = ++this.#loading;
     queueMicrotask(() => turn === this.#loading && this.isConnected && this.#load(turn));
@@ -89,7 +89,7 @@ export class DhExercise extends HTMLElement {
   /** @param {number} turn */
   async #load(turn) {
     const id = this.getAttribute("exercise");
-    if (!id) return this.#tell("No exercise is chosen", "Name one in the attribute “exercise”.");
+    if (!id) return this.#tell("No exercise is chosen", "Set the attribute “exercise” to the id of an exercise.");
     const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
     this.service = new Service(base, () => this.getAttribute("token"));
     this.main.setAttribute("aria-busy", "true");
@@ -108,7 +108,7 @@ export class DhExercise extends HTMLElement {
   }
 
   /**
-   * A state without an exercise.
+   * Show a message instead of an exercise.
    *
    * @param {string} title
    * @param {string} text
@@ -134,15 +134,15 @@ export class DhExercise extends HTMLElement {
     else this.#begin();
   }
 
-  // What the parts need of their exercise.
+  // The methods that the parts call.
 
-  /** What every request about entries says. */
+  /** Return the fields that every request about entries has. */
   context() {
     return { exercise: this.exercise.id, angle_unit: this.angleUnit };
   }
 
   /**
-   * Say something to a screen reader, after a pause in which nothing else is said.
+   * Announce a text to screen readers, unless another one comes within the pause.
    *
    * @param {string} text
    * @param {number} [pause]
@@ -153,7 +153,7 @@ export class DhExercise extends HTMLElement {
   }
 
   /**
-   * Show that the service does not answer; null when it does.
+   * Show an error of the service; null removes it.
    *
    * @param {Error | null} error
    */
@@ -161,7 +161,7 @@ export class DhExercise extends HTMLElement {
     if (this.bar.failed(error)) this.announce(String(error?.message));
   }
 
-  /** The answers have changed: keep them. */
+  /** Save the changed answers after a pause. */
   edited() {
     this.robot?.changed();
     clearTimeout(this.#saving);
@@ -175,8 +175,8 @@ export class DhExercise extends HTMLElement {
     this.saved.textContent = empty
       ? ""
       : kept
-      ? "Kept in this browser"
-      : "This browser keeps nothing: a reload loses the answers";
+      ? "Saved in this browser"
+      : "This browser cannot save your answers: a reload loses them";
   }
 
   get angleUnit() {
@@ -212,7 +212,7 @@ export class DhExercise extends HTMLElement {
     this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
     this.store = new Store(this.service.base, exercise.id);
     const wanted = this.getAttribute("parts")?.trim().split(/[\s,]+/);
-    // The service's own page has no other title.
+    // On the service's own page, the exercise's title is the title of the page.
     const isOwn = this.hasAttribute("linked");
     this.bar = new CheckBar(() => this.check());
     this.#parts = exercise.parts
@@ -239,7 +239,7 @@ export class DhExercise extends HTMLElement {
     this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
   }
 
-  // The robot, drawn and in 3D.
+  // The robot: its drawing and its 3D view.
 
   #robotFigure() {
     const { figure, symbols, title, id } = this.exercise;
@@ -257,7 +257,7 @@ export class DhExercise extends HTMLElement {
     return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen), failed);
   }
 
-  /** The table that the student filled in, if there is one: the last one that was changed. */
+  /** Return the table that the student changed last, if there is one. */
   #tableToDraw() {
     const tables = this.#parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
     const [table] = tables.sort((one, other) => other.changedAt - one.changedAt);
@@ -269,7 +269,7 @@ export class DhExercise extends HTMLElement {
   }
 
   /**
-   * Answers that came by a link; the student's own can be had back.
+   * Show the answers from a link. The student can restore their own.
    *
    * @param {Front.Answers} shared
    * @param {Front.Answers | null} own
@@ -284,7 +284,7 @@ export class DhExercise extends HTMLElement {
     };
     this.received.replaceChildren(
       h("p", {}, "These answers came with the link."),
-      own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Back to my own") : "",
+      own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Restore my own answers") : "",
     );
     this.received.hidden = false;
     history.replaceState(null, "", location.pathname + location.search);
@@ -294,14 +294,14 @@ export class DhExercise extends HTMLElement {
     this.saved = h("p", { class: "quiet saved" });
     this.unit = h(
       "select",
-      { "aria-label": "Plain numbers in angles are", onchange: () => this.#unitChanged() },
+      { "aria-label": "Angles without a unit", onchange: () => this.#unitChanged() },
       h("option", { value: "radians" }, "radians"),
       h("option", { value: "degrees" }, "degrees"),
     );
     return h(
       "div",
       { class: "tools" },
-      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
       this.saved,
       h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link"),
       h("button", { type: "button", class: "quiet-button", onclick: () => this.#clear() }, "Clear"),
@@ -318,14 +318,14 @@ export class DhExercise extends HTMLElement {
     for (const part of this.#parts) part.clearReport();
     this.#save();
     this.bar.outdated();
-    this.announce("All cells are empty. Ctrl+Z in a cell takes it back.");
-    this.saved.textContent = "Cleared; Ctrl+Z takes it back";
+    this.announce("All cells are empty. Press Ctrl+Z in a cell to undo.");
+    this.saved.textContent = "Cleared; press Ctrl+Z to undo";
     this.#parts[0]?.focus(this.#parts[0].cells[0]);
   }
 
   async #share() {
     const address = this.service.address(`exercises/${encodeURIComponent(this.exercise.id)}`) + fragment(this.answers);
-    let told = "Link copied: it holds your answers";
+    let told = "Link copied, with your answers";
     try {
       await navigator.clipboard.writeText(address);
     } catch {
@@ -333,14 +333,14 @@ export class DhExercise extends HTMLElement {
         history.replaceState(null, "", new URL(address).hash);
         told = "The link is in the address bar";
       } else {
-        told = "The browser does not let this page copy";
+        told = "The browser did not allow copying";
       }
     }
     this.saved.textContent = told;
     this.announce(told);
   }
 
-  /** Have all parts graded that hold something, and show the report. */
+  /** Grade all parts that are not empty, and show the report. */
   async check() {
     const filled = this.#parts.filter((part) => !part.isEmpty);
     if (!filled.length) {
@@ -385,7 +385,7 @@ export class DhExercise extends HTMLElement {
   }
 
   /**
-   * Points of the parts that are shown.
+   * Return the points of the shown parts.
    *
    * @param {Api.Report} report
    */

@@ -1,10 +1,10 @@
-// The grids of a part as tables: heads, rows of cells, and below each row the messages on it.
+// The grids of a part as tables: headings, rows of cells, and messages below each row.
 
 import { h, points } from "../shared/dom.js";
 import { Cell, SIGNS } from "../shared/cell.js";
 
 /**
- * The rows of a layout, in order, with their cells; `elements` are the tables.
+ * Return the rows of a layout in order (`rows`), and their tables (`elements`).
  *
  * @param {Front.Layout} layout
  * @param {Api.Part} part
@@ -53,7 +53,7 @@ function headOf(column) {
   return h("th", { scope: "col" }, seen, column.spoken ? h("span", { class: "aloud" }, column.spoken) : null);
 }
 
-/** One row: `cells`, its mark, its points, and the row of messages below it. */
+/** A row with its cells, mark and points, and with the row of messages below it. */
 export class RowView {
   /**
    * @param {Front.Row} row
@@ -89,7 +89,7 @@ export class RowView {
   }
 
   /**
-   * Mark the row and its cells as the report says, with messages below; null takes all away.
+   * Show the marks and messages of a report on the row; null removes them.
    *
    * @param {Api.RowReport | null} report
    * @param {HTMLElement[]} [items]
@@ -103,7 +103,7 @@ export class RowView {
     this.notes.hidden = items.length === 0;
   }
 
-  /** The row is no longer as it was checked. */
+  /** Remove the mark of the row, because a cell has changed. */
   outdated() {
     this.setVerdict(null);
     this.worth.textContent = "";

@@ -1,6 +1,6 @@
-// The kinds of answers: which grids of cells one has, and the JSON that its cells are posted as.
-// A part is described by its shape (GET /v1/exercises/{id}); the cells of all its grids are one list
-// of rows, each with the label that it has in a report.
+// The kinds of answers: the grids of cells of each kind, and the JSON in which they are posted. The shape
+// of a part (GET /v1/exercises/{id}) describes it. The rows of all its grids form one list, with the labels
+// that they have in reports.
 
 /** @type {Record<string, Api.Quantity>} */
 const QUANTITIES = { a: "length", alpha: "angle", d: "length", theta: "angle" };
@@ -19,14 +19,14 @@ const chunks = (values, size) =>
   Array.from({ length: Math.ceil(values.length / size) }, (_, i) => values.slice(i * size, (i + 1) * size));
 
 /**
- * The layout of a part: `grids`, each with `title`, `look`, `columns` and `rows`; `answer(texts, choice)` makes the
- * JSON of all texts in order; `choices` are the options beside the cells, by value.
+ * Return the layout of a part: `grids`, each with `title`, `look`, `columns` and `rows`; `choices`, the options beside
+ * the cells by value; `answer(texts, choice)`, which makes JSON of all texts in order.
  *
  * @param {Pick<Api.Part, "kind" | "shape">} part
  * @returns {Front.Layout}
  */
 export function layoutOf(part) {
-  // Each function takes the shape of its own form.
+  // The function of a form takes shapes of this form.
   const form = /** @type {(shape: Api.Part["shape"], kind: string) => Front.Layout} */ (FORMS[part.shape.form]);
   return form(part.shape, part.kind);
 }
@@ -44,7 +44,7 @@ const FORMS = {
       }],
       choices: either
         ? {
-          "": "Convention: not said",
+          "": "Convention: not specified",
           standard: "Convention: standard (distal)",
           modified: "Convention: modified (proximal)",
         }
@@ -127,7 +127,7 @@ const FORMS = {
 };
 
 /**
- * The columns of a DH table; in the modified convention a and α have the index before the row's.
+ * Return the columns of a DH table. In the modified convention, a and α have the index i−1.
  *
  * @param {{ columns: string[], convention: string }} shape
  * @returns {Front.Column[]}

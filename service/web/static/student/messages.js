@@ -1,4 +1,4 @@
-// The messages of a report, as items of a list.
+// The messages of a report as list items.
 
 import { h, message, visible } from "../shared/dom.js";
 import { SIGNS } from "../shared/cell.js";
@@ -9,7 +9,7 @@ const YOURS = "yours";
 const EXPECTED = "expected";
 
 /**
- * Return one message with its places, what to write instead, and a counterexample, as an item of a list.
+ * Return a list item with a message, its places, its correction or repair, and its counterexample.
  *
  * @param {Omit<Api.Feedback, "code" | "severity"> & { severity: string }} feedback
  * @param {{ place?: string, verdict?: Api.Verdict, repair?: ((suggestion: string) => HTMLElement) | null }} [options]
@@ -40,7 +40,7 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
 }
 
 /**
- * Places as "row 1 d, θ; row 2".
+ * Return places in words, such as "row 1 d, θ; row 2".
  *
  * @param {Api.Place[]} places
  */
@@ -54,7 +54,7 @@ function placesInWords(places) {
 }
 
 /**
- * The name of a cell by its label in a report.
+ * Return the name of a cell with this label in a report.
  *
  * @param {string} label
  */

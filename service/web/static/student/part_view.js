@@ -1,4 +1,4 @@
-// One part of an exercise: its prompt, its cells, the bar that says how the cell is read, its report.
+// A part of an exercise: its prompt, cells and report, and the line that shows how the current cell is read.
 
 import { h, message, points, visible } from "../shared/dom.js";
 import { gridsOf } from "./grid_view.js";
@@ -8,7 +8,7 @@ import { cellName, item } from "./messages.js";
 import { blockOf, pair, placedFrom } from "../shared/pasted_block.js";
 import { target, undoKey } from "../shared/keyboard.js";
 
-// A text with one of these may hold several cells; the service says whether it does.
+// A text with one of these may hold several cells; the service decides.
 const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
 const SCRIPT = "unread_script";
 const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a block of cells can be pasted into one.";
@@ -56,7 +56,7 @@ export class PartView {
     const options = Object.entries(choices).map(([value, text]) => h("option", { value }, text));
     return h(
       "select",
-      { class: "choice", "aria-label": `${this.part.title}: what it is`, onchange: () => this.#chosen() },
+      { class: "choice", "aria-label": `${this.part.title}: option`, onchange: () => this.#chosen() },
       ...options,
     );
   }
@@ -73,13 +73,13 @@ export class PartView {
     this.element.classList.toggle("without-row", none);
   }
 
-  /** The answer as it is kept in the browser. */
+  /** The answer as the browser saves it. */
   get state() {
     return { cells: this.cells.map((cell) => cell.text), choice: this.choice?.value ?? "" };
   }
 
   /**
-   * Put a kept answer here; changes are returned as one step for undo.
+   * Fill in a saved answer. Return the changes as one step for undo.
    *
    * @param {Front.PartState} state
    */
@@ -110,7 +110,7 @@ export class PartView {
     return changes;
   }
 
-  // What the cells tell.
+  // The methods that the cells call.
 
   /** @param {Front.PartCell} cell @param {string} before */
   typed(cell, before) {
@@ -137,7 +137,7 @@ export class PartView {
     if (cell === this.#current) this.#showReading(true);
   }
 
-  /** The bar below the grids: how the cell is read that the student is in. */
+  /** Show below the grids how the current cell is read. */
   #showReading(aloud = false) {
     const cell = this.#current;
     const reading = cell?.text.trim() ? cell.reading : null;
@@ -199,7 +199,7 @@ export class PartView {
     else this.host.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
   }
 
-  // Pasted texts. Whether one is a table, and what stands where, is said by the service.
+  // Pasted texts. The service decides if a text is a table, and which cells it has.
 
   /** @param {ClipboardEvent} event @param {Front.PartCell} cell */
   async pasted(event, cell) {
@@ -219,14 +219,14 @@ export class PartView {
       this.host.history.note(this.#fill(pairs));
       this.host.edited();
       this.focus(pairs[0][0]);
-      this.#say(`The pasted text filled ${pairs.length} cells. Ctrl+Z takes it back.`, grid?.notes);
+      this.#say(`The pasted text filled ${pairs.length} cells. Press Ctrl+Z to undo.`, grid?.notes);
       return;
     }
     const misfit = grid?.rows
       ? `The pasted text has ${grid.rows.length} rows, which do not fit here.`
       : grid?.error?.message;
     const told = misfit && !grid?.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
-    // Glued together, a script or several lines would only hide what stood in the cell.
+    // Joined into one line, a script or several lines would make the cell unusable.
     if (told && (grid?.error?.code === SCRIPT || text.trim().includes("\n"))) return this.#say(told);
     const before = cell.text;
     cell.input.setRangeText(
@@ -242,7 +242,7 @@ export class PartView {
   }
 
   /**
-   * The cells that a pasted grid goes to, with their texts; null where it does not fit.
+   * Return the cells that a pasted grid fills, with their texts, or null if it does not fit.
    *
    * @param {Api.PreviewCell[][]} read
    * @param {Front.PartCell} cell
@@ -265,7 +265,7 @@ export class PartView {
   }
 
   /**
-   * The cells that a block from a spreadsheet goes to, within the one grid of the cell.
+   * Return the cells that a block from a spreadsheet fills, all in the grid of `cell`, or null if it does not fit.
    *
    * @param {string[][]} block
    * @param {Front.PartCell} cell
@@ -276,7 +276,8 @@ export class PartView {
   }
 
   /**
-   * Where a pasted grid begins: by its labels, or the one matrix in the matrix of the cell.
+   * Return the first row that a pasted grid fills: the row with its first label, or, for a single matrix without a
+   * name, the first row of the cell's matrix.
    *
    * @param {Api.PreviewCell[][]} read
    * @param {Front.PartCell} cell
@@ -302,7 +303,7 @@ export class PartView {
   // The report.
 
   /**
-   * Show the part's report, with a mark on each row and cell and messages beside them.
+   * Show the part's report: marks on rows and cells, and messages.
    *
    * @param {Api.PartReport} report
    */
@@ -344,7 +345,7 @@ export class PartView {
     this.element.classList.remove("outdated");
   }
 
-  /** What is shown of a report is about an earlier answer. */
+  /** Fade the report, because the answer has changed since. */
   outdated() {
     if (!this.badge.hidden) this.element.classList.add("outdated");
   }

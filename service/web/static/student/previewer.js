@@ -1,8 +1,8 @@
-// What the student types, shown as it is understood: asked for in batches, one request at a time.
+// Requests how the service reads the cells: in batches, one request at a time.
 
 const BATCH = 100;
 const REMEMBERED = 1000;
-// Where the service cannot be reached, the next try waits so many milliseconds.
+// Milliseconds until the next try if the service cannot be reached.
 const RETRY = 3000;
 
 export class Previewer {
@@ -14,7 +14,7 @@ export class Previewer {
   #timer = 0;
 
   /**
-   * `context` gives exercise and angle unit; `failed` hears of each failure, and of its end.
+   * `context` returns exercise and angle unit. `failed` gets each error, and null after the next success.
    *
    * @param {Pick<Front.PreviewService, "previews">} service
    * @param {() => Front.Context} context
@@ -27,7 +27,7 @@ export class Previewer {
   }
 
   /**
-   * Ask how a cell's text is read; its `understood` gets the answer unless it has changed since.
+   * Request how a cell's text is read. The cell's `understood` gets the answer, unless the text has changed since.
    *
    * @param {Front.PartCell} cell
    */
@@ -39,12 +39,12 @@ export class Previewer {
     if (known) return cell.understood(known);
     this.#waiting.set(cell, text);
     clearTimeout(this.#timer);
-    // What changes at once is sent together: a pasted table. Not by a timer, which fires only when the
-    // browser has drawn what was typed; while an answer is on its way, the next ones wait for it.
+    // Cells that change together, as in a pasted table, are sent together. A timer would wait until the
+    // browser has drawn the typed text. While a request is running, the next ones wait.
     queueMicrotask(() => this.#send());
   }
 
-  /** Whether an answer is still to come. */
+  /** True if an answer is still to come. */
   get busy() {
     return this.#busy || this.#waiting.size > 0;
   }

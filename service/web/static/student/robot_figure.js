@@ -1,4 +1,4 @@
-// The drawing of an exercise's robot, and the button that opens the robot in 3D in its place.
+// The drawing of an exercise's robot, and the button that replaces it by the 3D view.
 
 import { h, visible } from "../shared/dom.js";
 
@@ -11,9 +11,9 @@ export class RobotFigure {
   #turn = 0;
 
   /**
-   * `host` is what the view asks of its page, `shown` hears whether it is open, `failed` that it could not be loaded.
+   * The 3D view gets `host`. `shown` is called when the view opens or closes, `failed` if it cannot be loaded.
    *
-   * @param {string} address the drawing's
+   * @param {string} address of the drawing
    * @param {string} title
    * @param {Front.ViewHost} host
    * @param {(isOpen: boolean) => void} shown
@@ -29,18 +29,18 @@ export class RobotFigure {
       CLOSED,
     );
     const drawing = h("img", { src: address, alt: `Drawing of the robot: ${visible(title)}`, class: "loading" });
-    // The text below must not jump when the drawing arrives.
+    // Reserves space, so that the text below does not jump when the drawing arrives.
     for (const name of ["load", "error"]) drawing.addEventListener(name, () => drawing.classList.remove("loading"));
     this.figure = h("figure", {}, drawing);
   }
 
-  /** The answers have changed, maybe the table that is drawn. */
+  /** Update the 3D view after the answers have changed. */
   changed() {
     this.#view?.changed();
   }
 
   /**
-   * Load the 3D view, which takes a moment, and open it; or close it.
+   * Load and open the 3D view, or close it.
    *
    * @returns {Promise<void>}
    */

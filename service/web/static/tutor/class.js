@@ -1,11 +1,11 @@
-// The report on a class: files of the browser's machine, graded by the service and shown in a frame.
+// The report on a class: local files, graded by the service and shown in a frame.
 
 import { byId, h, visible } from "../shared/dom.js";
 import { documentOf } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
 import { entries, textOf } from "./zip.js";
 
-// What the service takes, packed and of one file; a larger file is named, and its content left here.
+// The service's limits, in bytes, on a packed body and on one file. Of a larger file only the name is sent.
 const MOST_PACKED = 256 * 1024;
 const LARGEST_FILE = 256 * 1024;
 const MOST_FILES = 2000;
@@ -41,12 +41,12 @@ async function showParts() {
 }
 
 /**
- * A file as it is sent: text where it is text, else its bytes.
+ * Return a file as the service takes it: as text if it is UTF-8, otherwise as bytes.
  *
  * @param {File} file
  */
 async function sent(file) {
-  // Of a folder without its own name.
+  // Without the name of the chosen folder itself.
   const path = file.webkitRelativePath.split("/").slice(1).join("/") || file.name;
   if (file.size > LARGEST_FILE) return { path };
   const bytes = new Uint8Array(await file.arrayBuffer());
@@ -65,22 +65,22 @@ async function grade(input) {
   const files = [...(input.files ?? [])].filter((file) => !isHidden(file));
   input.value = "";
   frame.hidden = bar.hidden = true;
-  if (!files.length) return tell("There is no file in it.");
+  if (!files.length) return tell("No files found.");
   if (files.length > MOST_FILES) {
-    return tell(`${files.length} files are too many here: grade them on the command line.`);
+    return tell(`${files.length} files are too many for this page. Grade them on the command line.`);
   }
   tell(`Grading ${files.length} ${files.length === 1 ? "file" : "files"} …`);
   const upload = { exercise: exercise.value, part: part.value || null, files: await Promise.all(files.map(sent)) };
   const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
   const body = await new Response(packed).arrayBuffer();
   if (body.byteLength > MOST_PACKED) {
-    return tell("The files are too large for the browser: grade them on the command line.");
+    return tell("The files are too large for this page. Grade them on the command line.");
   }
   try {
     archive = await (await post("../tutor/class", body, "application/gzip")).arrayBuffer();
     found = entries(archive);
     await show(INDEX);
-    tell(`${found.size - 1} ${found.size === 2 ? "submission" : "submissions"}. Nothing is kept by the service.`);
+    tell(`${found.size - 1} ${found.size === 2 ? "submission" : "submissions"}. The service does not keep them.`);
     bar.hidden = false;
   } catch (error) {
     tell(refusal(error));
@@ -88,7 +88,7 @@ async function grade(input) {
 }
 
 /**
- * Show a page of the archive in the frame, when the one before is there.
+ * Show a page of the archive in the frame, after the previous page has loaded.
  *
  * @param {string} name
  */
@@ -102,11 +102,11 @@ async function load(name) {
   const entry = found.get(name);
   if (!archive || !entry) return;
   const text = await textOf(archive, entry);
-  // The style is for the frame's policy to allow, and not for that of this page.
+  // The frame's policy allows this style, but the policy of this page does not.
   const [before, style, after] = text.split(/<style>|<\/style>/);
   const page = documentOf(before + after);
-  // The frame's policy allows the styles of both kinds of page. That of the page itself would go on
-  // to hold for whatever the frame shows next, where it was still there.
+  // Remove the page's own policy, which would also apply to the next page in the frame. The frame's
+  // policy allows the styles of both kinds of page.
   page.querySelector("meta[http-equiv]")?.remove();
   frame.hidden = false;
   back.hidden = name === INDEX;

@@ -1,10 +1,10 @@
-// The editor of exercise files: the checks of the command line as the author types.
+// The editor of exercise files: it runs the checks of the command line while the author types.
 
 import { byId, h, message, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
 
-// After so many milliseconds without a key the text is checked.
+// Milliseconds after the last key until the text is checked.
 const PAUSE = 300;
 /** @type {Record<string, string>} */
 const LEVELS = { unusable: "cannot be used", failed: "failed", warning: "warning" };
@@ -37,7 +37,7 @@ function edited() {
   timer = setTimeout(check, PAUSE);
 }
 
-/** Ask for the findings; one request at a time, and the last text is never left out. */
+/** Request the findings. Only one request runs at a time; the newest text is always checked. */
 async function check() {
   if (busy) return;
   busy = true;
@@ -61,7 +61,7 @@ function show({ findings, summary, preview }) {
   found.replaceChildren(
     h("h2", {}, "Findings"),
     h("p", { class: `verdict ${verdict}` }, h("span", { "aria-hidden": "true" }, told), visible(summary)),
-    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "Nothing to mend."),
+    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "No problems found."),
   );
   if (preview) showPreview(preview);
   else shown.classList.add("outdated");
@@ -122,7 +122,7 @@ async function save() {
     const answer = await post("../tutor/files", JSON.stringify({ ...asked, before: mark }));
     ({ mark } = await answer.json());
     kept = asked.text;
-    saved.textContent = `${asked.id}.toml is written`;
+    saved.textContent = `${asked.id}.toml is saved`;
   } catch (error) {
     saved.textContent = refusal(error);
   }
@@ -133,7 +133,6 @@ area.addEventListener("input", () => {
   edited();
 });
 area.addEventListener("scroll", () => (numbers.scrollTop = area.scrollTop));
-// Tab leaves the text, as everywhere; TOML needs none.
 name.addEventListener("input", () => {
   // Another name is another file.
   mark = "";

@@ -1,19 +1,19 @@
-// What a tutor's pages ask the service for.
+// Requests of the tutor's pages to the service.
 
 const HOME = new URL("../", import.meta.url);
-// So often a request is sent again that the service had no room for, and after at most so many seconds.
+// How often a request is repeated if the service is busy, and the longest pause before that in seconds.
 const TRIES = 5;
 const LONGEST_PAUSE = 10;
 
 /**
- * An address below that of the service.
+ * Return the address of a path of the service.
  *
  * @param {string} path
  */
 export const address = (path) => new URL(path, HOME).href;
 
 /**
- * The answer to a body; throws an Error with the reason where it is refused.
+ * Post a body and return the response. Throws an Error with the reason if it is refused.
  *
  * @param {string} path
  * @param {BodyInit} body
@@ -24,7 +24,7 @@ export function post(path, body, type = "application/json") {
 }
 
 /**
- * The JSON that the service has at a path below its address.
+ * Get the JSON at a path of the service.
  *
  * @param {string} path
  * @returns {Promise<any>}
@@ -34,7 +34,7 @@ export async function get(path) {
 }
 
 /**
- * The JSON that the service answers to a JSON body, at a path below its address.
+ * Post a JSON body to a path of the service and return the JSON of the response.
  *
  * @param {string} path
  * @param {unknown} body
@@ -45,7 +45,7 @@ export async function send(path, body) {
 }
 
 /**
- * The same; where the service has no room for it now, it is sent again.
+ * Post a JSON body as `send` does, and repeat the request while the service is busy.
  *
  * @param {string} path
  * @param {unknown} body
@@ -65,7 +65,7 @@ export async function sendPatiently(path, body) {
 /** @param {number} seconds @returns {Promise<void>} */
 export const pause = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
 
-/** The service refused a request; `pause` says after how many seconds it may be sent again, or 0. */
+/** The service refused a request. `pause` is the number of seconds until it may be repeated, or 0. */
 class Refusal extends Error {
   /** @param {string} reason @param {number} pause */
   constructor(reason, pause) {
@@ -87,7 +87,7 @@ async function asked(path, options) {
 }
 
 /**
- * The words for a request that failed.
+ * Return the message for a failed request.
  *
  * @param {unknown} error
  */

@@ -1,4 +1,4 @@
-// Reading a ZIP archive as the service writes it: its names, and the text of a file.
+// Reads ZIP archives that the service has written.
 
 const END = 0x06054b50;
 const END_SIZE = 22;
@@ -19,7 +19,7 @@ export function entries(buffer) {
     const [nameLength, extra, comment] = [28, 30, 32].map((offset) => view.getUint16(at + offset, true));
     const name = new TextDecoder().decode(new Uint8Array(buffer, at + 46, nameLength));
     const local = view.getUint32(at + 42, true);
-    // The local header has an extra field of its own.
+    // The extra field of the local header may have another length.
     const from = local + 30 + view.getUint16(local + 26, true) + view.getUint16(local + 28, true);
     found.set(name, { from, size: view.getUint32(at + 20, true), packed: view.getUint16(at + 10, true) !== 0 });
     at += 46 + nameLength + extra + comment;
@@ -28,7 +28,7 @@ export function entries(buffer) {
 }
 
 /**
- * The text of an entry.
+ * Return the text of an entry.
  *
  * @param {ArrayBuffer} buffer
  * @param {Front.ZipEntry} entry

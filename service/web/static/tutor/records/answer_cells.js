@@ -1,8 +1,8 @@
-// A recorded answer, in whatever form it was sent, as the texts of the cells of its part.
+// Converts a recorded answer in any form to the texts of the cells of its part.
 
 /**
- * The state of a part (`cells`, `choice`) that has this answer; null where it does not fit, as a text does that the
- * service has to read first.
+ * Return the state of a part (`cells`, `choice`) with this answer, or null if the answer does not fit the cells. A
+ * text does not fit: the service has to read it first.
  *
  * @param {Front.Layout} layout
  * @param {any} answer
@@ -19,7 +19,7 @@ export function cellsOf(layout, answer) {
 }
 
 /**
- * All entries in their order; null where the answer holds anything else.
+ * Return all entries in order, or null if the answer holds anything else.
  *
  * @param {any} answer
  * @param {string[]} labels
@@ -33,7 +33,7 @@ function textsOf(answer, labels) {
     return found.includes(null) ? null : entries;
   }
   if (answer === null || typeof answer !== "object") return null;
-  // A row of a DH table by its columns; one that is left out is empty.
+  // A row of a DH table, by column. An omitted column is empty.
   if (Object.keys(answer).some((name) => !labels.includes(name))) return null;
   return labels.map((label) => String(answer[label] ?? ""));
 }

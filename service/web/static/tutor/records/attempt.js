@@ -1,4 +1,4 @@
-// One recorded attempt: what was handed in, its report and those before it, and the points of a tutor.
+// The page of a recorded attempt: the answers, the reports and the overridden mark.
 
 import { byId, h, number, points, visible } from "../../shared/dom.js";
 import { RecordedReport } from "./recorded_report.js";
@@ -9,7 +9,7 @@ const id = byId("main", HTMLElement).dataset.attempt ?? "";
 const path = `v1/attempts/${encodeURIComponent(id)}`;
 const state = byId("state", HTMLElement);
 const place = byId("attempt", HTMLElement);
-// So many attempts of a learner are listed, the newest.
+// How many of the learner's attempts are listed: the newest ones.
 const MOST_LISTED = "20";
 
 async function load() {
@@ -19,7 +19,7 @@ async function load() {
     const { exercise: name, learner } = found.attempt;
     /** @type {Api.Exercise | null} */
     const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
-    // Also, a browser that shows a key here shows it from then on to all that is beside /v1/attempts.
+    // After this request, the browser sends the key of HTTP Basic to all other addresses below /v1, too.
     const { attempts } = await get(
       `v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`,
     );
@@ -40,7 +40,7 @@ function show(found, exercise, attempts) {
   const drawn = new RecordedReport(exercise, found.submission);
   drawn.show(found.report);
   const about = h("section", { class: "card facts", "aria-label": "Facts" });
-  const given = new PointsGiven(attempt, (changed) => update(changed));
+  const given = new OverrideForm(attempt, (changed) => update(changed));
   /** @type {(now: Api.AttemptDetail) => void} */
   const update = (now) => {
     about.replaceChildren(facts(now, exercise, attempts));
@@ -51,7 +51,7 @@ function show(found, exercise, attempts) {
 }
 
 /**
- * The choice between the report that counts and those that a regrade has replaced.
+ * Return a field to choose between the current report and the reports that a regrade replaced.
  *
  * @param {Api.AttemptDetail} found
  * @param {RecordedReport} drawn
@@ -97,28 +97,31 @@ function facts({ attempt, submission, report }, exercise, attempts) {
     attempts.length > 1 &&
     ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
     ["Points", h("strong", {}, earned(attempt))],
-    attempt.awarded !== undefined && ["instead of", points(attempt.points, attempt.max_points)],
+    attempt.awarded !== undefined && ["Without the override", points(attempt.points, attempt.max_points)],
     late && report.points > 0 &&
-    ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
-    ["Plain angles in", String(submission.angle_unit ?? "radians")],
-    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
+    [
+      "Points in the report",
+      `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`,
+    ],
+    ["Angles without a unit", String(submission.angle_unit ?? "radians")],
+    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the current version)" : ""}, program ${grader}`)],
   ];
   const shown = pairs.filter((pair) => pair !== false);
   return h("dl", {}, ...shown.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
 }
 
 /**
- * How much of its report's points a late attempt earns.
+ * Return in words which share of its report's points a late attempt earns.
  *
  * @param {number} share
  */
 function lateShare(share) {
-  if (share > 0.999) return "all of it although late";
-  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it for being late`;
+  if (share > 0.999) return "all of it counts although it is late";
+  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it counts because it is late`;
 }
 
 /**
- * Whether an answer, or what an answer is made of, holds no letter at all.
+ * Return true if an answer, or each entry of it, is blank.
  *
  * @param {unknown} answer
  * @returns {boolean}
@@ -129,13 +132,13 @@ function isEmpty(answer) {
 }
 
 /**
- * One of the learner's attempts at the exercise: a link, but for the one that is shown.
+ * Return a list item for an attempt of the learner; it is a link unless the attempt is the one on this page.
  *
  * @param {Api.AttemptSummary} attempt
  */
 function ofLearner({ id: other, ordinal }) {
   const name = ordinal === undefined ? "–" : String(ordinal);
-  const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
+  const spoken = ordinal === undefined ? "an attempt that does not count" : `no. ${ordinal}`;
   if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
   return h(
     "li",
@@ -148,10 +151,10 @@ function ofLearner({ id: other, ordinal }) {
   );
 }
 
-/** The form for other points than the report's, and those that were given. */
-class PointsGiven {
+/** The form to override the mark, and the list of earlier overrides. */
+class OverrideForm {
   /**
-   * `changed` gets the attempt anew after each change.
+   * `changed` gets the attempt after each override.
    *
    * @param {Api.AttemptSummary} attempt
    * @param {(attempt: Api.AttemptDetail) => void} changed
@@ -169,20 +172,20 @@ class PointsGiven {
     });
     this.reason = h("input", { id: "reason", type: "text", maxlength: 1000, required: true, autocomplete: "off" });
     this.author = h("input", { id: "author", type: "text", maxlength: 150, autocomplete: "name" });
-    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw them");
+    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw override");
     this.told = h("p", { class: "state-line", role: "status" });
     this.list = h("ul", { class: "given" });
     this.element = h(
       "section",
       { class: "card override", "aria-labelledby": "override-title" },
-      h("h2", { id: "override-title" }, "Other points"),
+      h("h2", { id: "override-title" }, "Override mark"),
       h(
         "form",
         { onsubmit: (event) => this.#give(event) },
         field("Points", this.points, `of ${number(most)}`),
-        field("Reason", this.reason, "kept, and not shown to the learner"),
-        field("Your name", this.author, "if others give points, too"),
-        h("p", { class: "choices" }, h("button", { type: "submit" }, "Give these points"), this.withdrawal),
+        field("Reason", this.reason, "recorded, but not shown to the learner"),
+        field("Your name", this.author, "if several tutors override marks"),
+        h("p", { class: "choices" }, h("button", { type: "submit" }, "Save"), this.withdrawal),
       ),
       this.told,
       this.list,
@@ -191,7 +194,7 @@ class PointsGiven {
 
   /** @param {Api.AttemptDetail} found */
   show({ attempt, overrides }) {
-    // Those of the report would stand here rounded.
+    // Empty without an override, because the points of the report would be rounded here.
     this.points.value = String(attempt.awarded ?? "");
     this.withdrawal.hidden = attempt.awarded === undefined;
     this.list.replaceChildren(...overrides.toReversed().map(override));
@@ -212,7 +215,9 @@ class PointsGiven {
       this.reason.value = "";
       tell(
         this.told,
-        isWithdrawal ? "Withdrawn: the report's points count." : `The attempt has ${number(awarded)} points.`,
+        isWithdrawal
+          ? "Override withdrawn: the points of the report count."
+          : `The attempt has ${number(awarded)} points.`,
       );
     } catch (error) {
       failed(error, this.told);
@@ -245,6 +250,6 @@ function override({ points: given, reason, author, at }) {
   );
 }
 
-// The list as it was left: its filters and its page.
+// Return to the list with the same filters and page.
 byId("back-to-list", HTMLAnchorElement).search = location.search;
 load();

@@ -1,4 +1,4 @@
-// The list of recorded attempts: filters, pages, and all of a learner deleted.
+// The list of recorded attempts: its filters and pages, and the deletion of a learner's data.
 
 import { byId, h } from "../../shared/dom.js";
 import {
@@ -22,7 +22,7 @@ const form = byId("filters", HTMLFormElement);
 const state = byId("state", HTMLElement);
 const list = byId("list", HTMLElement);
 
-// The cursors of the pages up to the one that is shown; the first page has none. They stand in the address.
+// The cursors of the pages up to the current one, which are also in the address. That of the first page is empty.
 let cursors = [""];
 let turn = 0;
 
@@ -52,7 +52,7 @@ function draw({ attempts, next }, wanted) {
     tell(state, "");
     const isNarrowed = Object.values(wanted).some(Boolean);
     list.replaceChildren(
-      isNarrowed ? nothing("No attempt is like this", "Take a filter away.") : nothing(
+      isNarrowed ? nothing("No attempt matches the filters", "Remove a filter.") : nothing(
         "Nobody has handed in yet",
         "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts.",
       ),
@@ -85,9 +85,9 @@ function row(attempt) {
   const remarks = [
     ordinal === undefined && "nothing readable",
     late && "late",
-    awarded !== undefined && "points by a tutor",
+    awarded !== undefined && "mark overridden",
   ];
-  // The attempt's page leads back to the list as it is now.
+  // The link keeps the filters, so that the attempt's page can link back to this list.
   const open = h(
     "a",
     { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search },
@@ -126,7 +126,7 @@ function pages(next) {
 }
 
 /**
- * The filters have changed: the first page.
+ * Show the first page after the filters have changed.
  *
  * @param {Event} [event]
  */
@@ -137,16 +137,15 @@ function changed(event) {
   return show();
 }
 
-/** Put filters and page into the address, which can be kept, and which the browser comes back to. */
+/** Put filters and page into the address, for bookmarks and for the browser's back button. */
 function keepAddress() {
   const pairs = [...FIELDS.map((name) => [name, fieldOf(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
   const given = new URLSearchParams(pairs.filter(([, value]) => value));
   history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
 }
 
-// All of a learner deleted.
+// The deletion of a learner's data. A key that is restricted to some exercises does not see this form.
 
-// Not there for a key that is restricted to some exercises.
 const forgetForm = document.getElementById("forget");
 const forgetState = () => byId("forget-state", HTMLElement);
 
@@ -157,7 +156,7 @@ async function lookUp(event) {
   try {
     /** @type {Api.ForgottenData} */
     const found = await send("v1/learners/forget", { learner });
-    if (!found.attempts) return tell(forgetState(), `Nothing is recorded of ${learner}.`);
+    if (!found.attempts) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
     tell(forgetState(), "");
     return confirm(found);
   } catch (error) {
@@ -170,7 +169,7 @@ const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
   [
     count(attempts, "attempt"),
     earlier && count(earlier, "earlier report"),
-    overrides && `points given ${overrides === 1 ? "once" : `${overrides} times`}`,
+    overrides && count(overrides, "overridden mark"),
   ]
     .filter(Boolean)
     .join(", ");
@@ -183,17 +182,17 @@ function confirm(found) {
     "dialog",
     { "aria-labelledby": "forget-title", onclose: () => dialog.remove() },
     h("h2", { id: "forget-title" }, "Forget ", learnerName(found.learner), "?"),
-    h("p", {}, `This deletes ${amounts(found)}, for ever. Backups are not touched.`),
+    h("p", {}, `This permanently deletes ${amounts(found)}. Backups are not changed.`),
     h(
       "p",
       { class: "choices" },
       h(
         "button",
         { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) },
-        "Delete all of ",
+        "Delete all data of ",
         learnerName(found.learner),
       ),
-      h("button", { type: "button", autofocus: true, onclick: close }, "Keep it"),
+      h("button", { type: "button", autofocus: true, onclick: close }, "Cancel"),
     ),
   );
   document.body.append(dialog);
@@ -206,9 +205,9 @@ async function forget(learner) {
     /** @type {Api.ForgottenData} */
     const deleted = await send("v1/learners/forget", { learner, apply: true });
     const later = deleted.erased === false
-      ? " Another program is reading the database: the text is overwritten in its files when that has ended."
+      ? " Another program is reading the database. The deleted text is overwritten in its files when that program ends."
       : "";
-    tell(forgetState(), `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
+    tell(forgetState(), `Deleted for ${learner}: ${amounts(deleted)}.${later}`);
     fieldOf("forgotten").value = "";
     await changed();
   } catch (error) {

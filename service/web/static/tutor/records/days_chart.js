@@ -1,21 +1,22 @@
-// How often something was, day by day: bars in a small drawing, and the same in words.
+// A small bar chart of counts by day, with its text alternative.
 
 import { dayName } from "./records.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 160;
 const HEIGHT = 28;
-// In a longer time, several days share a bar.
+// A chart of more days has several days in each bar.
 const MOST_BARS = 40;
 const DAY = 24 * 60 * 60 * 1000;
-// So many days are said one by one.
+// How many days the text alternative lists.
 const MOST_SAID = 10;
 
 /** @param {string} day */
 const at = (day) => Date.parse(`${day}T00:00:00Z`);
 
 /**
- * The charts of `all` counts (by day, as 2026-11-22), by these counts: over the same days, and by one measure.
+ * Return a map from each element of `all` (counts by day, such as 2026-11-22) to its chart. All charts show the same
+ * days at the same scale.
  *
  * @param {Record<string, number>[]} all
  */
@@ -34,7 +35,7 @@ export function daysCharts(all) {
 }
 
 /**
- * One chart, in which a bar of `most` has the full height.
+ * Return one chart; a bar of `most` has the full height.
  *
  * @param {Record<string, number>} counts
  * @param {number[]} bars

@@ -1,4 +1,4 @@
-// A recorded submission with its report, drawn as the student saw it; nothing in it can be changed.
+// A recorded submission with its report, as the student saw it. It is read-only.
 
 import { h, points, visible } from "../../shared/dom.js";
 import { cellsOf } from "./answer_cells.js";
@@ -11,9 +11,9 @@ const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recor
   new URL(name, import.meta.url).href
 );
 
-/** A part whose cells are read and not written. */
+/** A part whose cells are read-only. */
 class RecordedPart extends PartView {
-  // Whether its answer fits into its cells, as soon as that is known.
+  // Resolves to true if the answer fits into the cells.
   /** @type {Promise<boolean> | undefined} */
   filled;
 
@@ -42,10 +42,10 @@ class RecordedPart extends PartView {
 
 /** @typedef {{ answers?: Record<string, unknown>, angle_unit?: Api.AngleUnit }} Submission */
 
-/** The submission, and one report on it at a time. */
+/** A submission with one of its reports. */
 export class RecordedReport {
   /**
-   * `exercise` is what students see of it, or null where it is gone; `submission` what was sent.
+   * `exercise` is what students see of it, or null if it no longer exists.
    *
    * @param {Api.Exercise | null} exercise
    * @param {Submission} submission
@@ -57,7 +57,7 @@ export class RecordedReport {
     const service = { previews: (body) => send("v1/previews", body), preview: (body) => send("v1/preview", body) };
     /** @type {() => Front.Context} */
     const context = () => ({ exercise: exercise?.id ?? "", angle_unit: submission.angle_unit ?? "radians" });
-    // What a part asks of its exercise.
+    // What a part needs from its host.
     /** @type {Front.PartHost} */
     this.host = {
       service,
@@ -79,7 +79,7 @@ export class RecordedReport {
   }
 
   /**
-   * Draw a report: parts that the exercise has no more are told without their cells.
+   * Show a report. Parts that the exercise no longer has are shown without cells.
    *
    * @param {Api.Report} report
    */
@@ -93,7 +93,7 @@ export class RecordedReport {
     const answer = this.submission.answers?.[report.part];
     const element = view?.element ?? bare(report);
     if (view) {
-      // What fills the cells takes their marks away.
+      // Filling the cells removes their marks, so the report comes afterwards.
       view.filled ??= this.#fill(view, answer);
       view.filled.then((isFilled) => {
         view.showReport(report);
@@ -107,7 +107,7 @@ export class RecordedReport {
   }
 
   /**
-   * Put the answer into its cells; whether it fits.
+   * Put the answer into its cells. Return true if it fits.
    *
    * @param {RecordedPart} view
    * @param {unknown} answer
@@ -116,13 +116,13 @@ export class RecordedReport {
     const read = typeof answer === "string" ? await this.#entries(view.part.id, answer) : answer;
     const state = cellsOf(view.layout, read);
     if (state) view.restore(state);
-    // The letters stand below in any case.
+    // The text as it was sent is below in any case.
     else view.element.querySelector(".as-sent")?.toggleAttribute("open", true);
     return state !== null;
   }
 
   /**
-   * The entries of a table or matrix that was sent as one text, as the service reads it.
+   * Return the entries that the service reads in a table or matrix that was sent as one text.
    *
    * @param {string} part
    * @param {string} text
@@ -138,7 +138,7 @@ export class RecordedReport {
 }
 
 /**
- * The report on a part that the exercise does not have any more.
+ * Return the report on a part that the exercise no longer has.
  *
  * @param {Api.PartReport} report
  */
@@ -157,7 +157,7 @@ function bare({ part, verdict, points: earned, max_points: most, feedback, rows 
       h("span", { class: "badge", "data-verdict": verdict }, verdict),
       h("span", { class: "points" }, `${points(earned, most)} points`),
     ),
-    h("p", { class: "quiet" }, "The exercise does not have this part any more."),
+    h("p", { class: "quiet" }, "The exercise no longer has this part."),
     h("ul", { class: "messages", hidden: !messages.length }, ...messages.map((each) => item(each, { verdict }))),
   );
 }
@@ -165,7 +165,7 @@ function bare({ part, verdict, points: earned, max_points: most, feedback, rows 
 /** @param {unknown} answer */
 function asSent(answer) {
   const text = typeof answer === "string" ? answer : JSON.stringify(answer, null, 1);
-  // Its lines stay lines, and nothing in them is unseen.
+  // Keep the line breaks; make all other invisible characters visible.
   const lines = text.split("\n").map(visible).join("\n");
   return h(
     "details",

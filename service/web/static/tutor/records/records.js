@@ -1,4 +1,4 @@
-// What the pages of recorded attempts share: words for numbers and moments, and what stands where there is nothing.
+// Helpers of the pages of recorded attempts: numbers and times as text, messages, tables.
 
 import { byId, h, number, points, visible } from "../../shared/dom.js";
 import { address, refusal } from "../tutor_service.js";
@@ -7,21 +7,21 @@ const MOMENT = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle
 const DAY = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeZone: "UTC" });
 
 /**
- * A moment in the browser's time zone.
+ * Return a time in the browser's time zone.
  *
  * @param {string} text
  */
 export const moment = (text) => h("time", { datetime: text }, MOMENT.format(new Date(text)));
 
 /**
- * A day of UTC, as 2026-11-22.
+ * Return a day of UTC (such as 2026-11-22) as text.
  *
  * @param {string} day
  */
 export const dayName = (day) => DAY.format(new Date(`${day}T00:00:00Z`));
 
 /**
- * The name of a learner, whose letters turn nothing around them.
+ * Return the name of a learner; right-to-left letters in it do not reverse the text around it.
  *
  * @param {string} learner
  */
@@ -31,14 +31,14 @@ export const learnerName = (learner) => h("bdi", {}, visible(learner));
 export const count = (many, noun) => `${many.toLocaleString("en-GB")} ${noun}${many === 1 ? "" : "s"}`;
 
 /**
- * A share in whole per cent: 100 of all alone.
+ * Return a share in whole per cent; only a share of 1 becomes 100.
  *
  * @param {number} share
  */
 export const percent = (share) => `${share < 1 ? Math.min(Math.round(100 * share), 99) : 100} %`;
 
 /**
- * The points that count, and what a tutor has said to them.
+ * Return the points that count: the override, if there is one, or else the points of the report.
  *
  * @param {Pick<Api.AttemptSummary, "awarded" | "points" | "max_points">} attempt
  */
@@ -59,7 +59,7 @@ export function fieldOf(id) {
 }
 
 /**
- * A query of those parameters that have a value.
+ * Return the query string of all parameters that have a value.
  *
  * @param {Record<string, string | undefined>} parameters
  */
@@ -70,7 +70,7 @@ export function query(parameters) {
 }
 
 /**
- * The first moment of a day of the browser's calendar, `later` days after it; "" where there is none.
+ * Return the first moment of the day that is `later` days after `day` in the browser's time zone, or "".
  *
  * @param {string} day
  * @param {number} [later]
@@ -82,11 +82,11 @@ export function startOf(day, later = 0) {
   return Number.isNaN(start.getTime()) ? "" : start.toISOString();
 }
 
-/** The span of time that the fields "since" and "until" name; both days belong to it. */
+/** Return the span of time from the fields "since" and "until"; it includes both days. */
 export const span = () => ({ since: startOf(fieldOf("since").value), until: startOf(fieldOf("until").value, 1) });
 
 /**
- * Lead the links of the export to the attempts of a filter; a gradebook needs an exercise.
+ * Let the export links export the attempts of a filter. Hide the links of gradebooks if no exercise is chosen.
  *
  * @param {Front.Filter} filter
  */
@@ -103,7 +103,7 @@ export function showExports(filter) {
 }
 
 /**
- * Say why what was asked for is not to be had.
+ * Show why a request failed.
  *
  * @param {unknown} error
  * @param {HTMLElement} state
@@ -114,7 +114,7 @@ export function failed(error, state) {
 }
 
 /**
- * Say how it is, without a refusal.
+ * Show a message that is not an error.
  *
  * @param {HTMLElement} state
  * @param {string} text
@@ -125,7 +125,7 @@ export function tell(state, text) {
 }
 
 /**
- * What stands where a list or a count has nothing in it.
+ * Return what an empty list shows.
  *
  * @param {string} title
  * @param {string} text
@@ -134,7 +134,7 @@ export const nothing = (title, text) =>
   h("div", { class: "empty" }, h("h2", {}, title), h("p", { class: "quiet" }, text));
 
 /**
- * A table in a box that scrolls by itself: heads, and rows of cells of which the first is their head.
+ * Return a table in a box that scrolls. The first cell of each row is the row's heading.
  *
  * @param {string} name
  * @param {string[]} heads

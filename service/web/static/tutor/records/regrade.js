@@ -1,25 +1,25 @@
-// The regrade of an exercise: first who would change and why, then the same for good.
+// The regrade of an exercise: first a preview of the changes with their reasons, then the regrade itself.
 
 import { h, message, number, points } from "../../shared/dom.js";
 import { count, failed, learnerName, table, tell } from "./records.js";
 import { address, pause, sendPatiently } from "../tutor_service.js";
 
-// So many changes are shown one by one.
+// How many changes are listed.
 const MOST_SHOWN = 200;
-// While others are at the last attempts, this asks again after so many seconds.
+// Seconds to wait while other processes regrade the last attempts.
 const OTHERS = 1;
 
 /**
- * The form; `done` is called when reports have been written.
+ * Return the form; it calls `done` after it has written reports.
  *
  * @param {string} exercise
  * @param {() => void} done
  */
 export function regradeForm(exercise, done) {
   const state = h("p", { class: "state-line", role: "status" });
-  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts graded anew" });
+  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts regraded" });
   const changes = h("div", {});
-  const look = h("button", { type: "button", onclick: () => run(false) }, "Look what would change");
+  const preview = h("button", { type: "button", onclick: () => run(false) }, "Preview regrade");
   const write = h("button", { type: "button", hidden: true, onclick: () => run(true) }, "Write the new reports");
   const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, "Stop");
   let isStopped = false;
@@ -27,11 +27,11 @@ export function regradeForm(exercise, done) {
   /** @param {boolean} apply */
   async function run(apply) {
     isStopped = false;
-    look.disabled = write.disabled = true;
+    preview.disabled = write.disabled = true;
     stop.hidden = bar.hidden = false;
     bar.removeAttribute("value");
     tell(state, apply ? "Writing …" : "Grading …");
-    const focused = document.activeElement instanceof HTMLElement ? document.activeElement : look;
+    const focused = document.activeElement instanceof HTMLElement ? document.activeElement : preview;
     try {
       const { graded, changed, left } = await allSteps(apply);
       told(apply, graded, changed, left);
@@ -40,13 +40,13 @@ export function regradeForm(exercise, done) {
     } catch (error) {
       failed(error, state);
     }
-    look.disabled = write.disabled = false;
+    preview.disabled = write.disabled = false;
     stop.hidden = bar.hidden = true;
-    if (document.activeElement === document.body) (focused.hidden ? look : focused).focus();
+    if (document.activeElement === document.body) (focused.hidden ? preview : focused).focus();
   }
 
   /**
-   * Step by step until nothing is left; the service does about a second of work in each.
+   * Send requests until no attempt is left. The service works for about a second on each.
    *
    * @param {boolean} apply
    */
@@ -71,15 +71,15 @@ export function regradeForm(exercise, done) {
   /** @param {boolean} apply @param {number} graded @param {Api.AttemptChange[]} changed @param {number} left */
   function told(apply, graded, changed, left) {
     const kept = changed.filter(({ awarded }) => awarded !== undefined).length;
-    const ofWhich = kept ? `, of which ${kept} would keep the points of a tutor` : "";
+    const ofWhich = kept ? `; ${kept} of these would keep the overridden mark` : "";
     const stopped = left ? ` Stopped: ${count(left, "attempt")} left.` : "";
-    if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The reports before are kept.${stopped}`);
+    if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The earlier reports are kept.${stopped}`);
     else if (!graded) tell(state, "All attempts were graded by this version of the exercise and of the program.");
     else {tell(
         state,
         `${
           count(graded, "attempt")
-        } by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
+        } graded by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
       );}
     changes.replaceChildren(...(changed.length ? [list(changed)] : []));
   }
@@ -100,8 +100,8 @@ export function regradeForm(exercise, done) {
       h(
         "span",
         {},
-        ...message(reasons.join("; ") || "what a late attempt earns"),
-        awarded === undefined ? "" : `; a tutor's ${number(awarded)} stays`,
+        ...message(reasons.join("; ") || "the rule for late attempts"),
+        awarded === undefined ? "" : `; the overridden mark ${number(awarded)} stays`,
       ),
     ]);
     const more = changed.length - rows.length;
@@ -115,9 +115,9 @@ export function regradeForm(exercise, done) {
     h(
       "p",
       { class: "quiet" },
-      "After a correction: attempts that another version of the exercise or of the program has graded are graded anew. Points that tutors gave stay, and so do the reports before.",
+      "Grade again all attempts that were graded by another version of the exercise or of the program, for example after a correction. Overridden marks and the earlier reports are kept.",
     ),
-    h("p", { class: "choices" }, look, write, stop),
+    h("p", { class: "choices" }, preview, write, stop),
     bar,
     state,
     changes,

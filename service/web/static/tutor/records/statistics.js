@@ -1,4 +1,4 @@
-// The attempts at an exercise in counts: parts, rows and cells, slips by count and day, identical wrong answers.
+// Statistics of an exercise: right answers by part, row and cell, misconceptions by day, identical wrong answers.
 
 import { byId, h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
@@ -12,9 +12,9 @@ import { address, get } from "../tutor_service.js";
 const exercise = byId("main", HTMLElement).dataset.exercise ?? "";
 const state = byId("state", HTMLElement);
 const place = byId("statistics", HTMLElement);
-// The shares from which on a cell has the next colour; the number stands in it in any case.
+// The shares at which a cell gets the next colour. The cell also shows the number.
 const BANDS = [0.25, 0.5, 0.75, 0.9];
-// So many slips and groups are shown, the others are folded.
+// How many misconceptions and groups are shown before the rest is folded.
 const SHOWN = 12;
 
 /** @typedef {{ title: string, isList: boolean, rows: Map<string, string>, columns: Map<string, string> }} PartNames */
@@ -42,7 +42,7 @@ async function show() {
 }
 
 /**
- * What parts, their rows and their cells are called where students fill them in, by the labels of reports.
+ * Return the names of parts, rows and columns that students see, by their labels in reports.
  *
  * @param {string} id
  */
@@ -59,7 +59,7 @@ function cellNames(grids) {
   const rows = grids.flatMap((grid) =>
     grid.rows.map(({ label, spoken, head }) => pair(label, grids.length > 1 ? spoken : head))
   );
-  // A list has one column, which says nothing; those of a matrix have numbers.
+  // The columns of a matrix have only numbers. The one column of a list is not shown.
   /** @type {[string, string][]} */
   const heads = look === "matrix" ? [] : columns.map(({ label, head }) => [label, head]);
   return { isList: look === "list", rows: new Map(rows), columns: new Map(heads) };
@@ -80,35 +80,35 @@ function draw({ attempts, learners, parts, misconceptions, identical }) {
     place.replaceChildren(
       nothing(
         isNarrowed ? "Nobody handed in on these days" : "Nobody has handed in yet",
-        "Counts appear here with the first recorded attempt.",
+        "Statistics appear here after the first recorded attempt.",
       ),
     );
     return;
   }
   tell(
     state,
-    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Who was wrong three times counts three times.`,
+    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Every attempt counts.`,
   );
   place.replaceChildren(
     section(
       "Right answers",
-      "Of the answers, one of each attempt. A part or a cell that could not be read is an answer that is not right; of a table that could not be read as a whole, no row is counted.",
+      "The share of answers that are right. An unreadable part or cell counts as an answer that is not right. If a whole table is unreadable, its rows are not counted.",
       parts.map(partShares),
     ),
     section(
       "Misconceptions",
-      "The attempts that have each, the commonest first, and on which days (UTC). The sentence is what one of them was told.",
+      "How many attempts have each misconception, the most frequent first, and on which days (UTC). The sentence is an example from one of the reports.",
       [
-        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None was found."),
+        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None found."),
       ],
     ),
     section(
       "Identical wrong answers",
-      "Sent by several learners letter by letter. This is no proof that anybody copied.",
+      "Several learners sent exactly the same wrong answer. This does not prove that anybody copied.",
       [
         identical.length
           ? folded(identical, (groups) => h("ul", { class: "groups" }, ...groups.map(group)))
-          : h("p", {}, "There are none."),
+          : h("p", {}, "None found."),
       ],
     ),
   );
@@ -133,7 +133,7 @@ function partShares({ part, rows, ...share }) {
 }
 
 /**
- * The rows of a part with the share of each cell.
+ * Return a table with the share of right answers for each cell and row of a part.
  *
  * @param {string} part
  * @param {Api.RowFigures[]} rows
@@ -141,7 +141,7 @@ function partShares({ part, rows, ...share }) {
 function shares(part, rows) {
   const [widest] = rows.toSorted((one, other) => other.cells.length - one.cells.length);
   const labels = widest.cells.map(({ label }) => label);
-  // In a list, the one cell is the whole row.
+  // In a list, a row has only one cell.
   const shown = names.get(part)?.isList ? [] : labels;
   const heads = [
     "Row",
@@ -173,7 +173,7 @@ function shareCell(figures) {
 const band = ({ share }) => (share === undefined ? "none" : BANDS.filter((edge) => share >= edge).length);
 
 /**
- * What draws some of all slips, by the same measures.
+ * Return a function that draws a table of some of these misconceptions, with all charts at the same scale.
  *
  * @param {Api.MisconceptionFigures[]} misconceptions
  */
@@ -221,7 +221,7 @@ function group({ learners, attempts, wrong, among }) {
 }
 
 /**
- * Places as "DH table: row 2 α, d; row 4 d. Pose: row 1 column 4".
+ * Return places in words, such as "DH table: row 2 α, d; row 4 d. Pose: row 1 column 4".
  *
  * @param {string[]} places
  */
@@ -247,7 +247,7 @@ function placesInWords(places) {
 const inWords = (row) => (row.includes(" ") ? row : `row ${row}`);
 
 /**
- * The first of many, and the others folded below.
+ * Return the first items as they are drawn, and the rest folded below.
  *
  * @template Item
  * @param {Item[]} all
