@@ -110,11 +110,11 @@ def nearest_by_few_cells(
         if np.abs(_in_unit(reached[-1] - case.reference[-1], case.unit)).max() < SAME_POSE:
             on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
             return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
-    repairs, dearer = _repairs(case)
+    repairs = _repairs(case)
     nearest = _likeliest(repairs, case) if repairs else None
     if nearest is None:
         return None
-    return replace(nearest, lost=min(_lost(repair, case) for repair in [*repairs, *dearer]))
+    return replace(nearest, lost=min(_lost(repair, case) for repair in repairs))
 
 
 def frames_from_reference(
@@ -151,20 +151,16 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
     return _Case(roles, table, variables, wrong, convention, grading)
 
 
-def _repairs(case: _Case) -> tuple[list[CellRepair], list[CellRepair]]:
-    """Return the repairs by one cell, or else by two cells or one row; and others.
-
-    The others change more cells, but may lose fewer marks.
-    """
+def _repairs(case: _Case) -> list[CellRepair]:
+    """Return the repairs by one cell, or else by two cells or one row."""
     factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
     pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
     by_factor = one_factor_repairs(factors, pose)
-    by_one_cell = _admissible(by_factor, [1], case)
+    if by_one_cell := _admissible(by_factor, [1], case):
+        return by_one_cell
+    by_two_cells = chain(by_factor, two_factor_repairs(factors, pose))
     by_row = one_row_repairs(factors, pose, case.wrong)
-    if by_one_cell:
-        return by_one_cell, _admissible(by_row, [2, 3, 4], case)
-    by_two_cells = _admissible(chain(by_factor, two_factor_repairs(factors, pose)), [2], case)
-    return [*by_two_cells, *_admissible(by_row, [3, 4], case)], []
+    return [*_admissible(by_two_cells, [2], case), *_admissible(by_row, [3, 4], case)]
 
 
 def _admissible(
