@@ -7,6 +7,7 @@ installed has no column.
 
 import os
 import select
+import signal
 import socket
 import subprocess
 import sys
@@ -96,6 +97,7 @@ def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None
             cwd=ROOT,
             stdout=log,
             stderr=log,
+            start_new_session=True,
             env=os.environ | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"},
         )
         try:
@@ -108,7 +110,8 @@ def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None
                 seconds = threads.map(partial(seconds_until_closed, port), CLIENTS)
                 return dict(zip(CLIENTS, seconds, strict=True))
         finally:
-            server.kill()
+            # Some servers leave workers behind.
+            os.killpg(server.pid, signal.SIGKILL)
             server.wait()
 
 
