@@ -14,7 +14,7 @@ from rich.text import Text
 from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise
 from service.catalogue.robots.robot import Robot
-from service.cli.commands import check
+from service.cli.commands import check, export_robot, import_robot
 from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
 from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, reference_figure
@@ -98,6 +98,8 @@ def _write_figure(exercise: Exercise, file: Path, theme: Theme, *, frames: bool)
 
 
 commands.command("check")(check.command)
+commands.command("import")(import_robot.command)
+commands.command("export")(export_robot.command)
 
 
 @commands.command("new")

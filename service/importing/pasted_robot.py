@@ -1,0 +1,96 @@
+"""A pasted DH table -> a robot at home."""
+
+import numpy as np
+
+from service.expressions import Expression, evaluate_all
+from service.figures.tables.scope import DrawingScope, free_scope
+from service.figures.tables.table_frames import table_to_draw
+from service.grading.feedback import UnreadableAnswerError
+from service.grading.reading.tables.table import StudentTable
+from service.grading.work_budget import WorkBudget
+from service.importing.home_statement import HomeRobot
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, standard_rows
+from service.kinematics.dh import Convention
+
+_MOST_JOINTS = 10
+_LETTER_LENGTHS = {"a": 0.5, "d": 0.3}
+
+
+class UnusableTableError(ValueError):
+    """The table cannot become an exercise; the text says why."""
+
+
+def robot_of_table(text: str, convention: Convention) -> HomeRobot:
+    """Return the robot of a table in any format that students may paste.
+
+    A length is a number, or a letter of its own with a sign. Raises UnusableTableError.
+    """
+    rows = len(_read(text, free_scope("R")).rows)
+    joints = min(rows, _MOST_JOINTS)
+    first = _read(text, free_scope("R" * joints))
+    kinds = [_kind(first, i) for i in range(joints)]
+    fixed = [i for i, kind in enumerate(kinds) if kind is None]
+    if fixed and (fixed != [rows - 1] or rows == 1):
+        raise UnusableTableError(f"row {fixed[0] + 1} has no joint variable")
+    if rows - len(fixed) > _MOST_JOINTS:
+        raise UnusableTableError(f"the table has more than {_MOST_JOINTS} joints")
+    structure = "".join(kind for kind in kinds if kind)
+    scope = free_scope(structure)
+    table = _read(text, scope)
+    cells = [[_constant(table, i, j, scope) for j in range(len(COLUMNS))] for i in range(rows)]
+    numbers = np.array([[value for value, _ in row] for row in cells])
+    letters = {
+        (i, j): name for i, row in enumerate(cells) for j, (_, name) in enumerate(row) if name
+    }
+    if convention is Convention.MODIFIED:
+        if np.abs(numbers[0, [A, ALPHA]]).max() > 0:
+            raise UnusableTableError("a and alpha of row 1 must be 0: frame {0} lies on joint 1")
+        numbers = np.array(standard_rows([tuple(row) for row in numbers], 0.0))
+        letters = {(i - 1 if j in (A, ALPHA) else i, j): name for (i, j), name in letters.items()}
+    repeated = len(set(letters.values())) < len(letters)
+    if repeated:
+        raise UnusableTableError("a letter is in two cells; give each length a letter of its own")
+    return HomeRobot(numbers, structure, letters)
+
+
+def _read(text: str, scope: DrawingScope) -> StudentTable:
+    try:
+        return table_to_draw(text, scope, WorkBudget())
+    except UnreadableAnswerError as error:
+        raise UnusableTableError(error.finding.hint) from None
+
+
+def _kind(table: StudentTable, i: int) -> str | None:
+    """Return R or P by the cell of row i that has the joint's variable; None for a fixed row."""
+    variable = f"theta{i + 1}"
+    _, _, d, theta = table.rows[i].entries
+    if theta.expression is not None and variable in theta.expression.symbols:
+        return "R"
+    slides = d.expression is None or d.expression.symbols & {f"d{i + 1}", variable}
+    return "P" if slides else None
+
+
+def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple[float, str | None]:
+    """Return the value of a cell at home, and its letter if it has one."""
+    place = f"row {i + 1}, column {COLUMNS[j]}"
+    entry = table.rows[i].entries[j]
+    if entry.expression is None:
+        reason = entry.findings[0].hint if entry.findings else "nothing is written here"
+        raise UnusableTableError(f"{place}: {reason}")
+    moving = {joint.variable for joint in scope.joints[i : i + 1]}
+    own = moving if j in (D, THETA) else set[str]()
+    others = sorted(entry.expression.symbols - own)
+    at_zero, at_one = _values(entry.expression, others)
+    if not others:
+        return at_zero, None
+    if len(others) > 1 or j in (ALPHA, THETA) or at_zero or abs(at_one) != 1:
+        raise UnusableTableError(f"{place}: write a number, or one letter with its sign")
+    return float(np.sign(at_one)) * _LETTER_LENGTHS[COLUMNS[j]], others[0]
+
+
+def _values(formula: Expression, names: list[str]) -> tuple[float, float]:
+    """Return the value with all symbols 0, and with the symbols ``names`` 1 and the others 0."""
+    values = {name: np.array([0.0, float(name in names)]) for name in formula.symbols}
+    [found] = evaluate_all([formula], values, {})
+    at_zero, at_one = np.broadcast_to(np.asarray(found, dtype=np.float64), 2)
+    return float(at_zero), float(at_one)

@@ -1,0 +1,43 @@
+"""Makers round: 1.5708 means π/2. Snap numbers before any common normal is computed.
+
+Two axes that should be parallel and are 0.000004 rad apart have a common normal kilometres away.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from service.kinematics.transforms import Numbers
+
+_STEP: Final = math.radians(15)
+_NEAR: Final = 1e-4
+_FEWEST_DECIMALS: Final = 2
+_LENGTH_DECIMALS: Final = 5
+
+
+def snapped_angle(text: str) -> float:
+    """Return an angle in radians as the multiple of 15° that it was rounded from, if any.
+
+    A number is a rounded multiple if it is within 1e-4 of it, or equals it with the decimals that
+    are written, at least two.
+
+    >>> snapped_angle("1.57") == math.pi / 2, snapped_angle("1.6")
+    (True, 1.6)
+    """
+    value = float(text)
+    multiple = round(value / _STEP) * _STEP
+    decimals = len(text.partition(".")[2]) if "e" not in text.lower() else 0
+    rounded = decimals >= _FEWEST_DECIMALS and round(multiple, decimals) == value
+    return multiple if rounded or abs(value - multiple) <= _NEAR else value
+
+
+def snapped_length(text: str) -> float:
+    """Return a length in metres, rounded to 0.01 mm."""
+    return round(float(text), _LENGTH_DECIMALS)
+
+
+def snapped_direction(direction: Numbers) -> Numbers:
+    """Return a unit vector without entries that rounding left near 0."""
+    kept = np.where(np.abs(direction) <= _NEAR, 0.0, direction)
+    return np.asarray(kept / np.linalg.norm(kept))

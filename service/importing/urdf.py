@@ -1,0 +1,262 @@
+"""Read a serial arm from a URDF file: its joints, their places and their axes."""
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+from xml.etree import ElementTree
+
+import numpy as np
+
+from service.importing.snapping import snapped_angle, snapped_direction, snapped_length
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
+
+MOST_BYTES: Final = 2**20
+_MOST_LINKS: Final = 200
+_MOST_ELEMENTS: Final = 20_000
+_DEEPEST: Final = 40
+_MOST_JOINTS: Final = 10
+_NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,2})?")
+_TURNING: Final = ("revolute", "continuous")
+_SHOWN: Final = 60
+
+
+class UnusableUrdfError(ValueError):
+    """The file has no arm that can become an exercise; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class UrdfJoint:
+    """A joint of the arm: its name, its type, and its axis in the coordinates before it."""
+
+    name: str
+    prismatic: bool
+    before: Matrices
+    """The constant transform from the frame of the joint before."""
+    axis: Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """A serial chain of joints from a base link to a tip link."""
+
+    base: str
+    tip: str
+    joints: tuple[UrdfJoint, ...]
+    after: Matrices
+    """The constant transform from the frame of the last joint to the tip."""
+
+    @property
+    def structure(self) -> str:
+        """One letter for each joint: R turns, P slides."""
+        return "".join("P" if joint.prismatic else "R" for joint in self.joints)
+
+    def pose(self, values: Numbers) -> Matrices:
+        """Return the pose of the tip in the base link at values of the joints."""
+        pose = np.eye(4)
+        for joint, value in zip(self.joints, values, strict=True):
+            pose = pose @ joint.before @ _motion(joint, float(value))
+        return np.asarray(pose @ self.after)
+
+
+def _motion(joint: UrdfJoint, value: float) -> Matrices:
+    motion = np.eye(4)
+    if joint.prismatic:
+        motion[:3, 3] = value * joint.axis
+        return motion
+    x, y, z = joint.axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    motion[:3, :3] += math.sin(value) * cross + (1 - math.cos(value)) * (cross @ cross)
+    return motion
+
+
+@dataclass(slots=True)
+class _Joint:
+    """A joint as its element states it."""
+
+    name: str
+    kind: str
+    parent: str = ""
+    child: str = ""
+    xyz: str = "0 0 0"
+    rpy: str = "0 0 0"
+    axis: str = "1 0 0"
+    follows: bool = False
+
+
+@dataclass(slots=True)
+class _Collector:
+    """Collects links and joints while the XML parser reads; stops at the first excess."""
+
+    links: list[str] = field(default_factory=list)
+    joints: list[_Joint] = field(default_factory=list)
+    _path: list[str] = field(default_factory=list)
+    _elements: int = 0
+
+    def doctype(self, *_declaration: str | None) -> None:
+        raise UnusableUrdfError("the file has a DOCTYPE; a URDF needs none")
+
+    def start(self, tag: str, attributes: Mapping[str, str]) -> None:
+        self._elements += 1
+        if self._elements > _MOST_ELEMENTS or len(self._path) > _DEEPEST:
+            raise UnusableUrdfError(
+                f"the file has more than {_MOST_ELEMENTS} elements or is too deep"
+            )
+        if "xacro" in tag or any("${" in value or "$(" in value for value in attributes.values()):
+            raise UnusableUrdfError(
+                "the file is a xacro template; expand it first: xacro arm.urdf.xacro > arm.urdf"
+            )
+        if not self._path and tag != "robot":
+            raise UnusableUrdfError(f"the file begins with <{tag[:_SHOWN]}>, not with <robot>")
+        self._path.append(tag)
+        match self._path:
+            case ["robot", "link"]:
+                self.links.append(attributes.get("name", ""))
+                if len(self.links) > _MOST_LINKS:
+                    raise UnusableUrdfError(f"the file has more than {_MOST_LINKS} links")
+            case ["robot", "joint"]:
+                self.joints.append(_Joint(attributes.get("name", ""), attributes.get("type", "")))
+            case ["robot", "joint", part]:
+                self._joint_part(self.joints[-1], part, attributes)
+
+    def _joint_part(self, joint: _Joint, part: str, attributes: Mapping[str, str]) -> None:
+        match part:
+            case "parent":
+                joint.parent = attributes.get("link", "")
+            case "child":
+                joint.child = attributes.get("link", "")
+            case "origin":
+                joint.xyz = attributes.get("xyz", joint.xyz)
+                joint.rpy = attributes.get("rpy", joint.rpy)
+            case "axis":
+                joint.axis = attributes.get("xyz", joint.axis)
+            case "mimic":
+                joint.follows = True
+
+    def end(self, _tag: str) -> None:
+        self._path.pop()
+
+    def close(self) -> None:
+        """Do nothing: the parser asks for this method."""
+
+
+def _collected(data: bytes) -> _Collector:
+    if len(data) > MOST_BYTES:
+        raise UnusableUrdfError(f"the file is larger than {MOST_BYTES // 2**10} KiB")
+    collector = _Collector()
+    parser = ElementTree.XMLParser(target=collector)
+    try:
+        parser.feed(data)
+        parser.close()
+    except ElementTree.ParseError as error:
+        if "unbound prefix" in str(error):
+            raise UnusableUrdfError(
+                "the file uses an undeclared XML prefix, such as xacro:; expand xacro files first"
+            ) from None
+        raise UnusableUrdfError(f"the file is not well-formed XML: {error}") from None
+    except (LookupError, ValueError) as error:
+        if isinstance(error, UnusableUrdfError):
+            raise
+        raise UnusableUrdfError("the file has an unknown text encoding") from None
+    return collector
+
+
+def tips(data: bytes) -> list[str]:
+    """Return the links of the file at which a chain can end."""
+    collected = _collected(data)
+    parents = {joint.parent for joint in collected.joints}
+    return [link for link in collected.links if link not in parents]
+
+
+def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]:
+    """Return the arm from ``base`` to ``tip``: with snapped numbers, and exactly as written.
+
+    Without ``base``, the arm begins at the root of the tree. Raises UnusableUrdfError.
+    """
+    collected = _collected(data)
+    for name in (tip, base):
+        if name is not None and name not in collected.links:
+            raise UnusableUrdfError(f"the file has no link {name[:_SHOWN]!r}")
+    path = _path(collected, tip, base)
+    first = path[0].parent if path else tip
+    return _arm(path, first, tip, snap=True), _arm(path, first, tip, snap=False)
+
+
+def _path(collected: _Collector, tip: str, base: str | None) -> list[_Joint]:
+    """Return the joints from ``base`` to ``tip``, in this order."""
+    before: dict[str, _Joint] = {}
+    for joint in collected.joints:
+        if joint.child in before:
+            raise UnusableUrdfError(
+                f"two joints move the link {joint.child[:_SHOWN]!r}: a closed loop"
+            )
+        before[joint.child] = joint
+    path: list[_Joint] = []
+    link = tip
+    while link != base and link in before:
+        path.append(before[link])
+        link = path[-1].parent
+        if len(path) > _MOST_LINKS:
+            raise UnusableUrdfError("the links form a closed loop")
+    if base is not None and link != base:
+        raise UnusableUrdfError(f"the link {base[:_SHOWN]!r} is not on the way to {tip[:_SHOWN]!r}")
+    return path[::-1]
+
+
+def _arm(path: list[_Joint], base: str, tip: str, *, snap: bool) -> Arm:
+    fixed = np.eye(4)
+    joints = []
+    for joint in path:
+        fixed = fixed @ _origin(joint, snap=snap)
+        if joint.kind == "fixed":
+            continue
+        if joint.kind not in (*_TURNING, "prismatic"):
+            raise UnusableUrdfError(
+                f"the joint {joint.name[:_SHOWN]!r} is of type {joint.kind[:_SHOWN]!r}; "
+                f"only revolute, continuous, prismatic and fixed joints can be imported"
+            )
+        if joint.follows:
+            raise UnusableUrdfError(
+                f"the joint {joint.name[:_SHOWN]!r} follows another joint (mimic); "
+                f"a DH table has independent joints only"
+            )
+        joints.append(
+            UrdfJoint(joint.name, joint.kind == "prismatic", fixed, _axis(joint, snap=snap))
+        )
+        fixed = np.eye(4)
+    if not 1 <= len(joints) <= _MOST_JOINTS:
+        raise UnusableUrdfError(
+            f"between {base[:_SHOWN]!r} and {tip[:_SHOWN]!r} are {len(joints)} moving joints; "
+            f"an exercise has 1 to {_MOST_JOINTS}"
+        )
+    return Arm(base, tip, tuple(joints), fixed)
+
+
+def _origin(joint: _Joint, *, snap: bool) -> Matrices:
+    xyz, rpy = (list(_numbers(joint, text)) for text in (joint.xyz, joint.rpy))
+    lengths = [snapped_length(text) if snap else float(text) for text in xyz]
+    roll, pitch, yaw = (snapped_angle(text) if snap else float(text) for text in rpy)
+    origin = rot_z(yaw) @ rot_y(pitch) @ rot_x(roll)
+    origin[:3, 3] = lengths
+    return np.asarray(origin)
+
+
+def _axis(joint: _Joint, *, snap: bool) -> Numbers:
+    axis = np.array([float(text) for text in _numbers(joint, joint.axis)])
+    length = float(np.linalg.norm(axis))
+    if not length > 0:
+        raise UnusableUrdfError(f"the axis of joint {joint.name[:_SHOWN]!r} has no direction")
+    return snapped_direction(axis / length) if snap else axis / length
+
+
+def _numbers(joint: _Joint, text: str) -> Iterator[str]:
+    """Yield the three numbers of an attribute as texts."""
+    words = text[:200].split()
+    if len(words) != 3 or not all(_NUMBER.fullmatch(word) for word in words):
+        raise UnusableUrdfError(
+            f"the joint {joint.name[:_SHOWN]!r} has {text[:_SHOWN]!r} in place of three numbers"
+        )
+    if any(abs(float(word)) > 1e6 for word in words):
+        raise UnusableUrdfError(f"the joint {joint.name[:_SHOWN]!r} has a number over a million")
+    yield from words

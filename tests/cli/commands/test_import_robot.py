@@ -1,0 +1,87 @@
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+from tests.importing.urdf_texts import Part, urdf
+
+Run = Callable[..., Result]
+
+ELBOW = [
+    Part("revolute", [0, 0, 0.3], [0, 0, 0]),
+    Part("revolute", [0, 0, 0.1], [1.5708, 0, 0]),
+    Part("revolute", [0.4, 0, 0], [0, 0, 0]),
+    Part("fixed", [0.3, 0, 0], [0, 0, 0]),
+]
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """Return a URDF file of an elbow arm."""
+    made = tmp_path / "elbow.urdf"
+    made.write_bytes(urdf(ELBOW, 4))
+    return made
+
+
+def test_a_urdf_becomes_a_checked_exercise(run: Run, file: Path, tmp_path: Path) -> None:
+    made = run("exercises", "import", file, "--letters", "--output", tmp_path)
+    assert made.exit_code == 0
+    # 90° were written as 1.5708: 3.7e-6 rad too much, 0.7 m from the tool.
+    assert "Largest difference to the URDF at 100 poses: 0.002" in made.stdout
+    assert run("exercises", "check", tmp_path / "elbow.toml").exit_code == 0
+
+
+def test_the_files_of_both_conventions_pass(run: Run, file: Path, tmp_path: Path) -> None:
+    for convention in ("standard", "modified"):
+        made = run("exercises", "import", file, "--id", convention, "--convention", convention,
+                   "--output", tmp_path)  # fmt: skip
+        assert made.exit_code == 0
+        assert run("exercises", "check", tmp_path / f"{convention}.toml").exit_code == 0
+
+
+def test_a_file_that_exists_is_not_changed(run: Run, file: Path, tmp_path: Path) -> None:
+    (tmp_path / "elbow.toml").write_text("mine", encoding="utf-8")
+    made = run("exercises", "import", file, "--output", tmp_path)
+    assert (made.exit_code, (tmp_path / "elbow.toml").read_text()) == (2, "mine")
+    assert "already exists" in made.stderr
+
+
+def test_several_ends_ask_for_the_tool(run: Run, file: Path) -> None:
+    text = file.read_text().replace("</robot>", '<link name="camera"/></robot>')
+    file.write_text(text)
+    made = run("exercises", "import", file)
+    assert made.exit_code == 2
+    assert "name the tool's link by --tip; the tree ends at: l4, camera" in made.stderr
+
+
+def test_a_table_that_differs_too_much_is_refused(run: Run, file: Path) -> None:
+    # The twist is rounded to 1.57 (0.0008 rad), and the arm is 9 m long.
+    file.write_bytes(urdf([*ELBOW[:2], Part("fixed", [9, 0, 0], [0, 0, 0])], 2))
+    made = run("exercises", "import", file)
+    assert made.exit_code == 2
+    assert "1 mm is allowed" in made.stderr
+
+
+def test_an_unusable_file_is_named(run: Run, tmp_path: Path) -> None:
+    assert "cannot be read" in run("exercises", "import", tmp_path / "no.urdf").stderr
+    empty = tmp_path / "empty.urdf"
+    empty.touch()
+    assert "empty" in run("exercises", "import", empty).stderr
+    assert "cannot be an exercise's id" in run("exercises", "import", empty, "--id", "../x").stderr
+
+
+def test_an_exported_robot_can_be_imported_again(run: Run, tmp_path: Path) -> None:
+    exported = run("exercises", "export", "stanford-arm")
+    assert exported.exit_code == 0
+    file = tmp_path / "stanford.urdf"
+    file.write_text(exported.stdout, encoding="utf-8")
+    made = run("exercises", "import", file, "--output", tmp_path)
+    assert made.exit_code == 0
+    assert 'structure = "RRPRRR"' in (tmp_path / "stanford.toml").read_text()
+
+
+def test_a_robot_without_a_table_is_not_exported(run: Run) -> None:
+    made = run("exercises", "export", "planar-rpr-poe")
+    assert made.exit_code == 2
+    assert "no robot with a DH table" in made.stderr

@@ -1,0 +1,105 @@
+"""The words of a statement are complete: the robot is built again from them alone."""
+
+import re
+
+import numpy as np
+import pytest
+
+from service.importing.axes import UnclearAxesError, home_axes
+from service.importing.exercise_text import letters_for
+from service.importing.frames import placed
+from service.importing.home_statement import HomeRobot, UnevenLettersError, home_statement
+from service.importing.urdf import read_urdf
+from service.kinematics.chain import frames
+from service.kinematics.dh import Convention
+from tests.importing.urdf_texts import Part, quaternion, random_parts, turned, urdf
+
+JOINT = re.compile(
+    r"- Joint \d (turns about the axis through \((?P<point>[^)]+)\), |slides )(?P<way>.+)\."
+)
+TOOL = re.compile(
+    r"origin of \{\d\} is at \((?P<point>[^)]+)\), x\d points (?P<x>.+) and z\d points "
+    r"(?P<z>along \([^)]+\)|[^.(]+)\."
+)
+WAYS = {"x0": [1.0, 0, 0], "y0": [0, 1.0, 0], "z0": [0, 0, 1.0]}
+
+
+def way(words: str) -> np.ndarray:
+    """Return the direction in words."""
+    if found := re.fullmatch(r"along \((.+)\)", words):
+        return np.array([float(each) for each in found[1].split(", ")])
+    prefix, _, name = words.rpartition(" ")
+    return np.array(WAYS[name]) * (-1 if prefix == "opposite to" else 1)
+
+
+def point(words: str, lengths: dict[str, float]) -> np.ndarray:
+    """Return the point in words: three sums of letters and numbers."""
+    coordinates = []
+    for text in words.split(", "):
+        terms = re.findall(r"([+-]?) ?([a-z]\d+|[\d.]+)", text)
+        coordinates.append(
+            sum(
+                (-1 if sign == "-" else 1) * (lengths[term] if term in lengths else float(term))
+                for sign, term in terms
+            )
+        )
+    return np.array(coordinates)
+
+
+def pose(statement: str, lengths: dict[str, float], values: np.ndarray) -> list[np.ndarray]:
+    """Return the tool's origin, x and z: those at home, moved by the joints from last to first."""
+    tool = TOOL.search(statement.replace("\n", " "))
+    assert tool
+    place, x, z = point(tool["point"], lengths), way(tool["x"]), way(tool["z"])
+    joints = list(JOINT.finditer(statement))
+    for joint, value in reversed(list(zip(joints, values, strict=True))):
+        direction = way(joint["way"])
+        if joint["point"] is None:
+            place = place + value * direction
+            continue
+        foot = point(joint["point"], lengths)
+        turn = quaternion(list(direction), value)
+        place = foot + turned(turn, list(place - foot))
+        x, z = turned(turn, list(x)), turned(turn, list(z))
+    return [place, x, z]
+
+
+def straight_parts(rng: np.random.Generator) -> list[Part]:
+    """Return an arm in which each link leads along one axis: no coordinate needs a root."""
+    return [
+        Part(
+            "revolute",
+            list(rng.permutation([round(rng.uniform(0.1, 0.9), 3), 0, 0])),
+            list(rng.integers(-2, 3, 3) * np.pi / 2),
+        )
+        for _ in range(rng.integers(2, 8))
+    ]
+
+
+@pytest.mark.parametrize("lettered", [False, True])
+@pytest.mark.parametrize("seed", range(30))
+def test_the_robot_can_be_built_again_from_its_statement(seed: int, lettered: bool) -> None:
+    rng = np.random.default_rng([seed, 7])
+    parts = straight_parts(rng) if lettered else random_parts(rng, crooked=seed % 3 == 0)
+    try:
+        arm, _ = read_urdf(urdf(parts), f"l{len(parts)}")
+        made = placed(*home_axes(arm))
+    except UnclearAxesError:
+        pytest.skip("axes nearly parallel")
+    robot = HomeRobot(made.table, arm.structure, letters_for(made.table) if lettered else {})
+    statement = home_statement(robot, Convention.STANDARD)
+    values = rng.uniform(-2, 2, len(arm.structure))
+    table = made.table.copy()
+    for i, letter in enumerate(arm.structure):
+        table[i, 2 if letter == "P" else 3] += values[i]
+    reached = frames(table, Convention.STANDARD)[-1]
+    place, x, z = pose(statement, robot.lengths(), values)
+    assert place == pytest.approx(reached[:3, 3], abs=1e-4)
+    assert x == pytest.approx(reached[:3, 0], abs=1e-5)
+    assert z == pytest.approx(reached[:3, 2], abs=1e-5)
+
+
+def test_a_crooked_angle_gives_no_letters() -> None:
+    table = np.array([[0.5, 0, 0, 0.4], [0.3, 0, 0, 0]])
+    with pytest.raises(UnevenLettersError):
+        home_statement(HomeRobot(table, "RR", letters_for(table)), Convention.STANDARD)
