@@ -157,8 +157,8 @@ def test_documented_properties_and_parts_style_the_element(
         assert piece.evaluate("each => getComputedStyle(each).outlineWidth") == "7px", name
     sheet = (ROOT / "service/web/static/student/element.css").read_text(encoding="utf-8")
     assert [name for name in properties if f"var({name})" not in sheet] == []
-    for piece in (".outer", ".part", "figure", ".check"):
-        assert colour(page, piece) == (1, 2, 3), piece
+    for selector in (".outer", ".part", "figure", ".check"):
+        assert colour(page, selector) == (1, 2, 3), selector
     # The exercise on the page says which properties exist: none of the colours is left out.
     tokens = (ROOT / "service/web/static/shared/tokens.css").read_text(encoding="utf-8")
     colours = set(re.findall(r"(--[\w-]+): light-dark", tokens))
