@@ -148,8 +148,7 @@ def _lines(exercise: Exercise, ids: int, joints: int, room: int) -> Iterator[Tex
     """Yield the lines of an exercise; ``ids`` and ``joints`` are the widths of the columns."""
     indent = " " * (ids + joints + 4)
     about = [*exercise.conventions, *([f"{exercise.minutes} min"] if exercise.minutes else [])]
-    named = f"{exercise.title} ({', '.join(about)})" if about else exercise.title
-    first, *more = textwrap.wrap(named, room)
+    first, *more = textwrap.wrap(", ".join([exercise.title, *about]), room)
     yield Text(f"{exercise.id:{ids}}  {exercise.structure or '':{joints}}  {first}")
     # A no-break space keeps a part and its points on one line.
     parts = ", ".join(f"{part.id}\N{NO-BREAK SPACE}({part.points:g})" for part in exercise.parts)
