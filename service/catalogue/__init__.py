@@ -5,6 +5,7 @@ from service.catalogue.feedback_level import FeedbackLevel, least
 from service.catalogue.files.regular_file import read_regular
 from service.catalogue.files.schema import CheckSpec
 from service.catalogue.files.toml_file import CatalogueError, Fault
+from service.catalogue.level import ExerciseLevel
 from service.catalogue.live import open_catalogue
 from service.catalogue.load import (
     ID_ADVICE,
@@ -15,6 +16,7 @@ from service.catalogue.load import (
     read_exercise,
     shipped_folder,
 )
+from service.catalogue.order import by_level, exercise_after
 from service.catalogue.part import PartSpec, PosePartSpec
 from service.catalogue.robots.formulas import FormulaGrid, grid_values
 from service.catalogue.robots.robot import Joint, ReferenceTable, Robot
@@ -26,6 +28,7 @@ __all__ = [
     "CatalogueError",
     "CheckSpec",
     "Exercise",
+    "ExerciseLevel",
     "Fault",
     "FeedbackLevel",
     "FormulaGrid",
@@ -36,6 +39,8 @@ __all__ = [
     "Robot",
     "ScrewRobot",
     "Variable",
+    "by_level",
+    "exercise_after",
     "exercise_files",
     "grid_values",
     "is_exercise_id",

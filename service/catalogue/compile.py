@@ -48,7 +48,8 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "number": (0.5, 2.0),
 }
 # The fields of a file that do not affect grading.
-_NOT_GRADING = {"checks", "feedback", "attempts", "view"}
+_CATALOGUE = {"level", "order", "minutes", "summary", "keywords"}
+_NOT_GRADING = {"checks", "feedback", "attempts", "view", *_CATALOGUE}
 
 
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
@@ -80,6 +81,11 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         feedback_by_attempt=_levels(spec.feedback),
         attempts=spec.attempts,
         view=spec.view,
+        level=spec.level,
+        order=spec.order,
+        minutes=spec.minutes,
+        summary=spec.summary,
+        keywords=tuple(spec.keywords),
     )
 
 

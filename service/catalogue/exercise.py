@@ -7,12 +7,14 @@ from typing import Final
 from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.files.schema import CheckSpec, ViewSpec
+from service.catalogue.level import ExerciseLevel
 from service.catalogue.part import PartSpec
 from service.catalogue.robots.formulas import FormulaField, FormulaGrid, fields_of
 from service.catalogue.robots.robot import Joint, Robot
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.robots.variables import Variable
 from service.expressions import Vocabulary
+from service.kinematics.dh import Convention
 
 _ANY_TIME: Final = AttemptsSpec()
 
@@ -22,7 +24,8 @@ class Exercise:
     """One exercise of the catalogue.
 
     ``version`` changes with every field that affects grading: not with ``checks``, ``view``,
-    ``attempts`` and ``feedback_by_attempt``, the highest feedback level of each attempt (the last
+    ``attempts``, the fields of the catalogue (``level``, ``order``, ``minutes``, ``summary`` and
+    ``keywords``) and ``feedback_by_attempt``, the highest feedback level of each attempt (the last
     one is for all later attempts). ``reference`` is the robot, if any; ``formulas`` has the answers
     in the file by part id. ``length_scale`` is the longest length, to which small differences are
     compared. ``view`` is the viewpoint of the figure.
@@ -43,6 +46,17 @@ class Exercise:
     feedback_by_attempt: tuple[FeedbackLevel, ...] = (FeedbackLevel.HINTS,)
     attempts: AttemptsSpec = _ANY_TIME
     view: ViewSpec | None = None
+    level: ExerciseLevel | None = None
+    order: int | None = None
+    minutes: int | None = None
+    summary: str = ""
+    keywords: tuple[str, ...] = ()
+
+    @property
+    def conventions(self) -> tuple[Convention, ...]:
+        """The conventions that the parts ask for, each once."""
+        asked = {getattr(part, "convention", None) for part in self.parts}
+        return tuple(each for each in Convention if not asked.isdisjoint({each, "either"}))
 
     @property
     def feedback(self) -> FeedbackLevel:

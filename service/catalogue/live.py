@@ -9,6 +9,7 @@ from typing import Final
 from service.catalogue.exercise import Exercise
 from service.catalogue.files.toml_file import CatalogueError
 from service.catalogue.load import exercise_files, load_catalogue, load_exercise
+from service.catalogue.order import in_order
 
 # The time between two checks of the files (seconds).
 REFRESH_SECONDS: Final = 1.0
@@ -84,7 +85,7 @@ class LiveCatalogue(Mapping[str, Exercise]):
                 exercise = _reread(file, exercise)
             if exercise is not None:
                 found[file.stem] = exercise
-        self._stamps, self._exercises = stamps, found
+        self._stamps, self._exercises = stamps, in_order(found.values())
 
     def _complain(self, complaint: str) -> None:
         """Log a fault of the folders, once as long as it lasts."""

@@ -17,6 +17,7 @@ from service.catalogue.files.toml_file import (
     load_toml,
     read_toml,
 )
+from service.catalogue.order import in_order
 
 ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
 _LONGEST_ID = 60
@@ -71,7 +72,7 @@ def load_catalogue(*folders: Path) -> dict[str, Exercise]:
             faults.extend(error.faults)
     if faults:
         raise CatalogueError(faults)
-    return exercises
+    return in_order(exercises.values())
 
 
 def is_exercise_id(name: str) -> bool:

@@ -2,10 +2,11 @@
 
 from pydantic import BaseModel, Field
 
-from service.catalogue import FeedbackLevel
+from service.catalogue import ExerciseLevel, FeedbackLevel
 from service.catalogue.files.fields import Marking
 from service.catalogue.parts import AnyShape
 from service.expressions import Kind
+from service.kinematics.dh import Convention
 
 
 class PartSummary(BaseModel):
@@ -16,12 +17,27 @@ class PartSummary(BaseModel):
     points: float
 
 
-class ExerciseSummary(BaseModel):
-    """An exercise in the list."""
+class CatalogueEntry(BaseModel):
+    """What the catalogue says about an exercise."""
 
     id: str
     title: str
     source: str
+    level: ExerciseLevel | None = Field(
+        None, description="The level: `start`, `basics`, `arms` or `industrial`."
+    )
+    order: int | None = Field(None, description="The place within the level.")
+    minutes: int | None = Field(None, description="The minutes that a student needs.")
+    summary: str = Field("", description="One line about the exercise.")
+    conventions: list[Convention] = Field(
+        [], description="The DH conventions that the parts ask for."
+    )
+    keywords: list[str] = Field([], description="More words for a search.")
+
+
+class ExerciseSummary(CatalogueEntry):
+    """An exercise in the list."""
+
     structure: str | None = Field(
         description="The joints in order: R turns, P slides. Null without a robot."
     )
@@ -60,13 +76,10 @@ class PartView(BaseModel):
     shape: AnyShape
 
 
-class ExerciseView(BaseModel):
+class ExerciseView(CatalogueEntry):
     """An exercise without its answers."""
 
-    id: str
     version: str
-    title: str
-    source: str
     structure: str | None = Field(
         None, description="The joints in order: R turns, P slides. Absent without a robot."
     )

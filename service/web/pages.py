@@ -1,27 +1,20 @@
 """Students' pages as HTML. They can be read without scripts."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Final
 
 from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
 from service.api.statement import statement_html
-from service.catalogue import Exercise
+from service.catalogue import Exercise, by_level
 from service.formats.shared.html_templates import html, own_html
 from service.web.assets import Assets
+from service.web.catalogue_words import kinds_of, words_of
 
 # The entries of the menu: text, and address relative to the root.
 _MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
 _TUTORS_MENU: Final = (*_MENU, ("For tutors", "tutor"))
-
-_KIND_NAMES: Final = {
-    "dh_table": "DH table",
-    "dh_row": "DH row",
-    "link_transforms": "link transforms",
-    "euler_angles": "Euler angles",
-    "screw_axes": "screw axes",
-}
 
 
 def catalogue_page(catalogue: Catalogue, assets: Assets, *, tutor: bool = False) -> bytes:
@@ -30,15 +23,19 @@ def catalogue_page(catalogue: Catalogue, assets: Assets, *, tutor: bool = False)
         "web/templates/catalogue.html",
         assets,
         "",
-        ["page.js"],
+        ["page.js", "catalogue.js"],
+        styles=["catalogue.css"],
         tutor=tutor,
-        groups=list(_groups(catalogue.values())),
-        kinds_of=_kinds_of,
+        groups=by_level(catalogue.values()),
+        kinds_of=kinds_of,
+        words_of=words_of,
     )
 
 
-def exercise_page(exercise: Exercise, assets: Assets, *, tutor: bool = False) -> bytes:
-    """Return the page of an exercise."""
+def exercise_page(
+    exercise: Exercise, following: Exercise | None, assets: Assets, *, tutor: bool = False
+) -> bytes:
+    """Return the page of an exercise, with a link to the ``following`` one."""
     return page(
         "web/templates/exercise.html",
         assets,
@@ -46,6 +43,7 @@ def exercise_page(exercise: Exercise, assets: Assets, *, tutor: bool = False) ->
         ["page.js", "embed.js"],
         tutor=tutor,
         exercise=exercise,
+        next=following,
         markdown=_markdown,
     )
 
@@ -82,22 +80,6 @@ def page(
         styles=list(styles),
         **values,
     )
-
-
-def _groups(exercises: Iterable[Exercise]) -> Iterator[tuple[str, list[Exercise]]]:
-    """Yield each heading with its exercises: first those with a robot, then all others."""
-    robots: list[Exercise] = []
-    others: list[Exercise] = []
-    for exercise in exercises:
-        (others if exercise.reference is None else robots).append(exercise)
-    for title, group in (("Robots", robots), ("Transforms, rotations and screws", others)):
-        if group:
-            yield title, group
-
-
-def _kinds_of(exercise: Exercise) -> Iterable[str]:
-    """Return the names of the kinds of its parts, each once."""
-    return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
 
 
 def _markdown(text: str) -> Markup:

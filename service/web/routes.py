@@ -11,6 +11,7 @@ from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
+from service.catalogue import exercise_after
 from service.web.assets import Asset, load_assets
 from service.web.page_headers import PAGE_HEADERS
 from service.web.pages import catalogue_page, exercise_page, play_page
@@ -54,9 +55,10 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     async def exercise(request: Request, exercise_id: str) -> Response:
         """Answer with the page of an exercise; statement and figure need no scripts."""
         shown = exercise_or_404(catalogue, exercise_id)
+        shows_solutions = tutoring.access.shows_solutions(request)
+        following = exercise_after(exercise_id, catalogue.values())
         return HTMLResponse(
-            exercise_page(shown, assets, tutor=tutoring.access.shows_solutions(request)),
-            headers=PAGE_HEADERS,
+            exercise_page(shown, following, assets, tutor=shows_solutions), headers=PAGE_HEADERS
         )
 
     @router.get("/play")

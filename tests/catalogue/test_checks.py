@@ -93,7 +93,10 @@ def test_checks_do_not_change_the_version(tmp_path: Path) -> None:
     assert load_exercise(write(tmp_path, VALID + CHECK)).version == before
 
 
-KEYS = "title, source, statement, robot, symbols, feedback, attempts, view, parts, checks"
+KEYS = (
+    "title, source, level, order, minutes, summary, keywords, statement, robot, symbols, feedback, "
+    "attempts, view, parts, checks"
+)
 # A replacement, and the expected messages without the file's name; * matches anything.
 MESSAGES: dict[tuple[str, str], list[str]] = {
     ("source =", "sauce ="): [

@@ -16,7 +16,8 @@ ROOMS = {
     "vendor": set[str](),
     "shared": set[str](),
     "robot": {"shared", "vendor"},
-    "student": {"shared", "robot"},
+    "catalogue": {"shared"},
+    "student": {"shared", "robot", "catalogue"},
     "play": {"shared", "robot", "student"},
     "tutor": {"shared", "student"},
 }

@@ -25,7 +25,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         response_description="The catalogue.",
     )
     async def list_exercises() -> dict[str, Any]:
-        """List all exercises, in the order of their files' names."""
+        """List all exercises, by level, then by their place within it."""
         return {"exercises": list(catalogue.values())}
 
     @router.get(

@@ -24,6 +24,7 @@ from service.catalogue.files.fields import (
     Text,
     advice,
 )
+from service.catalogue.level import ExerciseLevel
 from service.catalogue.parts import SPECS, AnyPartSpec
 from service.expressions import Kind
 from service.kinematics.dh import Convention
@@ -181,7 +182,18 @@ class ExerciseSpec(StrictModel):
     title: Text
     """The title of the exercise."""
     source: Text
-    """The source of the exercise, with a page; students see it."""
+    """The source of the exercise, with a page; students see it at the foot of the exercise."""
+    level: ExerciseLevel | None = None
+    """The level in the catalogue: "start" (Start here), "basics", "arms" or "industrial". Exercises
+    without a level come last."""
+    order: Annotated[int, Field(ge=1, strict=True)] | None = None
+    """The place within the level. Exercises without one come last in their level."""
+    minutes: Annotated[int, Field(ge=1, strict=True)] | None = None
+    """The minutes that a student needs the first time."""
+    summary: LooseText = ""
+    """One line for the catalogue: what the robot is, or what is asked for."""
+    keywords: list[Text] = Field([])
+    """More words by which the search of the catalogue finds the exercise."""
     statement: Text
     """The whole task in words, so that it needs no figure. Markdown; ``$…$`` is LaTeX maths."""
     robot: AnyRobotSpec | None = None

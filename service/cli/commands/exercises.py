@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from service.authoring import UnusableIdError, template
-from service.catalogue import Exercise
+from service.catalogue import Exercise, by_level
 from service.catalogue.robots.robot import Robot
 from service.cli.commands import check, export_robot, import_robot
 from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
@@ -65,7 +65,7 @@ def show_exercise(
         _write_solution(exercise, console, latex=latex)
         return
     console.print(Text(exercise.title, "bold"))
-    name = ", ".join(filter(None, (exercise.id, exercise.structure)))
+    name = ", ".join(filter(None, (exercise.id, exercise.structure, *exercise.conventions)))
     console.print(Text(f"{name}. {exercise.source}", "dim"))
     # Line breaks within a paragraph are left to the terminal.
     paragraphs = (" ".join(block.split()) for block in exercise.statement.split("\n\n"))
@@ -135,22 +135,28 @@ def new_exercise(
 
 
 def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
-    """Yield lines with the id, joints and title of each exercise, and its parts below."""
+    """Yield each level, and the id, joints and title of its exercises, with the parts below."""
     ids = max(len(exercise.id) for exercise in exercises)
     joints = max(len("joints"), *(len(exercise.structure or "") for exercise in exercises))
-    indent = " " * (ids + joints + 4)
-    room = max(width - len(indent), _NARROWEST)
+    room = max(width - ids - joints - 4, _NARROWEST)
     yield Text(f"{'id':{ids}}  {'joints':{joints}}  title, and parts (points)", "dim")
-    for exercise in exercises:
-        first, *more = textwrap.wrap(exercise.title, room)
-        yield Text(f"{exercise.id:{ids}}  {exercise.structure or '':{joints}}  {first}")
-        # A no-break space keeps a part and its points on one line.
-        parts = ", ".join(
-            f"{part.id}\N{NO-BREAK SPACE}({part.points:g})" for part in exercise.parts
-        )
-        below = textwrap.wrap(parts, room, break_on_hyphens=False)
-        yield from (Text(indent + line) for line in more)
-        yield from (Text(indent + line.replace("\N{NO-BREAK SPACE}", " "), "dim") for line in below)
+    for heading, group in by_level(exercises):
+        yield Text(heading, "bold")
+        for exercise in group:
+            yield from _lines(exercise, ids, joints, room)
+
+
+def _lines(exercise: Exercise, ids: int, joints: int, room: int) -> Iterator[Text]:
+    """Yield the lines of an exercise; ``ids`` and ``joints`` are the widths of the columns."""
+    indent = " " * (ids + joints + 4)
+    about = [*exercise.conventions, *([f"{exercise.minutes} min"] if exercise.minutes else [])]
+    first, *more = textwrap.wrap(", ".join([exercise.title, *about]), room)
+    yield Text(f"{exercise.id:{ids}}  {exercise.structure or '':{joints}}  {first}")
+    # A no-break space keeps a part and its points on one line.
+    parts = ", ".join(f"{part.id}\N{NO-BREAK SPACE}({part.points:g})" for part in exercise.parts)
+    below = textwrap.wrap(parts, room, break_on_hyphens=False)
+    yield from (Text(indent + line) for line in more)
+    yield from (Text(indent + line.replace("\N{NO-BREAK SPACE}", " "), "dim") for line in below)
 
 
 def _write_solution(exercise: Exercise, console: Console, *, latex: bool) -> None:

@@ -90,9 +90,15 @@ declare namespace Api {
   type EntryToPreview = { text: string; quantity?: Quantity; };
   type Exercise = {
     id: string;
-    version: string;
     title: string;
     source: string;
+    level?: ExerciseLevel;
+    order?: number;
+    minutes?: number;
+    summary: string;
+    conventions: Convention[];
+    keywords: string[];
+    version: string;
     structure?: string;
     statement: string;
     statement_html: string;
@@ -101,6 +107,7 @@ declare namespace Api {
     symbols: ExerciseSymbol[];
     parts: Part[];
   };
+  type ExerciseLevel = "start" | "basics" | "arms" | "industrial";
   type ExerciseList = { exercises: ExerciseSummary[]; };
   type ExerciseStatistics = {
     exercise: string;
@@ -117,7 +124,19 @@ declare namespace Api {
     echo?: boolean;
     exercise: string;
   };
-  type ExerciseSummary = { id: string; title: string; source: string; structure: string | null; parts: PartSummary[]; };
+  type ExerciseSummary = {
+    id: string;
+    title: string;
+    source: string;
+    level?: ExerciseLevel;
+    order?: number;
+    minutes?: number;
+    summary: string;
+    conventions: Convention[];
+    keywords: string[];
+    structure: string | null;
+    parts: PartSummary[];
+  };
   type ExerciseSymbol = { name: string; kind: Quantity; unit: string; description: string; joint?: number; };
   type Feedback = {
     code: string;

@@ -63,7 +63,9 @@ def test_the_list_names_every_exercise_with_its_parts(
     assert list(listed) == ["exercises"]
     assert [exercise["id"] for exercise in listed["exercises"]] == list(catalogue)
     [scara] = [exercise for exercise in listed["exercises"] if exercise["id"] == "scara"]
-    assert set(scara) == {"id", "title", "source", "structure", "parts"}
+    described = {"level", "order", "minutes", "summary", "keywords", "conventions"}
+    assert set(scara) == {"id", "title", "source", "structure", "parts"} | described
+    assert (scara["level"], scara["conventions"]) == ("industrial", ["standard"])
     assert scara["structure"] == "RRPR"
     kinds = {part["id"]: part["kind"] for part in scara["parts"]}
     assert kinds["table"] == "dh_table"
@@ -86,6 +88,9 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
         "id": "two-joints",
         "title": "Two joints",
         "source": "none",
+        "summary": "",
+        "keywords": [],
+        "conventions": ["standard", "modified"],
         "structure": "RP",
         "statement": "An arm.",
         "statement_html": "<p>An arm.</p>\n",

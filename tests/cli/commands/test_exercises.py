@@ -39,7 +39,7 @@ def test_the_list_keeps_titles_and_parts_with_points_on_one_line(run: Run) -> No
     at = next(i for i, line in enumerate(lines) if line.startswith("planar-rr "))
     indent = lines[0].index("title,")
     assert [line[indent:] for line in lines[at : at + 3]] == [
-        "Planar RR arm, distal convention",
+        "Planar RR arm, standard, 20 min",
         "table (4), links (4), pose (4), position (2),",
         "task-space (3)",
     ]
@@ -52,7 +52,7 @@ def test_the_list_adapts_to_the_width_of_the_terminal(
 ) -> None:
     monkeypatch.setenv("COLUMNS", columns)
     text = run("exercises", "list").stdout
-    one_line = "Planar RRR arm, proximal convention, every frame given as drawn" in text
+    one_line = "Planar RRR arm and its task space, standard, 25 min" in text
     assert one_line == (columns == "200")
     assert "(8)" in text
 

@@ -40,7 +40,7 @@ def test_an_unusable_file_earns_nothing_and_has_a_reason() -> None:
 def test_exercises_of_an_assignment_are_weighted() -> None:
     result = checked_json("gradescope", cases()["assignment"])
     told = [(test["name"], test["score"], test["max_score"]) for test in result["tests"]]
-    arm = "Planar RRR arm, proximal convention"
+    arm = "Planar RRR arm"
     assert told == [
         (f"{arm}: Denavit-Hartenberg table", 1.5, 1.5),
         (f"{arm}: Pose of the end effector", 1.5, 1.5),

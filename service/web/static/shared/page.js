@@ -1,4 +1,4 @@
-// The script of the service's own pages: the choice of light or dark, and the search in the catalogue.
+// The script of the service's own pages: the choice of light or dark.
 
 import { byId, h } from "./dom.js";
 
@@ -36,33 +36,3 @@ const theme = h(
 );
 show(kept());
 byId("theme", HTMLElement).append(theme);
-
-const field = document.getElementById("search");
-if (field instanceof HTMLInputElement) {
-  /** @type {NodeListOf<HTMLElement>} */
-  const found = document.querySelectorAll(".exercises > li");
-  const items = [...found];
-  const texts = items.map((item) => item.textContent.toLowerCase());
-  const none = byId("none-found", HTMLElement);
-  const count = byId("count", HTMLElement);
-  const narrow = () => {
-    const words = field.value.toLowerCase().split(/\s+/).filter(Boolean);
-    items.forEach((item, i) => (item.hidden = !words.every((word) => texts[i].includes(word))));
-    /** @type {NodeListOf<HTMLElement>} */
-    const groups = document.querySelectorAll(".group");
-    for (const group of groups) {
-      group.hidden = !group.querySelector(".exercises > li:not([hidden])");
-    }
-    const left = items.filter((item) => !item.hidden).length;
-    count.textContent = words.length ? `${left} of ${items.length}` : `${items.length} exercises`;
-    none.hidden = left > 0;
-    none.textContent = "No exercise has all these words.";
-  };
-  const { form } = field;
-  if (form) {
-    form.hidden = false;
-    form.addEventListener("submit", (event) => event.preventDefault());
-  }
-  field.addEventListener("input", narrow);
-  narrow();
-}

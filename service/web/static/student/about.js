@@ -1,21 +1,37 @@
-// The task of an exercise: title and source, statement with the robot, and symbols.
+// The task of an exercise: title, statement with the robot, and symbols.
 
-import { h, visible } from "../shared/dom.js";
+import { h, number, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
+
+/**
+ * Return the badges below the title: the convention, and for the shown parts the points; minutes are of all parts.
+ *
+ * @param {Api.Exercise} exercise
+ * @param {Api.Part[]} shown
+ */
+function badges({ conventions, minutes, parts }, shown) {
+  const worth = shown.reduce((sum, part) => sum + part.points, 0);
+  const texts = [...(conventions ?? []), `${number(worth)} points`];
+  if (minutes && shown.length === parts.length) texts.push(`${minutes} min`);
+  return h("p", { class: "tags" }, ...texts.map((text) => h("span", { class: "badge" }, text)));
+}
 
 /**
  * Return the section with the task. Beside the cells, it scrolls separately, also by keyboard.
  *
  * @param {Api.Exercise} exercise
+ * @param {Api.Part[]} shown the parts that the element shows
  * @param {"h1" | "h2"} level of the title
  * @param {Front.RobotFigure | null} robot
  */
-export function about({ title, source, statement, statement_html: markup, symbols }, level, robot) {
+export function about(exercise, shown, level, robot) {
+  const { title, summary, statement, statement_html: markup, symbols } = exercise;
   const header = h(
     "header",
     {},
-    h(level, { id: "title" }, visible(title)),
-    h("p", { class: "quiet" }, visible(source)),
+    h(level, { id: "title", part: "title" }, visible(title)),
+    summary ? h("p", { class: "quiet" }, visible(summary)) : null,
+    badges(exercise, shown),
   );
   const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
   const terms = symbols.flatMap(({ name, unit, description }) => [
@@ -25,10 +41,10 @@ export function about({ title, source, statement, statement_html: markup, symbol
   const head = h(level === "h1" ? "h2" : "h3", {}, "Symbols");
   return h(
     "section",
-    { class: "about", tabindex: 0, "aria-labelledby": "title" },
+    { class: "about", part: "about", tabindex: 0, "aria-labelledby": "title" },
     header,
     // The button comes before the view that it opens, so that it stays visible and Tab leads into the view.
-    h("div", { class: "statement" }, robot?.button, robot?.figure, ...text),
-    terms.length ? h("section", { class: "symbols" }, head, h("dl", {}, ...terms)) : null,
+    h("div", { class: "statement", part: "statement" }, robot?.button, robot?.figure, ...text),
+    terms.length ? h("section", { class: "symbols", part: "symbols" }, head, h("dl", {}, ...terms)) : null,
   );
 }

@@ -5,7 +5,7 @@ import { h, points, visible } from "../shared/dom.js";
 export class CheckBar {
   /** @param {() => void} check */
   constructor(check) {
-    this.button = h("button", { type: "button", class: "check", onclick: check }, "Check");
+    this.button = h("button", { type: "button", class: "check", part: "check", onclick: check }, "Check");
     this.total = h("p", { class: "total" });
     this.trouble = h("p", { class: "trouble-line", hidden: true });
     this.element = h("div", { class: "bar" }, this.trouble, h("div", { class: "bar-line" }, this.button, this.total));
@@ -33,8 +33,14 @@ export class CheckBar {
     return isNew;
   }
 
-  /** @param {{ points: number, max_points: number }} report */
-  show({ points: earned, max_points: most }) {
+  /**
+   * Show the points of these parts.
+   *
+   * @param {Pick<Api.PartReport, "points" | "max_points">[]} parts
+   */
+  show(parts) {
+    const earned = parts.reduce((sum, part) => sum + part.points, 0);
+    const most = parts.reduce((sum, part) => sum + part.max_points, 0);
     const meter = h("meter", { min: 0, max: 1, value: most ? earned / most : 0, "aria-label": "Share of the points" });
     this.total.replaceChildren(meter, h("strong", {}, points(earned, most)), " points");
     this.total.classList.remove("outdated");

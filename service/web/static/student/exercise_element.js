@@ -2,16 +2,19 @@
 //
 // Attributes: exercise, its id; api, the address of the service (by default that of this script);
 // parts, the ids of the parts to show; feedback, the highest feedback level; token, the learner's token
-// if the service needs keys; theme, "light", "dark" or "auto" (by default that of the page). `linked`
-// is for the service's own page: the element reads answers from the address. The event `graded`
-// (bubbling, composed) has the report as its detail.
+// if the service needs keys; theme, "light", "dark" or "auto" (by default that of the page); readonly, to
+// show answers only; locale, which is reserved. `linked` is for the service's own page: the element reads
+// answers from the address. The event `graded` (bubbling, composed) has the report as its detail.
 
 import { h, points, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
+import { keepProgress } from "../catalogue/progress.js";
 import { about } from "./about.js";
 import { CheckBar } from "./check_bar.js";
+import { PageColours } from "./embedding/page_colours.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
+import { lock } from "./embedding/readonly.js";
 import { RobotFigure } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
 import { answersIn, fragment, Store } from "../shared/storage.js";
@@ -22,7 +25,7 @@ const HOME = new URL("../", import.meta.url).href;
 const SAVED_AFTER = 250;
 
 export class DhExercise extends HTMLElement {
-  static observedAttributes = ["exercise", "api", "parts", "theme"];
+  static observedAttributes = ["exercise", "api", "parts", "readonly", "theme"];
 
   /** @type {PartView[]} */
   #parts = [];
@@ -61,15 +64,19 @@ export class DhExercise extends HTMLElement {
     this.state = h("div", { class: "state" });
     this.received = h("div", { class: "card notice" });
     const sheets = [TOKENS, STYLE].map((href) => h("link", { rel: "stylesheet", href }));
-    root.append(...sheets, h("div", { class: "outer" }, this.state, this.main, this.live));
+    const outer = h("div", { class: "outer" }, this.state, this.main, this.live);
+    this.colours = new PageColours(this, outer, () => this.robot?.recolour());
+    root.append(...sheets, outer);
   }
 
   connectedCallback() {
+    this.colours.start();
     this.#begin();
     addEventListener("online", this.#onOnline);
   }
 
   disconnectedCallback() {
+    this.colours.stop();
     removeEventListener("online", this.#onOnline);
     this.robot?.close();
     this.#loading += 1;
@@ -77,7 +84,9 @@ export class DhExercise extends HTMLElement {
 
   /** @param {string} _name @param {string | null} before @param {string | null} after */
   attributeChangedCallback(_name, before, after) {
-    if (this.isConnected && before !== after) this.#begin();
+    if (!this.isConnected || before === after) return;
+    this.colours.start();
+    this.#begin();
   }
 
   /** Load the exercise once, even if several attributes change at the same time. */
@@ -101,20 +110,21 @@ export class DhExercise extends HTMLElement {
       if (turn === this.#loading) this.#show(exercise);
     } catch (error) {
       if (turn !== this.#loading) return undefined;
-      const title = error.status === 404 ? "There is no such exercise" : "The exercise could not be loaded";
-      this.#tell(title, error.message, error.status !== 404);
+      if (error.status === 404) this.#tell(error.message);
+      else this.#tell("The exercise could not be loaded", error.message, true);
     }
     return this.main.removeAttribute("aria-busy");
   }
 
   /**
-   * Show a message instead of an exercise.
+   * Show a message instead of an exercise. If the student can try `again`, the page's own content stays.
    *
    * @param {string} title
-   * @param {string} text
+   * @param {string} [text]
    * @param {boolean} [again]
    */
-  #tell(title, text, again = false) {
+  #tell(title, text = "", again = false) {
+    this.main.hidden = !again;
     const button = again
       ? h("button", { type: "button", class: "quiet-button", onclick: () => this.#begin() }, "Try again")
       : null;
@@ -122,8 +132,8 @@ export class DhExercise extends HTMLElement {
       h(
         "div",
         { class: "card trouble", role: "alert" },
-        h("p", {}, h("strong", {}, title)),
-        h("p", {}, visible(text)),
+        h("p", {}, h("strong", {}, visible(title))),
+        text ? h("p", {}, visible(text)) : null,
         button,
       ),
     );
@@ -218,17 +228,16 @@ export class DhExercise extends HTMLElement {
     this.#parts = exercise.parts
       .filter((part) => !wanted || wanted.includes(part.id))
       .map((part) => new PartView(part, this, isOwn ? "h2" : "h3"));
+    const elements = this.#parts.map((part) => part.element);
+    for (const each of elements) each.part.add("part");
     this.main.replaceChildren(
-      about(exercise, isOwn ? "h1" : "h2", this.robot),
-      h(
-        "div",
-        { class: "parts" },
-        this.#tools(),
-        this.received,
-        ...this.#parts.map((part) => part.element),
-        this.bar.element,
-      ),
+      about(exercise, this.#parts.map(({ part }) => part), isOwn ? "h1" : "h2", this.robot),
+      h("div", { class: "parts" }, this.#tools(), this.received, ...elements, this.bar.element),
+      h("p", { class: "quiet source", part: "source" }, `Source: ${visible(exercise.source)}`),
     );
+    this.main.hidden = false;
+    lock(this.main, this.#parts, this.hasAttribute("readonly"));
+    this.unit.disabled = this.hasAttribute("readonly");
     this.received.hidden = true;
     this.state.replaceChildren();
     const shared = isOwn ? answersIn(location.hash) : null;
@@ -244,9 +253,8 @@ export class DhExercise extends HTMLElement {
   #robotFigure() {
     const { figure, symbols, title, id } = this.exercise;
     if (!figure) return null;
-    const theme = this.getAttribute("theme");
-    const asked = theme === "light" || theme === "dark" ? `?theme=${theme}` : "";
-    const address = this.service.address(`v1/exercises/${encodeURIComponent(id)}/figure.svg${asked}`);
+    const figureAddress = this.service.address(`v1/exercises/${encodeURIComponent(id)}/figure.svg`);
+    const address = () => this.colours.figure(figureAddress);
     const host = {
       service: this.service,
       body: () => ({ ...this.context(), ...this.#tableToDraw() }),
@@ -348,7 +356,7 @@ export class DhExercise extends HTMLElement {
       this.saved.textContent = "Nothing is filled in yet";
       return;
     }
-    if (this.bar.isBusy) return;
+    if (this.bar.isBusy || this.hasAttribute("readonly")) return;
     this.bar.isBusy = true;
     const feedback = /** @type {Api.FeedbackLevel | null} */ (this.getAttribute("feedback"));
     const body = {
@@ -374,7 +382,9 @@ export class DhExercise extends HTMLElement {
       if (told) part.showReport(told);
       else part.clearReport();
     }
-    this.bar.show(this.#ofShown(report));
+    const ids = new Set(this.#parts.map(({ part }) => part.id));
+    this.bar.show(report.parts.filter(({ part }) => ids.has(part)));
+    keepProgress(this.service.base, this.exercise, report.parts);
     const titles = new Map(filled.map(({ part: { id, title } }) => [id, title]));
     const told = report.parts.filter(({ part }) => titles.has(part)).map(
       ({ part, verdict, points: earned, max_points: most }) =>
@@ -382,18 +392,5 @@ export class DhExercise extends HTMLElement {
     );
     this.announce(told.join(" "));
     this.dispatchEvent(new CustomEvent("graded", { bubbles: true, composed: true, detail: report }));
-  }
-
-  /**
-   * Return the points of the shown parts.
-   *
-   * @param {Api.Report} report
-   */
-  #ofShown(report) {
-    const ids = new Set(this.#parts.map((part) => part.part.id));
-    const shown = report.parts.filter((part) => ids.has(part.part));
-    /** @type {(name: "points" | "max_points") => number} */
-    const sum = (name) => shown.reduce((total, part) => total + part[name], 0);
-    return { points: sum("points"), max_points: sum("max_points") };
   }
 }

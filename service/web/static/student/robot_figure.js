@@ -13,13 +13,14 @@ export class RobotFigure {
   /**
    * The 3D view gets `host`. `shown` is called when the view opens or closes, `failed` if it cannot be loaded.
    *
-   * @param {string} address of the drawing
+   * @param {() => string} address of the drawing
    * @param {string} title
    * @param {Front.ViewHost} host
    * @param {(isOpen: boolean) => void} shown
    * @param {() => void} failed
    */
   constructor(address, title, host, shown, failed) {
+    this.address = address;
     this.host = host;
     this.shown = shown;
     this.failed = failed;
@@ -28,10 +29,19 @@ export class RobotFigure {
       { type: "button", class: "quiet-button", "aria-expanded": "false", onclick: () => this.#toggle() },
       CLOSED,
     );
-    const drawing = h("img", { src: address, alt: `Drawing of the robot: ${visible(title)}`, class: "loading" });
+    const drawing = this.drawing = h("img", {
+      src: address(),
+      alt: `Drawing of the robot: ${visible(title)}`,
+      class: "loading",
+    });
     // Reserves space, so that the text below does not jump when the drawing arrives.
     for (const name of ["load", "error"]) drawing.addEventListener(name, () => drawing.classList.remove("loading"));
-    this.figure = h("figure", {}, drawing);
+    this.figure = h("figure", { part: "figure" }, drawing);
+  }
+
+  /** Show the drawing in the colours of the page. */
+  recolour() {
+    if (this.drawing.src !== this.address()) this.drawing.src = this.address();
   }
 
   /** Update the 3D view after the answers have changed. */

@@ -1,0 +1,43 @@
+"""The order of the exercises in the catalogue."""
+
+from collections.abc import Iterable
+from itertools import groupby
+from typing import Final
+
+from service.catalogue.exercise import Exercise
+from service.catalogue.level import ExerciseLevel
+
+_LEVELS: Final = tuple(ExerciseLevel)
+_HEADINGS: Final = {
+    ExerciseLevel.START: "Start here",
+    ExerciseLevel.BASICS: "Basics",
+    ExerciseLevel.ARMS: "Arms",
+    ExerciseLevel.INDUSTRIAL: "Industrial robots",
+    None: "More exercises",
+}
+
+
+def in_order(exercises: Iterable[Exercise]) -> dict[str, Exercise]:
+    """Return the exercises by id, sorted by level, then ``order``, then as they are given.
+
+    Exercises without a level come last, and those without ``order`` come last in their level.
+    """
+    return {exercise.id: exercise for exercise in sorted(exercises, key=_place)}
+
+
+def by_level(exercises: Iterable[Exercise]) -> list[tuple[str, list[Exercise]]]:
+    """Return each level's heading with its exercises, both in the order of the catalogue."""
+    groups = groupby(in_order(exercises).values(), key=lambda exercise: exercise.level)
+    return [(_HEADINGS[level], list(group)) for level, group in groups]
+
+
+def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise | None:
+    """Return the exercise after this one in the order of the catalogue, or None after the last."""
+    following = iter(in_order(exercises).values())
+    found = any(exercise.id == exercise_id for exercise in following)
+    return next(following, None) if found else None
+
+
+def _place(exercise: Exercise) -> tuple[int, bool, int]:
+    level = len(_LEVELS) if exercise.level is None else _LEVELS.index(exercise.level)
+    return level, exercise.order is None, exercise.order or 0

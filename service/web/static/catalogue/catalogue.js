@@ -1,0 +1,61 @@
+// The catalogue: its search, and what is done.
+
+import { byId, h, points } from "../shared/dom.js";
+import { progressOf } from "./progress.js";
+import { matches, wordsOf } from "./search.js";
+
+const HOME = new URL("../", import.meta.url).href;
+
+/** @type {NodeListOf<HTMLElement>} */
+const found = document.querySelectorAll(".exercises > li");
+const items = [...found];
+/** @type {NodeListOf<HTMLElement>} */
+const groups = document.querySelectorAll(".group");
+
+/** Show on each exercise what is done, and in each heading how many are. */
+function showProgress() {
+  for (const item of items) {
+    const { exercise = "", points: most = "0" } = item.dataset;
+    const earned = Object.values(progressOf(HOME, exercise)).reduce((sum, each) => sum + each, 0);
+    const isDone = earned > 0 && earned >= Number(most);
+    item.classList.toggle("is-done", isDone);
+    const mark = isDone
+      ? [h("span", { "aria-hidden": "true" }, "✓ "), "Done"]
+      : earned > 0
+      ? [`${points(earned, Number(most))} so far`]
+      : [];
+    item.querySelector(".done")?.replaceChildren(...mark);
+  }
+  for (const group of groups) {
+    const all = group.querySelectorAll(".exercises > li").length;
+    const done = group.querySelectorAll(".is-done").length;
+    group.querySelector(".done-count")?.replaceChildren(done ? `${done} of ${all} done` : "");
+  }
+}
+
+const field = byId("search", HTMLInputElement);
+const words = items.map((item) => wordsOf(item.querySelector(".words")?.textContent ?? ""));
+
+/** Show only the exercises that have all words of the search. */
+function narrow() {
+  items.forEach((item, i) => (item.hidden = !matches(words[i], field.value)));
+  for (const group of groups) group.hidden = !group.querySelector(".exercises > li:not([hidden])");
+  const left = items.filter((item) => !item.hidden).length;
+  byId("count", HTMLElement).textContent = field.value.trim()
+    ? `${left} of ${items.length}`
+    : `${items.length} exercises`;
+  const none = document.getElementById("none-found");
+  if (!none) return;
+  none.hidden = left > 0;
+  none.textContent = "No exercise has all these words.";
+}
+
+if (items.length) {
+  byId("search-form", HTMLElement).hidden = false;
+  byId("search-form", HTMLElement).addEventListener("submit", (event) => event.preventDefault());
+  field.addEventListener("input", narrow);
+  narrow();
+  showProgress();
+  // The browser may show the page of before when the student goes back.
+  addEventListener("pageshow", showProgress);
+}

@@ -1,0 +1,30 @@
+// Answers to read only: the cells can be entered and read, but not changed.
+
+const CHANGES = ["paste", "beforeinput", "drop"];
+
+/** @param {Event} event */
+function refuse(event) {
+  event.preventDefault();
+  event.stopPropagation();
+}
+
+/**
+ * Let the student change the answers, or only read them.
+ *
+ * @param {HTMLElement} exercise
+ * @param {{ cells: Front.PartCell[], choice: HTMLSelectElement | null }[]} parts
+ * @param {boolean} isReadOnly
+ */
+export function lock(exercise, parts, isReadOnly) {
+  exercise.classList.toggle("read-only", isReadOnly);
+  // Before the cells get the event.
+  for (const name of CHANGES) {
+    if (isReadOnly) exercise.addEventListener(name, refuse, true);
+    else exercise.removeEventListener(name, refuse, true);
+  }
+  if (!isReadOnly) return;
+  for (const { cells, choice } of parts) {
+    for (const { input } of cells) input.readOnly = true;
+    if (choice) choice.disabled = true;
+  }
+}
