@@ -12,6 +12,8 @@ from service.kinematics.dh import Convention
 
 _WIDTH = 104
 _POINTS_OF_A_ROW = 2
+_MINUTES_A_ROW = 6
+_INDUSTRIAL = 6
 # x1 turns over between row 1 and row 2.
 _ROWS_TO_TURN = 2
 _MEANINGS = {"a": "distance between two axes", "d": "distance along an axis"}
@@ -51,6 +53,9 @@ def exercise_text(robot: HomeRobot, draft: Draft) -> str:
     remarks = "".join(f"# {_plain(remark)}\n" for remark in draft.remarks)
     return f"""{remarks}title = {_string(draft.title)}
 source = {_string(draft.source)}
+level = "{_level(robot)}"
+minutes = {_MINUTES_A_ROW * len(rows)}
+summary = {_string(_summary(robot))}
 
 statement = \"\"\"
 {_wrapped(statement)}
@@ -120,6 +125,15 @@ def _rows_in(robot: HomeRobot, convention: Convention) -> list[Row[str]]:
         if set(rows[-1]) == {"0"}:
             rows.pop()
     return rows
+
+
+def _level(robot: HomeRobot) -> str:
+    return "industrial" if len(robot.structure) >= _INDUSTRIAL else "arms"
+
+
+def _summary(robot: HomeRobot) -> str:
+    lengths = "lengths as letters" if robot.letters else "lengths in metres"
+    return f"{len(robot.structure)} joints ({robot.structure}), {lengths}."
 
 
 def _variables(structure: str) -> list[str]:
