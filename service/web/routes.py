@@ -12,8 +12,8 @@ from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
 from service.web.assets import Asset, load_assets
-from service.web.page_headers import PAGE_HEADERS
-from service.web.pages import catalogue_page, exercise_page, play_page
+from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
+from service.web.pages import catalogue_page, exercise_page, play_page, reference_page
 from service.web.problem_pages import problem_page
 from service.web.tutor.attempt_routes import attempt_routes
 from service.web.tutor.tutor_routes import Tutoring, tutor_routes
@@ -64,6 +64,12 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         """Answer with the page of free play; its tables stay in the browser."""
         shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
         return HTMLResponse(shown, headers=PAGE_HEADERS)
+
+    @router.get("/docs")
+    async def reference(request: Request) -> Response:
+        """Answer with the reference of the HTTP interface."""
+        shown = reference_page(assets, tutor=tutoring.access.shows_solutions(request))
+        return HTMLResponse(shown, headers=REFERENCE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
