@@ -205,6 +205,10 @@ def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) 
         for file in output.rglob("*.html")
     }
     assert len(written) == 6
+    book = tmp_path / "grades.csv"
+    command = [str(folder), "--exercise", "planar-rr", "--format", "gradebook"]
+    CliRunner().invoke(commands, [*command, "--output", str(book)])
+    written["grades.csv"] = book.read_bytes().decode()
     assert {name: archive.read(name).decode() for name in archive.namelist()} == {
         name: text.replace(f"{folder}/", "") for name, text in written.items()
     }
