@@ -45,6 +45,7 @@ def exercise_page(exercise: Exercise, assets: Assets, *, tutor: bool = False) ->
         assets,
         "../",
         ["page.js", "embed.js"],
+        styles=["print.css"],
         tutor=tutor,
         exercise=exercise,
         markdown=_markdown,

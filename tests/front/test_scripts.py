@@ -14,9 +14,10 @@ FILES = 12
 # A script may import from its own room and from these.
 ROOMS = {
     "vendor": set[str](),
+    "pages": set[str](),
     "shared": set[str](),
     "robot": {"shared", "vendor"},
-    "student": {"shared", "robot"},
+    "student": {"shared", "robot", "pages"},
     "play": {"shared", "robot", "student"},
     "tutor": {"shared", "student"},
 }
