@@ -84,7 +84,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
         return _file(files[name], files[name].content, _FOR_EVER)
 
-    return WebPages(router, problem_page(assets), tutoring.checking.close)
+    return WebPages(router, problem_page(assets), tutoring.checking.close, tutoring.drafts)
 
 
 def _file(asset: Asset, content: bytes, caching: str) -> Response:

@@ -95,6 +95,7 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "GET /tutor/solutions/{exercise_id}/frames.svg": _solutions(Reach.PATH),
     "GET /tutor/editor": _solutions(Reach.ALL),
     "POST /tutor/check": _solutions(Reach.ALL),
+    "POST /tutor/drafts": _solutions(Reach.ALL),
     "POST /tutor/files": _solutions(Reach.ALL),
     "GET /tutor/class": _solutions(Reach.ALL),
     "GET /tutor/class/report": _solutions(Reach.ALL),

@@ -50,9 +50,9 @@ def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) ->
 
 
 def editor_page(
-    exercise_id: str, text: str, mark: str, assets: Assets, *, can_write: bool
+    exercise_id: str, text: str, mark: str, assets: Assets, *, can_write: bool, copied: str = ""
 ) -> bytes:
-    """Return the page of the editor with the text of a file."""
+    """Return the page of the editor with the text of a file, or of a copy of ``copied``."""
     return _page(
         "editor",
         assets,
@@ -62,6 +62,7 @@ def editor_page(
         text=text,
         mark=mark,
         can_write=can_write,
+        copied=copied,
     )
 
 

@@ -16,6 +16,7 @@ from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
+from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
@@ -31,7 +32,7 @@ class Tutoring:
 
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
     in ``editor_dir``. ``records`` is true if the service records attempts. ``checking`` checks the
-    text in the editor.
+    text in the editor, and ``drafts`` has the exercises in its preview.
     """
 
     access: Access
@@ -39,6 +40,7 @@ class Tutoring:
     editor_dir: Path | None = None
     records: bool = False
     checking: Checking = field(default_factory=Checking)
+    drafts: Drafts = field(default_factory=Drafts)
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -50,7 +52,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
     folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
     for routes in (
         _solution_routes(catalogue, assets, access),
-        editor_routes(catalogue, assets, folder, work, tutoring.checking),
+        editor_routes(catalogue, assets, folder, work, tutoring.checking, tutoring.drafts),
         class_routes(catalogue, assets, work),
     ):
         router.include_router(routes)
