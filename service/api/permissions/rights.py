@@ -93,6 +93,7 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "GET /tutor": _solutions(Reach.OWN),
     "GET /tutor/solutions/{exercise_id}": _solutions(Reach.PATH),
     "GET /tutor/solutions/{exercise_id}/frames.svg": _solutions(Reach.PATH),
+    "GET /tutor/misconceptions/{exercise_id}": _solutions(Reach.PATH),
     "GET /tutor/editor": _solutions(Reach.ALL),
     "POST /tutor/check": _solutions(Reach.ALL),
     "POST /tutor/drafts": _solutions(Reach.ALL),

@@ -23,7 +23,7 @@ from service.web.tutor.checking import Checking
 from service.web.tutor.class_routes import class_routes
 from service.web.tutor.editor_routes import editor_routes
 from service.web.tutor.exercise_folder import ExerciseFolder
-from service.web.tutor.tutor_pages import solution_page, tutor_page
+from service.web.tutor.tutor_pages import misconceptions_page, solution_page, tutor_page
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
 def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> APIRouter:
     router = APIRouter(prefix="/tutor")
-    solutions, figures = MemoizedResults(), MemoizedResults()
+    solutions, figures, named = MemoizedResults(), MemoizedResults(), MemoizedResults()
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
@@ -80,6 +80,15 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         key = (exercise.id, exercise.version, exercise.title, of_all)
         drawn = partial(solution_page, exercise, assets, of_all=of_all)
         content = await solutions.of(key, drawn)
+        return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+
+    @router.get("/misconceptions/{exercise_id}")
+    async def misconceptions(exercise_id: str) -> Response:
+        """Answer with the mistakes that the grader can name in an exercise."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        key = (exercise.id, exercise.version, exercise.title)
+        drawn = partial(misconceptions_page, exercise, catalogue, assets)
+        content = await named.of(key, drawn)
         return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 
     @router.get("/solutions/{exercise_id}/frames.svg")

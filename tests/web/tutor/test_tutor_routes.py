@@ -27,6 +27,7 @@ ROUTES = [
     ("GET", "/tutor"),
     ("GET", "/tutor/solutions/{exercise_id}"),
     ("GET", "/tutor/solutions/{exercise_id}/frames.svg"),
+    ("GET", "/tutor/misconceptions/{exercise_id}"),
     ("GET", "/tutor/editor?exercise=scara"),
     ("POST", "/tutor/check"),
     ("POST", "/tutor/drafts"),
@@ -111,6 +112,19 @@ def test_every_solution_is_drawn(tutor: Tutor, catalogue: Mapping[str, Exercise]
     figure = tutor.ask("GET", "/tutor/solutions/scara/frames.svg")
     assert "x<tspan" in figure.text or ">x" in figure.text
     assert tutor.ask("GET", "/tutor/solutions/planar-rpr-poe/frames.svg").status_code == 404
+
+
+def test_misconceptions_are_listed_with_their_sentences(tutor: Tutor) -> None:
+    page = tutor.ask("GET", "/tutor/misconceptions/planar-rr").text
+    for code, sentence in (
+        ("sign", "The sign of α is wrong"),
+        ("degrees_as_radians", "This number was read in radians, but it fits in degrees"),
+        ("transposed_matrix", "This matrix is transposed."),
+    ):
+        assert f"<code>{code}</code>" in page
+        assert sentence in page
+    # The exercise has no screw axes.
+    assert "point_off_axis" not in page
 
 
 def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> None:
