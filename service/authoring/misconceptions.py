@@ -24,9 +24,9 @@ _FAMILIES: Final = (
 
 @dataclass(frozen=True, slots=True)
 class NamedMisconception:
-    """A code, its meaning, and the sentences that students read in the examples of the grader."""
+    """A mistake: ``name`` is its code; ``sentences`` are those of the examples of the grader."""
 
-    code: str
+    name: str
     meaning: str
     sentences: tuple[str, ...]
 
