@@ -112,8 +112,7 @@ def _graded_file(
     report_on: ReportOn,
 ) -> GradedFile:
     if answers.body is None:
-        return GradedFile(answers.file, told, None, answers.problem)
+        return GradedFile(answers.file, told, None, answers.problem, answers.names)
     report, problem = report_on(answers.body, assigned, terms)
-    return GradedFile(
-        answers.file, told, report, "; ".join(filter(None, (answers.problem, problem)))
-    )
+    problems = "; ".join(filter(None, (answers.problem, problem)))
+    return GradedFile(answers.file, told, report, problems, answers.names)

@@ -42,6 +42,7 @@ from service.api.routes import (
 from service.api.routes import solutions as model_solutions
 from service.api.web_pages import WebPages
 from service.catalogue import FeedbackLevel
+from service.catalogue.drafts import CatalogueWithDrafts
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
 
@@ -172,16 +173,18 @@ def application(
     app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
     permitted = [Depends(access.permit)]
     problems.install(app, None if pages is None else pages.of_problem)
+    # What is recorded, and every other list, has no drafts.
+    seen = catalogue if pages is None else CatalogueWithDrafts(catalogue, pages.drafts)
     for router in (
-        exercises.routes(catalogue, feedback),
-        grading.routes(catalogue, feedback, access, monitor),
+        exercises.routes(seen, feedback),
+        grading.routes(seen, feedback, access, monitor),
         attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
         # Before the next router, for which the "export" of /v1/attempts/export is an attempt's id.
         tutoring.routes(catalogue, feedback, store, access),
         recorded.routes(catalogue, store, access),
-        preview.routes(catalogue, access),
-        figures.routes(catalogue),
-        frames.routes(catalogue, access),
+        preview.routes(seen, access),
+        figures.routes(seen),
+        frames.routes(seen, access),
         health.routes(catalogue, store),
         model_solutions.routes(catalogue),
         tokens.routes(catalogue, access),

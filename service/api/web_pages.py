@@ -6,14 +6,17 @@ from typing import NamedTuple
 from fastapi import APIRouter
 
 from service.api.http.problems import ProblemPage
+from service.catalogue.drafts import Drafts
 
 
 class WebPages(NamedTuple):
     """The routes of the pages, and the function that makes the page of a problem for browsers.
 
-    ``close`` stops the work that the pages have started.
+    ``close`` stops the work that the pages have started. ``drafts`` are the exercises in the
+    preview of the editor.
     """
 
     routes: APIRouter
     of_problem: ProblemPage
     close: Callable[[], None]
+    drafts: Drafts

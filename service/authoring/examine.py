@@ -10,13 +10,14 @@ from service.authoring.symbols import ambiguous_symbols, badly_scaled, bare_degr
 from service.catalogue import Exercise
 
 EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
+    # First, because it is the cause of what the other checks find.
+    bare_degrees,
     model_answer,
     failed_checks,
     missing_checks,
     ambiguous_symbols,
     unused_symbols,
     badly_scaled,
-    bare_degrees,
     duplicate_parts,
     lost_freedom,
     lazy_answers,

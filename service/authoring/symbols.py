@@ -134,7 +134,9 @@ def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
             if abs(value) > FULL_TURN:
                 text = f"{value:.12g}" if isinstance(term, Number) else f"({constant.text()})"
                 yield warning(
-                    field, f"{text} has no unit and is read in radians; did you mean {text}deg?"
+                    field,
+                    f"angles without a unit are in radians, and {text} looks like degrees; did you "
+                    f"mean {text}deg?",
                 )
 
 

@@ -43,14 +43,15 @@ _NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
 class ExerciseAnswers:
     """The answers to one exercise.
 
-    ``file`` is the path of their file, or of the folder of several files; it is empty without
-    files. ``body`` is None if nothing can be graded. ``problem`` says which files are unusable, and
-    why.
+    ``file`` is the path of their file, or of the folder of several files; ``names`` are the files
+    as the student named them. Both are empty without files. ``body`` is None if nothing can be
+    graded. ``problem`` says which files are unusable, and why.
     """
 
     file: str
     body: GradeRequest | None
     problem: str = ""
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +188,7 @@ def _only_file(files: Sequence[HandedFile], assignment: Assignment) -> HandedFil
         return candidates[0]
     raise UnusableFileError(
         "holds no file whose name says what it answers: there are "
-        f"{_listed([file.name for file in files])}; "
+        f"{_listed([file.own_name for file in files])}; "
         f"name it as {_example(assignment.exercises[0], ending(candidates[0].name))}"
     )
 
@@ -210,19 +211,21 @@ def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseA
     if not claims:
         return ExerciseAnswers("", GradeRequest(answers={}))
     paths = [str(claim.file.path) for claim in claims]
+    names = tuple(claim.file.own_name for claim in claims)
     shown = paths[0] if len(paths) == 1 else commonpath(paths)
     bodies: list[tuple[str, GradeRequest]] = []
     problems = []
     for claim in claims:
         try:
-            bodies.append((claim.file.name, _body(claim, assigned)))
+            bodies.append((claim.file.own_name, _body(claim, assigned)))
         except UnusableFileError as error:
-            problems.append(str(error) if len(claims) == 1 else f"{claim.file.name} {error}")
+            told = str(error) if len(claims) == 1 else f"{claim.file.own_name} {error}"
+            problems.append(told)
     try:
         body = _merged(bodies)
     except UnusableFileError as error:
-        return ExerciseAnswers(shown, None, str(error))
-    return ExerciseAnswers(shown, body, "; ".join(problems))
+        return ExerciseAnswers(shown, None, str(error), names)
+    return ExerciseAnswers(shown, body, "; ".join(problems), names)
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:

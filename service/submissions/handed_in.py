@@ -35,6 +35,17 @@ class HandedFile:
     problem: str = ""
     content: bytes | None = field(default=None, repr=False)
 
+    @property
+    def own_name(self) -> str:
+        """The name that the student gave the file.
+
+        It has neither a path of this machine nor the student's name from a platform.
+        """
+        if self.name != self.path.as_posix():
+            return self.name
+        found = platform_name(self.path.name)
+        return (found and found.file) or self.path.name
+
     def read(self) -> bytes:
         """Return the bytes of the file. Raises UnusableFileError."""
         if self.problem:

@@ -32,6 +32,14 @@ PAGE_HEADERS: Final = {
     "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
     "Cache-Control": "no-cache",
 }
+# Swagger UI makes markup from text, which "require-trusted-types-for" would forbid.
+REFERENCE_HEADERS: Final = {
+    **PAGE_HEADERS,
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+}
 # Browsers must not store what only a tutor may see.
 NO_STORE: Final = {"Cache-Control": "no-store"}
 PRIVATE_HEADERS: Final = {**PAGE_HEADERS, **NO_STORE}

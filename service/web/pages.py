@@ -6,6 +6,7 @@ from typing import Final
 from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
+from service.api.routes.reference import SCRIPT, START, STYLE
 from service.api.statement import statement_html
 from service.catalogue import Exercise, by_level
 from service.formats.shared.html_templates import html, own_html
@@ -41,6 +42,7 @@ def exercise_page(
         assets,
         "../",
         ["page.js", "embed.js"],
+        styles=["print.css"],
         tutor=tutor,
         exercise=exercise,
         next=following,
@@ -51,6 +53,20 @@ def exercise_page(
 def play_page(assets: Assets, *, tutor: bool = False) -> bytes:
     """Return the page of free play, which accepts the table of any robot."""
     return page("web/templates/play.html", assets, "", ["page.js", "play.js"], tutor=tutor)
+
+
+def reference_page(assets: Assets, *, tutor: bool = False) -> bytes:
+    """Return the page /docs, on which people read and try the operations."""
+    return page(
+        "web/templates/docs.html",
+        assets,
+        "",
+        ["page.js"],
+        styles=["docs.css"],
+        tutor=tutor,
+        swagger=[SCRIPT, START],
+        swagger_style=STYLE,
+    )
 
 
 def page(

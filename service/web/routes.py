@@ -13,8 +13,8 @@ from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
 from service.catalogue import exercise_after
 from service.web.assets import Asset, load_assets
-from service.web.page_headers import PAGE_HEADERS
-from service.web.pages import catalogue_page, exercise_page, play_page
+from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
+from service.web.pages import catalogue_page, exercise_page, play_page, reference_page
 from service.web.problem_pages import problem_page
 from service.web.tutor.attempt_routes import attempt_routes
 from service.web.tutor.tutor_routes import Tutoring, tutor_routes
@@ -67,6 +67,12 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
         return HTMLResponse(shown, headers=PAGE_HEADERS)
 
+    @router.get("/docs")
+    async def reference(request: Request) -> Response:
+        """Answer with the reference of the HTTP interface."""
+        shown = reference_page(assets, tutor=tutoring.access.shows_solutions(request))
+        return HTMLResponse(shown, headers=REFERENCE_HEADERS)
+
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
         """Answer with the only module whose name never changes; it loads all others."""
@@ -80,7 +86,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
         return _file(files[name], files[name].content, _FOR_EVER)
 
-    return WebPages(router, problem_page(assets), tutoring.checking.close)
+    return WebPages(router, problem_page(assets), tutoring.checking.close, tutoring.drafts)
 
 
 def _file(asset: Asset, content: bytes, caching: str) -> Response:

@@ -11,16 +11,16 @@ def table_with(alpha: str, theta: str) -> str:
 
 
 def of_units(remarks: list[Remark]) -> list[Remark]:
-    return [each for each in remarks if "has no unit" in each.text]
+    return [each for each in remarks if "looks like degrees" in each.text]
 
 
 # The twist and the angle of a row, the cell with the warning, and its text.
 BARE: list[tuple[str, str, str, str]] = [
-    ("90", '"q1"', "alpha", "90 has no unit and is read in radians; did you mean 90deg?"),
-    ('"-90"', '"q1"', "alpha", "90 has no unit and is read in radians; did you mean 90deg?"),
-    ('"180/2"', '"q1"', "alpha", "(180/2) has no unit *; did you mean (180/2)deg?"),
-    ("0", '"q1 + 90"', "theta", "90 has no unit *; did you mean 90deg?"),
-    ("0", '"q1 - 22.5"', "theta", "22.5 has no unit *; did you mean 22.5deg?"),
+    ("90", '"q1"', "alpha", "90 looks like degrees; did you mean 90deg?"),
+    ('"-90"', '"q1"', "alpha", "90 looks like degrees; did you mean 90deg?"),
+    ('"180/2"', '"q1"', "alpha", "(180/2) looks like degrees; did you mean (180/2)deg?"),
+    ("0", '"q1 + 90"', "theta", "90 looks like degrees; did you mean 90deg?"),
+    ("0", '"q1 - 22.5"', "theta", "22.5 looks like degrees; did you mean 22.5deg?"),
 ]
 
 
@@ -123,3 +123,25 @@ a1 = { kind = "length", range = [0.3, 0.9], description = "a length" }
 """
     remarks = of_units(remarks_on(make_exercise, HEAD + screws + POSE))
     assert [each.field for each in remarks] == ["robot.home[0][3]", "robot.screws[0][4]"]
+
+
+def test_degrees_in_the_reference_are_the_first_remark(make_exercise: Make) -> None:
+    text = table_with("90", '"q1"').replace(POSE, "")
+    remarks = remarks_on(
+        make_exercise,
+        f"""{text}
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+convention = "standard"
+
+[[checks]]
+title = "The right table"
+kind = "right"
+answers.table = [["a1", "90deg", "0", "q1"]]
+""",
+    )
+    assert [each.level for each in remarks].count(Level.FAILED) > 0
+    assert remarks[0].field == "robot.table[0].alpha"
+    assert "angles without a unit are in radians, and 90 looks like degrees" in remarks[0].text

@@ -103,7 +103,7 @@ def test_a_class_is_graded_in_the_browser(
     page.get_by_role("button", name="Back to the class").click()
     expect(report.get_by_role("heading", name="Submissions", exact=True)).to_be_visible()
     with page.expect_download() as downloading:
-        page.get_by_role("button", name="Download all pages").click()
+        page.get_by_role("button", name="Everything (zip)").click()
     assert downloading.value.suggested_filename == "planar-rr-class.zip"
 
     checked = visit(bypass_csp=True, viewport=NARROW).page

@@ -89,7 +89,9 @@ def graded(
     feedback: FeedbackLevel = FeedbackLevel.FULL,
 ) -> GradedSubmission:
     report = grade(planar(), Submission(answers, feedback=feedback, echo=True))
-    return submission(GradedFile(name, answered(planar()), report), name=name, learner=name)
+    return submission(
+        GradedFile(name, answered(planar()), report, names=(name,)), name=name, learner=name
+    )
 
 
 def _hostile_words() -> GradedSubmission:
@@ -112,7 +114,9 @@ def _hostile_words() -> GradedSubmission:
     part = PartReport("p", "dh_table", Verdict.INCORRECT, 0.25, 1, False, (row,), tuple(told))
     report = Report("e", "v", "1", FeedbackLevel.FULL, True, 0.25, 1, 0.25, (part,))
     exercise = AnsweredExercise("e", WRITTEN, WRITTEN, (AnsweredPart("p", WRITTEN, 1.0),), 1.0)
-    return submission(GradedFile(HOSTILE, exercise, report), name=HOSTILE, learner=HOSTILE)
+    return submission(
+        GradedFile(HOSTILE, exercise, report, names=(HOSTILE,)), name=HOSTILE, learner=HOSTILE
+    )
 
 
 def _assignment() -> GradedSubmission:
@@ -123,7 +127,7 @@ def _assignment() -> GradedSubmission:
         "other", "Other arm", "A book", (AnsweredPart("t", "Table", 5),), 1.0
     )
     return submission(
-        GradedFile("anna/one.json", exercise, right),
+        GradedFile("anna/one.json", exercise, right, names=("one.json",)),
         GradedFile("", missing, None, "Nothing was handed in."),
         name="anna",
     )

@@ -14,10 +14,11 @@ FILES = 12
 # A script may import from its own room and from these.
 ROOMS = {
     "vendor": set[str](),
+    "pages": set[str](),
     "shared": set[str](),
     "robot": {"shared", "vendor"},
     "catalogue": {"shared"},
-    "student": {"shared", "robot", "catalogue"},
+    "student": {"shared", "robot", "pages", "catalogue"},
     "play": {"shared", "robot", "student"},
     "tutor": {"shared", "student"},
 }

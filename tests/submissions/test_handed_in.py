@@ -161,3 +161,11 @@ def test_a_pipe_is_refused_without_waiting(tmp_path: Path) -> None:
     [file] = found.files()
     with pytest.raises(UnusableFileError, match="pipe"):
         file.read()
+
+
+def test_the_own_name_of_a_file_has_no_path_and_no_name_of_a_platform(tmp_path: Path) -> None:
+    moodle = "Ada Byron_1234_assignsubmission_file_"
+    save(tmp_path, f"class/{moodle}/planar-rr/table.csv", f"{moodle}table.csv", "anna.table.csv")
+    paths = [tmp_path / each for each in ("class", f"{moodle}table.csv", "anna.table.csv")]
+    names = [file.own_name for found in all_handed_in(paths) for file in found.files()]
+    assert names == ["planar-rr/table.csv", "table.csv", "anna.table.csv"]

@@ -114,7 +114,7 @@ def test_an_uploaded_archive_is_refused_and_the_others_are_graded(tutor: Tutor) 
     assert answer.status_code == 200
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         index = archive.read("index.html").decode()
-        assert len(archive.namelist()) == len(FILES) + 2
+        assert len(archive.namelist()) == len(FILES) + 3
     assert "is a file of a kind that is not read (.zip)" in index
     assert "is larger than 256 KiB" in index
 

@@ -56,14 +56,16 @@ def is_answered(report: Report) -> bool:
 class GradedFile:
     """A file with its report, or with the problem that prevents one.
 
-    With both, only a part of the submission could be used. ``file`` is the name of the file, or
-    empty if there is no file for the exercise.
+    With both, only a part of the submission could be used. ``file`` is the path of the file, and
+    ``names`` are the files as the student named them, without a path or name of a platform. Both
+    are empty if there is no file for the exercise.
     """
 
     file: str
     exercise: AnsweredExercise
     report: Report | None
     problem: str = ""
+    names: tuple[str, ...] = ()
 
     @property
     def weight(self) -> float:

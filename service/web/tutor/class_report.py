@@ -25,6 +25,8 @@ from service.submissions.strict_json import MAX_BODY_SIZE
 # Bytes after unpacking. A body has at most 256 KiB, but similar submissions compress well.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
 MAX_SUBMISSIONS: Final = 500
+# The name of the gradebook in the archive.
+GRADES: Final = "grades.csv"
 # Seconds. An ordinary class takes one or two; only files made to be costly take longer.
 MOST_SECONDS: Final = 60.0
 _LONGEST_PATH: Final = 1_000
@@ -92,8 +94,9 @@ def _marks(content: bytes) -> int:
 
 
 def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
-    """Grade a class, and return the folder of its reports as a ZIP archive. Raises ProblemError.
+    """Grade a class, and return the folder of its reports and the gradebook as a ZIP archive.
 
+    Raises ProblemError.
     The files are in a temporary folder while they are graded, so that they are found and read as on
     the command line.
     """
@@ -150,9 +153,19 @@ def _archive(found: list[HandedIn], assignment: Assignment, folder: Path) -> byt
     )
     setting = Setting(terms.answered, Console(file=io.StringIO()), datetime.now(UTC))
     packed = io.BytesIO()
+    gradebook = report_format("gradebook")
+    lines: list[bytes] = []
+
+    def noted(submissions: Iterator[GradedSubmission]) -> Iterator[GradedSubmission]:
+        for submission in submissions:
+            heading, line = gradebook.pieces([submission], setting)
+            lines.extend([line] if lines else [heading, line])
+            yield submission
+
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for document in chosen.folder(_all_graded(found, terms, folder), setting):
+        for document in chosen.folder(noted(_all_graded(found, terms, folder)), setting):
             archive.writestr(document.path, b"".join(document.pieces))
+        archive.writestr(GRADES, b"".join(lines))
     return packed.getvalue()
 
 

@@ -2,9 +2,10 @@
 
 from functools import partial
 from http import HTTPStatus
-from typing import Final
+from typing import Annotated, Final
 
 from fastapi import APIRouter, Request
+from pydantic import Field
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from service.api.http.bodies import read_body
@@ -12,14 +13,22 @@ from service.api.http.bounded_work import BoundedWork
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import is_at_the_machine
+from service.catalogue import CatalogueError
+from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
-from service.web.tutor.exercise_check import CheckRequest
+from service.web.tutor.exercise_check import CheckRequest, exercise_of
 from service.web.tutor.exercise_folder import ExerciseFolder, SaveRequest
 from service.web.tutor.tutor_pages import editor_page
 
 _NEW: Final = "my-exercise"
+
+
+class DraftRequest(CheckRequest):
+    """The text to preview; ``draft`` is the id of the text that it replaces."""
+
+    draft: Annotated[str, Field(max_length=64)] = ""
 
 
 def editor_routes(
@@ -28,8 +37,9 @@ def editor_routes(
     folder: ExerciseFolder,
     work: BoundedWork,
     checking: Checking,
+    drafts: Drafts,
 ) -> APIRouter:
-    """Return the routes of the editor, of the checks of its text, and of saving its file."""
+    """Return the routes of the editor: its page, the checks, the preview, and saving."""
     router = APIRouter(prefix="/tutor")
 
     @router.get("/editor")
@@ -43,12 +53,14 @@ def editor_routes(
         if file is None and exercise is not None:
             exercise_or_404(catalogue, exercise)
         text, mark = (file.text, file.mark) if file else (template(exercise_id), "")
+        is_copy = file is not None and not mark
         page = editor_page(
-            exercise_id,
+            folder.free_id(exercise_id) if is_copy else exercise_id,
             text,
             mark,
             assets,
             can_write=folder.can_write and is_at_the_machine(request),
+            copied=exercise_id if is_copy else "",
         )
         return HTMLResponse(page, headers=PRIVATE_HEADERS)
 
@@ -58,6 +70,13 @@ def editor_routes(
         body = await read_body(CheckRequest, request)
         content = await work.do(partial(checking.checked, body))
         return Response(content, headers=NO_STORE, media_type="application/json")
+
+    @router.post("/drafts")
+    async def draft(request: Request) -> Response:
+        """Keep the text for the preview, and answer with the id under which it is shown."""
+        body = await read_body(DraftRequest, request)
+        draft_id = await work.do(partial(_put, drafts, body))
+        return JSONResponse({"draft": draft_id}, headers=NO_STORE)
 
     @router.post("/files")
     async def save(request: Request) -> Response:
@@ -71,3 +90,17 @@ def editor_routes(
         return JSONResponse({"mark": mark}, headers=NO_STORE)
 
     return router
+
+
+def _put(drafts: Drafts, body: DraftRequest) -> str:
+    """Return the id of the draft. Raises ProblemError if the text cannot be used."""
+    try:
+        exercise_of(body.id, body.text)
+        return drafts.put(body.text, body.draft)
+    except CatalogueError as error:
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY,
+            "The file cannot be used. Fix it first.",
+            "unusable-exercise",
+            "There is nothing to preview",
+        ) from error

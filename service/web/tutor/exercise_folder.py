@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
+from itertools import chain, count
 from pathlib import Path
 from threading import Lock
 from typing import Annotated, Final
@@ -24,6 +25,8 @@ from service.web.tutor.exercise_check import MAX_CHARACTERS, CheckRequest, exerc
 
 # A character of the text has four bytes at most.
 _LARGEST: Final = 4 * MAX_CHARACTERS
+# The most characters of an id before "-copy" and a number.
+_LONGEST_START: Final = 50
 
 
 class SaveRequest(CheckRequest):
@@ -60,14 +63,23 @@ class ExerciseFolder:
         own = self._own(exercise_id)
         if own is not None:
             return OpenedFile(own.decode(errors="replace"), _mark(own))
-        try:
-            files = exercise_files(*self._folders)
-        except CatalogueError:
-            return None
-        found = next((file for file in files if file.stem == exercise_id), None)
+        found = self._files().get(exercise_id)
         if found is None:
             return None
         return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
+
+    def free_id(self, exercise_id: str) -> str:
+        """Return an id for a copy of an exercise, which no other file has."""
+        copies = (f"{exercise_id[:_LONGEST_START]}-copy{i}" for i in chain([""], count(2)))
+        taken = self._files()
+        return next(each for each in copies if each not in taken and self._own(each) is None)
+
+    def _files(self) -> dict[str, Path]:
+        """Return the files in the folders of the catalogue by id."""
+        try:
+            return {file.stem: file for file in exercise_files(*self._folders)}
+        except CatalogueError:
+            return {}
 
     def save(self, body: SaveRequest) -> str:
         """Save the file and return its mark. Raises ProblemError if that is not possible.
@@ -103,6 +115,8 @@ class ExerciseFolder:
             if (_mark(own) if own is not None else "") != body.before:
                 raise _changed(body.id)
             if own is None:
+                if body.id in self._files():
+                    raise _refused(f"The id {body.id} is taken. Choose another one.")
                 # Unlike a move, this fails if the file was created meanwhile.
                 os.link(written, file)
             else:

@@ -49,10 +49,24 @@ def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) ->
     )
 
 
+def misconceptions_page(exercise: Exercise, catalogue: Catalogue, assets: Assets) -> bytes:
+    """Return the page of the mistakes that the grader can name, each with its sentences."""
+    # Imported here, because it loads an algebra system.
+    from service.authoring.misconceptions import misconceptions_of
+
+    return _page(
+        "misconceptions",
+        assets,
+        "../../",
+        exercise=exercise,
+        misconceptions=misconceptions_of(exercise, catalogue),
+    )
+
+
 def editor_page(
-    exercise_id: str, text: str, mark: str, assets: Assets, *, can_write: bool
+    exercise_id: str, text: str, mark: str, assets: Assets, *, can_write: bool, copied: str = ""
 ) -> bytes:
-    """Return the page of the editor with the text of a file."""
+    """Return the page of the editor with the text of a file, or of a copy of ``copied``."""
     return _page(
         "editor",
         assets,
@@ -62,6 +76,7 @@ def editor_page(
         text=text,
         mark=mark,
         can_write=can_write,
+        copied=copied,
     )
 
 

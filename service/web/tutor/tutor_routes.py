@@ -16,13 +16,14 @@ from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
+from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
 from service.web.tutor.class_routes import class_routes
 from service.web.tutor.editor_routes import editor_routes
 from service.web.tutor.exercise_folder import ExerciseFolder
-from service.web.tutor.tutor_pages import solution_page, tutor_page
+from service.web.tutor.tutor_pages import misconceptions_page, solution_page, tutor_page
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +32,7 @@ class Tutoring:
 
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
     in ``editor_dir``. ``records`` is true if the service records attempts. ``checking`` checks the
-    text in the editor.
+    text in the editor, and ``drafts`` has the exercises in its preview.
     """
 
     access: Access
@@ -39,6 +40,7 @@ class Tutoring:
     editor_dir: Path | None = None
     records: bool = False
     checking: Checking = field(default_factory=Checking)
+    drafts: Drafts = field(default_factory=Drafts)
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -50,7 +52,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
     folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
     for routes in (
         _solution_routes(catalogue, assets, access),
-        editor_routes(catalogue, assets, folder, work, tutoring.checking),
+        editor_routes(catalogue, assets, folder, work, tutoring.checking, tutoring.drafts),
         class_routes(catalogue, assets, work),
     ):
         router.include_router(routes)
@@ -68,7 +70,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
 def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> APIRouter:
     router = APIRouter(prefix="/tutor")
-    solutions, figures = MemoizedResults(), MemoizedResults()
+    solutions, figures, named = MemoizedResults(), MemoizedResults(), MemoizedResults()
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
@@ -78,6 +80,15 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         key = (exercise.id, exercise.version, exercise.title, of_all)
         drawn = partial(solution_page, exercise, assets, of_all=of_all)
         content = await solutions.of(key, drawn)
+        return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+
+    @router.get("/misconceptions/{exercise_id}")
+    async def misconceptions(exercise_id: str) -> Response:
+        """Answer with the mistakes that the grader can name in an exercise."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        key = (exercise.id, exercise.version, exercise.title)
+        drawn = partial(misconceptions_page, exercise, catalogue, assets)
+        content = await named.of(key, drawn)
         return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 
     @router.get("/solutions/{exercise_id}/frames.svg")

@@ -105,5 +105,13 @@ declare namespace Front {
   type Filter = { exercise?: string; learner?: string; since?: string; until?: string };
   type FilterField = HTMLInputElement | HTMLSelectElement;
   // A file in an archive: the place of its bytes, and true if they are packed.
-  type ZipEntry = { from: number; size: number; packed: boolean };
+  type ZipEntry = {
+    from: number;
+    size: number;
+    packed: boolean;
+    isReadable: boolean;
+    local: number;
+    head: number;
+    headEnd: number;
+  };
 }

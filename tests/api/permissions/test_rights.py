@@ -12,6 +12,7 @@ from service.api.permissions.access_problems import ACCESS_PROBLEMS
 from service.api.permissions.rights import Reach
 from service.api.web_pages import WebPages
 from service.catalogue import Exercise
+from service.catalogue.drafts import Drafts
 from tests.api.permissions.rights_table import PAGE, with_table
 
 
@@ -33,7 +34,7 @@ def test_a_route_without_an_entry_prevents_startup(catalogue: Mapping[str, Exerc
     pages = APIRouter(prefix="/tutor")
     pages.add_api_route("/secrets", lambda: "secret")
     with pytest.raises(LookupError, match="GET /tutor/secrets"):
-        application(catalogue, pages=WebPages(pages, lambda *_: None, lambda: None))
+        application(catalogue, pages=WebPages(pages, lambda *_: None, lambda: None, Drafts()))
 
 
 def test_the_exercise_of_a_right_is_that_of_the_route(

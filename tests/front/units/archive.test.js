@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { entries, textOf } from "../../../service/web/static/tutor/zip.js";
+import { archiveOf, bytesOf, entries, textOf } from "../../../service/web/static/tutor/zip.js";
 
 // Made by Python's zipfile: index.html is stored, zoë/report.html is deflated ("right " fifty times).
 const ARCHIVE = [
@@ -25,4 +25,33 @@ test("stored and deflated files are read", async () => {
 
 test("a file that is not a ZIP archive is refused", () => {
   for (const text of ["", "AAAA", btoa("x".repeat(100))]) assert.throws(() => entries(bytes(text)), /no ZIP archive/);
+});
+
+test("no more than the limit is unpacked, whatever size the archive states", async () => {
+  const archive = bytes(ARCHIVE);
+  const deflated = entries(archive).get("zoë/report.html");
+  assert.equal(await bytesOf(archive, deflated, 299), null);
+  assert.equal((await bytesOf(archive, deflated, 300)).length, 300);
+  assert.equal(await bytesOf(archive, entries(archive).get("index.html"), 8), null);
+});
+
+test("an archive may end with a comment, and damage is noticed", () => {
+  const plain = new Uint8Array(bytes(ARCHIVE));
+  const commented = new Uint8Array([...plain, 0x68, 0x69]);
+  commented[plain.length - 2] = 2;
+  assert.equal(entries(commented.buffer).size, 2);
+  const head = plain.findIndex((_, i) => [0x50, 0x4b, 1, 2].every((byte, j) => plain[i + j] === byte));
+  for (const [at, value] of [[head, 0], [head + 23, 0xff], [head + 45, 0xff]]) {
+    const damaged = plain.slice();
+    damaged[at] = value;
+    assert.throws(() => entries(damaged.buffer));
+  }
+});
+
+test("some entries of an archive are an archive", async () => {
+  const archive = bytes(ARCHIVE);
+  const part = await archiveOf(archive, [entries(archive).get("zoë/report.html")]).arrayBuffer();
+  const found = entries(part);
+  assert.deepEqual([...found.keys()], ["zoë/report.html"]);
+  assert.equal(await textOf(part, found.get("zoë/report.html")), "right ".repeat(50));
 });

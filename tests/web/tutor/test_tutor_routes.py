@@ -4,6 +4,7 @@ import asyncio
 import gzip
 import io
 import json
+import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -26,8 +27,10 @@ ROUTES = [
     ("GET", "/tutor"),
     ("GET", "/tutor/solutions/{exercise_id}"),
     ("GET", "/tutor/solutions/{exercise_id}/frames.svg"),
+    ("GET", "/tutor/misconceptions/{exercise_id}"),
     ("GET", "/tutor/editor?exercise=scara"),
     ("POST", "/tutor/check"),
+    ("POST", "/tutor/drafts"),
     ("POST", "/tutor/files"),
     ("GET", "/tutor/class"),
     ("GET", "/tutor/class/report"),
@@ -111,6 +114,19 @@ def test_every_solution_is_drawn(tutor: Tutor, catalogue: Mapping[str, Exercise]
     assert tutor.ask("GET", "/tutor/solutions/planar-rpr-poe/frames.svg").status_code == 404
 
 
+def test_misconceptions_are_listed_with_their_sentences(tutor: Tutor) -> None:
+    page = tutor.ask("GET", "/tutor/misconceptions/planar-rr").text
+    for code, sentence in (
+        ("sign", "The sign of α is wrong"),
+        ("degrees_as_radians", "This number was read in radians, but it fits in degrees"),
+        ("transposed_matrix", "This matrix is transposed."),
+    ):
+        assert f"<code>{code}</code>" in page
+        assert sentence in page
+    # The exercise has no screw axes.
+    assert "point_off_axis" not in page
+
+
 def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> None:
     good = tutor.check(SCARA)
     assert good["findings"] == []
@@ -147,15 +163,15 @@ def test_only_a_few_checks_may_wait(tutor: Tutor) -> None:
 def test_a_file_is_saved_only_in_the_editors_folder(
     tutor: Tutor, catalogue: Mapping[str, Exercise], tmp_path: Path
 ) -> None:
-    def save(text: str, before: str = "", exercise: str = "scara", by: Tutor = tutor) -> Any:
+    def save(text: str, before: str = "", exercise: str = "my-scara", by: Tutor = tutor) -> Any:
         body = {"id": exercise, "text": text, "before": before}
         return by.ask("POST", "/tutor/files", json=body)
 
-    file = tmp_path / "scara.toml"
+    file = tmp_path / "my-scara.toml"
     first = save(SCARA)
     assert (first.status_code, file.read_text(encoding="utf-8")) == (200, SCARA)
     mark = first.json()["mark"]
-    assert f'data-mark="{mark}"' in tutor.ask("GET", "/tutor/editor?exercise=scara").text
+    assert f'data-mark="{mark}"' in tutor.ask("GET", "/tutor/editor?exercise=my-scara").text
     changed = SCARA.replace("SCARA manipulator", "A robot", 1)
     assert save(changed, mark).status_code == 200
     assert file.read_text(encoding="utf-8") == changed
@@ -172,8 +188,47 @@ def test_a_file_is_saved_only_in_the_editors_folder(
     (tmp_path / "linked.toml").symlink_to(outside)
     assert save(SCARA, "", "linked").status_code == 409
     assert outside.read_text(encoding="utf-8") == "outside"
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["linked.toml", "scara.toml"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["linked.toml", "my-scara.toml"]
     assert save(SCARA, by=Tutor(catalogue)).status_code == 409
+
+
+def test_a_shipped_exercise_is_copied_under_a_free_id(tutor: Tutor, tmp_path: Path) -> None:
+    def shown() -> str:
+        page = tutor.ask("GET", "/tutor/editor?exercise=scara").text
+        return str(re.findall(r'id="id" value="([^"]*)"', page)[0])
+
+    assert shown() == "scara-copy"
+    body = {"id": "scara", "text": SCARA, "before": ""}
+    refused = tutor.ask("POST", "/tutor/files", json=body)
+    assert (refused.status_code, refused.json()["detail"]) == (
+        409,
+        "The id scara is taken. Choose another one.",
+    )
+    assert list(tmp_path.iterdir()) == []
+    assert tutor.ask("POST", "/tutor/files", json={**body, "id": shown()}).status_code == 200
+    assert shown() == "scara-copy2"
+
+
+def test_a_draft_is_shown_and_graded_but_not_listed(tutor: Tutor) -> None:
+    def put(text: str, draft: str = "") -> httpx.Response:
+        return tutor.ask("POST", "/tutor/drafts", json={"id": "x", "text": text, "draft": draft})
+
+    draft = put(SCARA).json()["draft"]
+    changed = SCARA.replace("SCARA manipulator", "A robot", 1)
+    assert put(changed, draft).json()["draft"] == draft
+    assert put(SCARA).json()["draft"] != draft
+    assert put("title = 1").status_code == 422
+    host = "grader.example.edu"
+    view = tutor.ask("GET", f"/v1/exercises/{draft}", host).json()
+    assert (view["id"], view["title"].startswith("A robot")) == (draft, True)
+    assert tutor.ask("GET", f"/v1/exercises/{draft}/figure.svg", host).status_code == 200
+    frames = tutor.ask("POST", "/v1/frames", host, json={"exercise": draft})
+    assert frames.status_code == 200
+    answers = {"answers": {"table": "0"}}
+    graded = tutor.ask("POST", f"/v1/exercises/{draft}/grade", host, json=answers)
+    assert graded.json()["exercise"] == draft
+    assert draft not in tutor.ask("GET", "/v1/exercises", host).text
+    assert tutor.ask("GET", f"/exercises/{draft}").status_code == 404
 
 
 def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) -> None:
@@ -205,6 +260,10 @@ def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) 
         for file in output.rglob("*.html")
     }
     assert len(written) == 6
+    book = tmp_path / "grades.csv"
+    command = [str(folder), "--exercise", "planar-rr", "--format", "gradebook"]
+    CliRunner().invoke(commands, [*command, "--output", str(book)])
+    written["grades.csv"] = book.read_bytes().decode()
     assert {name: archive.read(name).decode() for name in archive.namelist()} == {
         name: text.replace(f"{folder}/", "") for name, text in written.items()
     }

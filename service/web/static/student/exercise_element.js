@@ -21,6 +21,7 @@ import { answersIn, fragment, Store } from "../shared/storage.js";
 
 const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("./element.css", import.meta.url).href;
+const PAPER = new URL("../pages/print.css", import.meta.url).href;
 const HOME = new URL("../", import.meta.url).href;
 const SAVED_AFTER = 250;
 
@@ -63,7 +64,7 @@ export class DhExercise extends HTMLElement {
     this.main = h("div", { class: "exercise" }, h("slot"));
     this.state = h("div", { class: "state" });
     this.received = h("div", { class: "card notice" });
-    const sheets = [TOKENS, STYLE].map((href) => h("link", { rel: "stylesheet", href }));
+    const sheets = [TOKENS, STYLE, PAPER].map((href) => h("link", { rel: "stylesheet", href }));
     const outer = h("div", { class: "outer" }, this.state, this.main, this.live);
     this.colours = new PageColours(this, outer, () => this.robot?.recolour());
     root.append(...sheets, outer);

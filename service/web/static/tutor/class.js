@@ -1,15 +1,21 @@
-// The report on a class: local files, graded by the service and shown in a frame.
+// The report on a class: local files or an archive of them, graded by the service and shown in a frame.
 
 import { byId, h, visible } from "../shared/dom.js";
 import { documentOf } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
-import { entries, textOf } from "./zip.js";
+import { archiveOf, bytesOf, entries, textOf } from "./zip.js";
 
 // The service's limits, in bytes, on a packed body and on one file. Of a larger file only the name is sent.
 const MOST_PACKED = 256 * 1024;
 const LARGEST_FILE = 256 * 1024;
 const MOST_FILES = 2000;
+// The limits, in bytes, on a chosen archive, and on all that is unpacked.
+const LARGEST_ARCHIVE = 200 * 1024 * 1024;
+const MOST_UNPACKED = 8 * 1024 * 1024;
 const INDEX = "index.html";
+const GRADES = "grades.csv";
+const PAGES = "reports/";
+const TOO_LARGE = "The files are too large for this page. Grade them on the command line.";
 
 const exercise = byId("exercise", HTMLSelectElement);
 const part = byId("part", HTMLSelectElement);
@@ -41,51 +47,116 @@ async function showParts() {
 }
 
 /**
- * Return a file as the service takes it: as text if it is UTF-8, otherwise as bytes.
+ * A file of a student. `read` returns its bytes, or null if they are more than `most`.
  *
- * @param {File} file
+ * @typedef {{ path: string, read: (most: number) => Promise<Uint8Array<ArrayBuffer> | null> }} ClassFile
  */
-async function sent(file) {
+
+/** The chosen files cannot be used; the message gives the reason. */
+class UnusableFilesError extends Error {}
+
+/** @param {File} file @returns {ClassFile} */
+function chosenFile(file) {
   // Without the name of the chosen folder itself.
   const path = file.webkitRelativePath.split("/").slice(1).join("/") || file.name;
-  if (file.size > LARGEST_FILE) return { path };
-  const bytes = new Uint8Array(await file.arrayBuffer());
+  return { path, read: async (most) => file.size > most ? null : new Uint8Array(await file.arrayBuffer()) };
+}
+
+/**
+ * Return the files in an archive. A folder that contains all of them and has the archive's name is left out.
+ *
+ * @param {File} file
+ * @returns {Promise<ClassFile[]>}
+ */
+async function unpacked(file) {
+  if (file.size > LARGEST_ARCHIVE) {
+    throw new UnusableFilesError("The zip file is too large for this page. Unpack it, and choose the folder.");
+  }
+  const buffer = await file.arrayBuffer();
+  let found;
   try {
-    return { path, text: new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes) };
+    found = [...entries(buffer)];
   } catch {
-    return { path, base64: btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")) };
+    throw new UnusableFilesError("The zip file is damaged. Download it again.");
+  }
+  if (found.some(([, { isReadable }]) => !isReadable)) {
+    throw new UnusableFilesError(
+      "The zip file is encrypted, or packed in an unusual way. Unpack it, and choose the folder.",
+    );
+  }
+  const folder = file.name.replace(/\.zip$/i, "/");
+  const start = found.every(([name]) => name.startsWith(folder)) ? folder.length : 0;
+  return found.map(([name, entry]) => ({ path: name.slice(start), read: (most) => bytesOf(buffer, entry, most) }));
+}
+
+/**
+ * Return the files as the service takes them: as text if they are UTF-8, otherwise as bytes.
+ *
+ * @param {ClassFile[]} files
+ */
+async function sent(files) {
+  let left = MOST_UNPACKED;
+  const all = [];
+  for (const { path, read } of files) {
+    const bytes = await read(LARGEST_FILE).catch(() => {
+      throw new UnusableFilesError(`The file ${path} cannot be read.`);
+    });
+    left -= bytes?.length ?? 0;
+    if (left < 0) throw new UnusableFilesError(TOO_LARGE);
+    all.push({ path, ...(bytes && content(bytes)) });
+  }
+  return all;
+}
+
+/** @param {Uint8Array<ArrayBuffer>} bytes */
+function content(bytes) {
+  try {
+    return { text: new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes) };
+  } catch {
+    return { base64: btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")) };
   }
 }
 
-/** @param {File} file */
-const isHidden = (file) => (file.webkitRelativePath || file.name).split("/").some((name) => name.startsWith("."));
+/** @param {ClassFile} file */
+const isHidden = ({ path }) => path.split("/").some((name) => name.startsWith(".") || name === "__MACOSX");
+
+/** @param {File[]} chosen @returns {Promise<ClassFile[]>} */
+async function classFiles(chosen) {
+  const [first] = chosen;
+  const isArchive = chosen.length === 1 && !first.webkitRelativePath && /\.zip$/i.test(first.name);
+  const files = isArchive ? await unpacked(first) : chosen.map(chosenFile);
+  return files.filter((file) => !isHidden(file));
+}
 
 /** @param {HTMLInputElement} input */
 async function grade(input) {
-  const files = [...(input.files ?? [])].filter((file) => !isHidden(file));
+  const chosen = [...(input.files ?? [])];
   input.value = "";
   frame.hidden = bar.hidden = true;
-  if (!files.length) return tell("No files found.");
-  if (files.length > MOST_FILES) {
-    return tell(`${files.length} files are too many for this page. Grade them on the command line.`);
-  }
-  tell(`Grading ${files.length} ${files.length === 1 ? "file" : "files"} …`);
-  const upload = { exercise: exercise.value, part: part.value || null, files: await Promise.all(files.map(sent)) };
-  const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
-  const body = await new Response(packed).arrayBuffer();
-  if (body.byteLength > MOST_PACKED) {
-    return tell("The files are too large for this page. Grade them on the command line.");
-  }
   try {
+    const files = await classFiles(chosen);
+    if (!files.length) return tell("No files found.");
+    if (files.length > MOST_FILES) {
+      return tell(`${files.length} files are too many for this page. Grade them on the command line.`);
+    }
+    tell(`Grading ${files.length} ${files.length === 1 ? "file" : "files"} …`);
+    const upload = { exercise: exercise.value, part: part.value || null, files: await sent(files) };
+    const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
+    const body = await new Response(packed).arrayBuffer();
+    if (body.byteLength > MOST_PACKED) return tell(TOO_LARGE);
     archive = await (await post("../tutor/class", body, "application/gzip")).arrayBuffer();
     found = entries(archive);
     await show(INDEX);
-    tell(`${found.size - 1} ${found.size === 2 ? "submission" : "submissions"}. The service does not keep them.`);
+    const { length } = pages();
+    tell(`${length} ${length === 1 ? "submission" : "submissions"}. The service does not keep them.`);
     bar.hidden = false;
   } catch (error) {
-    tell(refusal(error));
+    tell(error instanceof UnusableFilesError ? error.message : refusal(error));
   }
 }
+
+/** Return the entries of the pages for students. */
+const pages = () => [...found].filter(([name]) => name.startsWith(PAGES)).map(([, entry]) => entry);
 
 /**
  * Show a page of the archive in the frame, after the previous page has loaded.
@@ -132,18 +203,38 @@ function follow(event) {
   if (found.has(name)) show(name).then(() => frame.focus());
 }
 
-function download() {
+/**
+ * Let the browser save a file.
+ *
+ * @param {string} name
+ * @param {(archive: ArrayBuffer) => Blob | Promise<Blob>} made
+ */
+async function download(name, made) {
   if (!archive) return;
-  const address = URL.createObjectURL(new Blob([archive], { type: "application/zip" }));
-  h("a", { href: address, download: `${exercise.value}-class.zip` }).click();
+  const address = URL.createObjectURL(await made(archive));
+  h("a", { href: address, download: `${exercise.value}-${name}` }).click();
   setTimeout(() => URL.revokeObjectURL(address), 1000);
 }
 
+/** @param {ArrayBuffer} graded */
+async function gradebook(graded) {
+  const entry = found.get(GRADES);
+  return new Blob(entry ? [await bytesOf(graded, entry) ?? ""] : [], { type: "text/csv" });
+}
+
 exercise.addEventListener("change", showParts);
-for (const id of ["folder", "files"]) {
+for (const id of ["zip", "folder", "files"]) {
   const input = byId(id, HTMLInputElement);
   input.addEventListener("change", () => grade(input));
 }
 back.addEventListener("click", () => show(INDEX));
-byId("download", HTMLButtonElement).addEventListener("click", download);
+/** @type {[string, string, (archive: ArrayBuffer) => Blob | Promise<Blob>][]} */
+const DOWNLOADS = [
+  ["grades", "grades.csv", gradebook],
+  ["pages", "feedback.zip", (graded) => archiveOf(graded, pages())],
+  ["all", "class.zip", (graded) => new Blob([graded], { type: "application/zip" })],
+];
+for (const [id, file, made] of DOWNLOADS) {
+  byId(id, HTMLButtonElement).addEventListener("click", () => download(file, made));
+}
 showParts();

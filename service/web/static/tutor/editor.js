@@ -16,6 +16,10 @@ const saved = byId("saved", HTMLElement);
 const found = byId("findings", HTMLElement);
 const shown = byId("preview", HTMLElement);
 
+const form = byId("form", HTMLElement);
+const tryButton = byId("try", HTMLButtonElement);
+const tried = byId("try-state", HTMLElement);
+
 /** @typedef {{ level: string, field?: string, text: string, line?: number }} Finding */
 /** @typedef {{ title: string, source: string, statement_html: string, parts: string[], figure?: string }} Preview */
 /** @typedef {{ findings: Finding[], summary: string, preview?: Preview }} Checked */
@@ -25,6 +29,7 @@ let kept = area.value;
 let timer = 0;
 let busy = false;
 let picture = "";
+let draft = "";
 
 const body = () => ({ id: name.value.trim(), text: area.value });
 
@@ -108,6 +113,22 @@ function showPreview({ title, source, statement_html: statement, parts, figure }
   );
 }
 
+/** Show the real form with the text as it is now. Answers stay when it is opened again. */
+async function tryOut() {
+  tried.textContent = "";
+  try {
+    const answer = await post("../tutor/drafts", JSON.stringify({ ...body(), draft }));
+    ({ draft } = await answer.json());
+    await import("../student/embed.js");
+    const element = document.createElement("dh-exercise");
+    element.setAttribute("exercise", draft);
+    form.replaceChildren(element);
+    tryButton.textContent = "Update the form";
+  } catch (error) {
+    tried.textContent = refusal(error);
+  }
+}
+
 function download() {
   const address = URL.createObjectURL(new Blob([area.value], { type: "application/toml" }));
   h("a", { href: address, download: `${name.value.trim() || "exercise"}.toml` }).click();
@@ -138,6 +159,7 @@ name.addEventListener("input", () => {
   mark = "";
   edited();
 });
+tryButton.addEventListener("click", tryOut);
 byId("download", HTMLButtonElement).addEventListener("click", download);
 document.getElementById("save")?.addEventListener("click", save);
 name.form?.addEventListener("submit", (event) => event.preventDefault());

@@ -1,0 +1,62 @@
+"""The report on a class from the zip file of a platform: gradebook and feedback pages."""
+
+import csv
+import re
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.fixtures import Visit
+
+RIGHT = "a, alpha, d, theta\na1, 0, 0, theta1\na2, 0, 0, theta2\n"
+# As Moodle names them; the last one is larger than any answer.
+MOODLE = {
+    "Ada Byron_1234_assignsubmission_file/table.csv": RIGHT,
+    "Zoë Okri_1235_assignsubmission_file/table.csv": RIGHT.replace("a2, 0", "a2, pi/2"),
+    "Max Bomb_1236_assignsubmission_file/table.csv": "0" * 50_000_000,
+    "__MACOSX/._table.csv": "x",
+}
+
+
+def saved(page: Page, button: str, folder: Path) -> Path:
+    """Return the file that a button lets the browser save."""
+    with page.expect_download() as downloading:
+        page.get_by_role("button", name=button).click()
+    file = folder / downloading.value.suggested_filename
+    downloading.value.save_as(file)
+    return file
+
+
+def test_a_platforms_zip_file_gives_gradebook_and_feedback_pages(
+    visit: Callable[..., Visit], service: str, tmp_path: Path
+) -> None:
+    chosen = tmp_path / "submissions.zip"
+    with zipfile.ZipFile(chosen, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in MOODLE.items():
+            archive.writestr(name, text)
+    page = visit().page
+    page.goto(f"{service}/tutor/class")
+    page.get_by_label("Exercise").select_option("planar-rr")
+    expect(page.get_by_label("Part").locator("option")).not_to_have_count(1)
+    page.get_by_label("Part").select_option("table")
+    page.get_by_label("Zip file").set_input_files(chosen)
+    state = page.get_by_role("status")
+    expect(state).to_have_text("3 submissions. The service does not keep them.")
+    with saved(page, "Gradebook", tmp_path).open(encoding="utf-8") as book:
+        grades = {line["Identifier"]: line["Grade"] for line in csv.DictReader(book)}
+    assert grades.keys() == {"Participant 1234", "Participant 1235", "Participant 1236"}
+    assert float(grades["Participant 1234"]) > float(grades["Participant 1235"]) > 0
+    assert grades["Participant 1236"] == ""
+    with zipfile.ZipFile(saved(page, "Feedback pages", tmp_path)) as pages:
+        assert pages.testzip() is None
+        texts = {name: pages.read(name).decode() for name in pages.namelist()}
+    assert sorted(texts) == [f"reports/Participant-{number}.html" for number in (1234, 1235, 1236)]
+    assert not re.search("Ada|Byron|Okri|Bomb|assignsubmission|/tmp", "".join(texts.values()))
+    assert "table.csv for planar-rr" in texts["reports/Participant-1234.html"]
+
+    broken = tmp_path / "broken.zip"
+    broken.write_bytes(chosen.read_bytes()[:-100])
+    page.get_by_label("Zip file").set_input_files(broken)
+    expect(state).to_have_text("The zip file is damaged. Download it again.")
