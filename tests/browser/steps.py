@@ -69,7 +69,7 @@ def answer(page: Page, part: PartSpec, place: int, texts: Sequence[str]) -> None
     rows = [" , ".join(texts[i : i + width]) for i in range(0, len(texts), width)]
     matrices = [rows[i : i + width] for i in range(0, len(rows), width)]
     paste(page, "\n".join(f"A{i + 1} = [{'; '.join(each)}]" for i, each in enumerate(matrices)))
-    expect(cells(page, place).last).not_to_have_value("")
+    expect(cells(page, place).first).not_to_have_value("")
     return None
 
 

@@ -7,7 +7,7 @@ declare namespace Front {
 
   // A part of an exercise: its grids of cells, and their contents.
   type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity };
-  type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity };
+  type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity; prefill?: string[] };
   type Grid = { title: string; look: "table" | "matrix" | "list"; columns: Column[]; rows: Row[] };
   type Layout = {
     grids: Grid[];
@@ -20,11 +20,16 @@ declare namespace Front {
 
   // A cell: its place, how its text is read, and the owner that gets its events.
   type CellPlace = { id: string; label: string; spoken: string };
-  type PartPlace = CellPlace & { part: string; quantity: Api.Quantity; row: RowView };
+  type PartPlace = CellPlace & { part: string; quantity: Api.Quantity; row: RowView; prefill?: string };
+  // What a cell holds, and what the form has filled in by itself.
+  type Written = { text: string; prefill?: string };
+  type Progress = { verdict: Api.Verdict | null; done: number; of: number };
+  type RailPart = { part: Pick<Api.Part, "kind" | "title">; progress: Progress; jump(): void };
   type PlayPlace = CellPlace & { at: [number, number] };
   type Cell<Place extends CellPlace> = import("../static/shared/cell.js").Cell<Place>;
   type PartCell = Cell<PartPlace>;
   type PlayCell = Cell<PlayPlace>;
+  type PartView = import("../static/student/part_view.js").PartView;
   type RowView = import("../static/student/grid_view.js").RowView;
   type Reading = {
     text?: string;
@@ -62,7 +67,20 @@ declare namespace Front {
     failed(error: Error | null): void;
     edited(): void;
     check(): void;
+    // Where the answer can be changed.
+    form?: import("../static/student/form/form.js").Form;
   }
+
+  // What the form needs from the exercise.
+  type FormHost = HTMLElement & {
+    service: import("../static/shared/service.js").Service;
+    exercise: Api.Exercise;
+    answers: Answers;
+    store: import("../static/shared/storage.js").Store;
+    announce(text: string): void;
+    edited(): void;
+    check(): void;
+  };
 
   // The 3D view: pictures from the service, drawn by three.js or shown as a drawing.
   type Frame = number[][];

@@ -21,6 +21,8 @@ export class Cell {
     this.owner = owner;
     /** @type {Front.Reading | null} */
     this.reading = null;
+    /** @type {HTMLElement[]} */
+    this.messages = [];
     this.shown = h("div", { class: "shown", id: `${id}-shown` });
     this.sign = h("span", { class: "sign" });
     this.echo = h("span", { class: "echo", "aria-hidden": "true" });
@@ -80,12 +82,17 @@ export class Cell {
     this.reading = reading;
     const error = reading?.error;
     this.element.classList.toggle("unread", Boolean(error));
-    this.input.toggleAttribute("aria-invalid", false);
-    if (error) this.input.setAttribute("aria-invalid", "true");
-    else this.input.removeAttribute("aria-invalid");
+    this.#showValidity();
     this.#underline(error?.span ?? null);
     this.shown.replaceChildren(...this.#readingShown(reading));
     this.owner.understood(this);
+  }
+
+  #showValidity() {
+    const { verdict } = this.element.dataset;
+    const isWrong = Boolean(verdict) && verdict !== "correct" && verdict !== "missing";
+    if (isWrong || this.reading?.error) this.input.setAttribute("aria-invalid", "true");
+    else this.input.removeAttribute("aria-invalid");
   }
 
   /** @param {Front.Reading | null} reading */
@@ -147,5 +154,23 @@ export class Cell {
         : []),
     );
     this.input.setAttribute("aria-label", verdict ? `${spoken}: ${verdict}` : spoken);
+    this.#showValidity();
+    if (!verdict) this.#tie([]);
+  }
+
+  /**
+   * Tie a message of a report to the cell, so that screen readers read it with the cell.
+   *
+   * @param {HTMLElement} item
+   */
+  tell(item) {
+    item.id ||= `${this.place.id}-told-${this.messages.length}`;
+    this.#tie([...this.messages, item]);
+  }
+
+  /** @param {HTMLElement[]} messages */
+  #tie(messages) {
+    this.messages = messages;
+    this.input.setAttribute("aria-describedby", [this.shown, ...messages].map((each) => each.id).join(" "));
   }
 }

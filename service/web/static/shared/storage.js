@@ -34,6 +34,25 @@ export class Store {
       return false;
     }
   }
+
+  /** The ids of the folded parts. @returns {unknown[]} */
+  get folded() {
+    try {
+      const ids = JSON.parse(localStorage.getItem(`${this.name}:folded`) ?? "[]");
+      return Array.isArray(ids) ? ids : [];
+    } catch {
+      return [];
+    }
+  }
+
+  /** @param {string[]} ids */
+  saveFolded(ids) {
+    try {
+      localStorage.setItem(`${this.name}:folded`, JSON.stringify(ids));
+    } catch {
+      // Without storage, the parts are unfolded on the next visit.
+    }
+  }
 }
 
 /**

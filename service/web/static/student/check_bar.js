@@ -8,7 +8,9 @@ export class CheckBar {
     this.button = h("button", { type: "button", class: "check", part: "check", onclick: check }, "Check");
     this.total = h("p", { class: "total" });
     this.trouble = h("p", { class: "trouble-line", hidden: true });
-    this.element = h("div", { class: "bar" }, this.trouble, h("div", { class: "bar-line" }, this.button, this.total));
+    this.hinted = h("p", { class: "hint", hidden: true });
+    const line = h("div", { class: "bar-line" }, this.button, this.hinted, this.total);
+    this.element = h("div", { class: "bar" }, this.trouble, line);
   }
 
   get isBusy() {
@@ -33,6 +35,12 @@ export class CheckBar {
     return isNew;
   }
 
+  /** Say at the button why nothing was checked; the next change removes it. @param {string} text */
+  hint(text) {
+    this.hinted.textContent = text;
+    this.hinted.hidden = !text;
+  }
+
   /**
    * Show the points of these parts.
    *
@@ -48,6 +56,7 @@ export class CheckBar {
 
   /** Fade the points, because the answers have changed since. */
   outdated() {
+    this.hint("");
     if (this.total.childNodes.length) this.total.classList.add("outdated");
   }
 }

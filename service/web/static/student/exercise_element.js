@@ -12,12 +12,13 @@ import { keepProgress } from "../catalogue/progress.js";
 import { about } from "./about.js";
 import { CheckBar } from "./check_bar.js";
 import { PageColours } from "./embedding/page_colours.js";
+import { Form } from "./form/form.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
 import { lock } from "./embedding/readonly.js";
 import { RobotFigure } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
-import { answersIn, fragment, Store } from "../shared/storage.js";
+import { answersIn, Store } from "../shared/storage.js";
 
 const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("./element.css", import.meta.url).href;
@@ -55,6 +56,8 @@ export class DhExercise extends HTMLElement {
   saved;
   /** @type {CheckBar} */
   bar;
+  /** @type {Form} */
+  form;
 
   constructor() {
     super();
@@ -177,7 +180,12 @@ export class DhExercise extends HTMLElement {
     this.robot?.changed();
     clearTimeout(this.#saving);
     this.#saving = setTimeout(() => this.#save(), SAVED_AFTER);
+    this.#outdated();
+  }
+
+  #outdated() {
     this.bar.outdated();
+    this.form.rail.update();
   }
 
   #save() {
@@ -191,7 +199,7 @@ export class DhExercise extends HTMLElement {
   }
 
   get angleUnit() {
-    return /** @type {Api.AngleUnit} */ (this.unit.value);
+    return this.form.angleUnit;
   }
 
   /** All answers: `{unit, parts: {id: {cells, choice}}}`. */
@@ -226,14 +234,21 @@ export class DhExercise extends HTMLElement {
     // On the service's own page, the exercise's title is the title of the page.
     const isOwn = this.hasAttribute("linked");
     this.bar = new CheckBar(() => this.check());
+    this.form = new Form(this, () => this.#clear());
+    this.unit = this.form.tools.unit;
+    this.saved = this.form.tools.saved;
     this.#parts = exercise.parts
       .filter((part) => !wanted || wanted.includes(part.id))
       .map((part) => new PartView(part, this, isOwn ? "h2" : "h3"));
+    this.form.begin(this.#parts);
+    this.bar.total.after(this.form.rail.element);
     const elements = this.#parts.map((part) => part.element);
     for (const each of elements) each.part.add("part");
+    const task = about(exercise, this.#parts.map(({ part }) => part), isOwn ? "h1" : "h2", this.robot);
+    new ResizeObserver(() => task.style.setProperty("--about-height", `${task.offsetHeight}px`)).observe(task);
     this.main.replaceChildren(
-      about(exercise, this.#parts.map(({ part }) => part), isOwn ? "h1" : "h2", this.robot),
-      h("div", { class: "parts" }, this.#tools(), this.received, ...elements, this.bar.element),
+      task,
+      h("div", { class: "parts" }, this.form.tools.element, this.received, ...elements, this.bar.element),
       h("p", { class: "quiet source", part: "source" }, `Source: ${visible(exercise.source)}`),
     );
     this.main.hidden = false;
@@ -245,7 +260,7 @@ export class DhExercise extends HTMLElement {
     const own = this.store.load();
     if (own) this.#restore(own);
     if (shared) this.#takeShared(shared, own);
-    this.bar.outdated();
+    this.#outdated();
     this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
   }
 
@@ -299,62 +314,22 @@ export class DhExercise extends HTMLElement {
     history.replaceState(null, "", location.pathname + location.search);
   }
 
-  #tools() {
-    this.saved = h("p", { class: "quiet saved" });
-    this.unit = h(
-      "select",
-      { "aria-label": "Angles without a unit", onchange: () => this.#unitChanged() },
-      h("option", { value: "radians" }, "radians"),
-      h("option", { value: "degrees" }, "degrees"),
-    );
-    return h(
-      "div",
-      { class: "tools" },
-      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
-      this.saved,
-      h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link"),
-      h("button", { type: "button", class: "quiet-button", onclick: () => this.#clear() }, "Clear"),
-    );
-  }
-
-  #unitChanged() {
-    for (const part of this.#parts) for (const cell of part.cells) this.previewer.ask(cell);
-    this.edited();
-  }
-
   #clear() {
     this.history.note(this.#restore({ unit: this.angleUnit, parts: {} }));
     for (const part of this.#parts) part.clearReport();
     this.#save();
-    this.bar.outdated();
+    this.#outdated();
     this.announce("All cells are empty. Press Ctrl+Z in a cell to undo.");
     this.saved.textContent = "Cleared; press Ctrl+Z to undo";
     this.#parts[0]?.focus(this.#parts[0].cells[0]);
-  }
-
-  async #share() {
-    const address = this.service.address(`exercises/${encodeURIComponent(this.exercise.id)}`) + fragment(this.answers);
-    let told = "Link copied, with your answers";
-    try {
-      await navigator.clipboard.writeText(address);
-    } catch {
-      if (this.hasAttribute("linked")) {
-        history.replaceState(null, "", new URL(address).hash);
-        told = "The link is in the address bar";
-      } else {
-        told = "The browser did not allow copying";
-      }
-    }
-    this.saved.textContent = told;
-    this.announce(told);
   }
 
   /** Grade all parts that are not empty, and show the report. */
   async check() {
     const filled = this.#parts.filter((part) => !part.isEmpty);
     if (!filled.length) {
+      this.bar.hint("Nothing is filled in yet.");
       this.announce("Nothing is filled in yet.");
-      this.saved.textContent = "Nothing is filled in yet";
       return;
     }
     if (this.bar.isBusy || this.hasAttribute("readonly")) return;
@@ -391,7 +366,8 @@ export class DhExercise extends HTMLElement {
       ({ part, verdict, points: earned, max_points: most }) =>
         `${titles.get(part)}: ${verdict}, ${points(earned, most)} points.`,
     );
-    this.announce(told.join(" "));
+    this.form.rail.update();
+    this.announce([...told, this.form.leadToSlip(filled)].join(" "));
     this.dispatchEvent(new CustomEvent("graded", { bubbles: true, composed: true, detail: report }));
   }
 }

@@ -38,6 +38,8 @@ function gridElement(grid, part, owner, id, rows) {
   const body = h("tbody");
   grid.rows.forEach((row, i) => {
     const view = new RowView(row, grid, part, owner, `${id}-${i}`);
+    if (isMatrix && i === 0) view.element.classList.add("top");
+    if (isMatrix && i === grid.rows.length - 1) view.element.classList.add("bottom");
     rows.push(view);
     body.append(view.element, view.notes);
   });
@@ -78,6 +80,7 @@ export class RowView {
           row: this,
           quantity: row.quantity ?? column.quantity,
           spoken: where.filter(Boolean).join(", "),
+          prefill: row.prefill?.[j],
         },
         owner,
       );
@@ -85,7 +88,10 @@ export class RowView {
     const head = h("th", { scope: "row" }, h("span", {}, row.head), this.sign);
     this.element = h("tr", {}, head, ...this.cells.map((cell) => cell.element), this.worth);
     this.list = h("ul");
-    this.notes = h("tr", { class: "notes", hidden: true }, h("td", { colspan: grid.columns.length + 2 }, this.list));
+    // The messages leave the first and the last column free, so that the brackets of a matrix go on beside them.
+    const isMatrix = grid.look === "matrix";
+    const place = h("td", { colspan: grid.columns.length + (isMatrix ? 0 : 2) }, this.list);
+    this.notes = h("tr", { class: "notes", hidden: true }, ...(isMatrix ? [h("td"), place, h("td")] : [place]));
   }
 
   /**
@@ -101,6 +107,10 @@ export class RowView {
     for (const cell of this.cells) cell.mark(cells.get(cell.place.label) ?? null);
     this.list.replaceChildren(...items);
     this.notes.hidden = items.length === 0;
+  }
+
+  get verdict() {
+    return /** @type {Api.Verdict | undefined} */ (this.element.dataset.verdict) ?? null;
   }
 
   /** Remove the mark of the row, because a cell has changed. */

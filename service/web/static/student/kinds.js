@@ -72,7 +72,10 @@ const FORMS = {
       title: name,
       look: "matrix",
       columns: numbered(shape.columns),
-      rows: shape.rows.map((label) => row(`${name}.${label}`, `${name} row ${label}`, label)),
+      rows: shape.rows.map((label, i) => ({
+        ...row(`${name}.${label}`, `${name} row ${label}`, label),
+        prefill: prefilled(shape, i),
+      })),
     }));
     const width = shape.columns.length;
     return { grids, choices: null, answer: (texts) => chunks(chunks(texts, width), shape.rows.length) };
@@ -80,7 +83,7 @@ const FORMS = {
 
   /** @param {Api.MatrixShape} shape @returns {Front.Layout} */
   matrix(shape) {
-    const rows = shape.rows.map((label) => row(label, `row ${label}`));
+    const rows = shape.rows.map((label, i) => ({ ...row(label, `row ${label}`), prefill: prefilled(shape, i) }));
     return {
       grids: [{ title: "", look: "matrix", columns: numbered(shape.columns), rows }],
       choices: null,
@@ -125,6 +128,15 @@ const FORMS = {
     };
   },
 };
+
+/**
+ * Return what the form fills into a row: the last one of a homogeneous matrix is always the same.
+ *
+ * @param {{ rows: string[], columns: string[] }} shape
+ * @param {number} i
+ */
+const prefilled = ({ rows, columns }, i) =>
+  rows.length === 4 && columns.length === 4 && i === 3 ? ["0", "0", "0", "1"] : undefined;
 
 /**
  * Return the columns of a DH table. In the modified convention, a and α have the index i−1.

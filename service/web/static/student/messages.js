@@ -12,9 +12,14 @@ const EXPECTED = "expected";
  * Return a list item with a message, its places, its correction or repair, and its counterexample.
  *
  * @param {Omit<Api.Feedback, "code" | "severity"> & { severity: string }} feedback
- * @param {{ place?: string, verdict?: Api.Verdict, repair?: ((suggestion: string) => HTMLElement) | null }} [options]
+ * @param {{
+ *   place?: string,
+ *   verdict?: Api.Verdict,
+ *   repair?: ((suggestion: string) => HTMLElement) | null,
+ *   action?: HTMLElement | null,
+ * }} [options]
  */
-export function item(feedback, { place = "", verdict = "incorrect", repair = null } = {}) {
+export function item(feedback, { place = "", verdict = "incorrect", repair = null, action = null } = {}) {
   const isError = feedback.severity === "error";
   const kind = isError ? verdict : "note";
   const badge = h(
@@ -36,6 +41,7 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
   }
   if (feedback.values) text.append(" ", h("span", { class: "quiet" }, visible(counterexample(feedback.values))));
   if (feedback.suggestion && repair) text.append(" ", repair(feedback.suggestion));
+  if (action) text.append(" ", action);
   return h("li", {}, badge, text);
 }
 

@@ -1,22 +1,18 @@
 // A part of an exercise: its prompt, cells and report, and the line that shows how the current cell is read.
 
-import { h, message, points, visible } from "../shared/dom.js";
-import { gridsOf } from "./grid_view.js";
+import { h, points } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
-import { html, mathml } from "../shared/markup.js";
+import { html } from "../shared/markup.js";
 import { cellName, item } from "./messages.js";
-import { blockOf, pair, placedFrom } from "../shared/pasted_block.js";
+import { PartGrids } from "./form/part_grids.js";
+import { pasteBox } from "./form/paste_box.js";
+import { Pasting } from "./form/pasting.js";
+import { proposal } from "./form/proposals.js";
+import { ReadingLine } from "./form/reading_line.js";
 import { target, undoKey } from "../shared/keyboard.js";
-
-// A text with one of these may hold several cells; the service decides.
-const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
-const SCRIPT = "unread_script";
-const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a block of cells can be pasted into one.";
 
 export class PartView {
   changedAt = 0;
-  /** @type {Front.PartCell | null} */
-  #current = null;
   #quiet = false;
 
   /**
@@ -30,25 +26,91 @@ export class PartView {
     this.part = part;
     this.host = host;
     this.layout = layoutOf(part);
-    const { rows, elements } = gridsOf(this.layout, part, this, `part-${part.id}`);
-    this.rows = rows;
-    this.cells = rows.flatMap((row) => row.cells);
+    this.grids = new PartGrids(this.layout, part, this);
+    this.rows = this.grids.rows;
+    this.cells = this.grids.cells;
+    this.pasting = new Pasting(this);
     this.choice = this.layout.choices ? this.#choiceField(this.layout.choices) : null;
     this.badge = h("span", { class: "badge", hidden: true });
     this.worth = h("span", { class: "points" }, `${points(0, part.points).split(" / ")[1]} points`);
     this.list = h("ul", { class: "messages", hidden: true });
-    this.reading = h("p", { class: "reading" }, HELP);
+    this.line = new ReadingLine(part.title, (text, pause) => host.announce(text, pause));
+    this.reading = this.line.element;
     const id = `part-${part.id}-title`;
-    this.element = h(
-      "section",
-      { class: "card part", "aria-labelledby": id },
-      h("header", {}, h(level, { id }, part.title), this.badge, this.worth),
+    this.body = h(
+      "div",
+      { class: "body", id: `part-${part.id}-body` },
       h("div", { class: "prompt" }, ...html(part.prompt_html)),
       this.list,
       this.choice,
-      h("div", { class: "grids" }, ...elements),
+      this.grids.tabs?.element,
+      h("div", { class: "grids" }, ...this.grids.elements),
       this.reading,
+      host.form && this.cells.length > 1 ? pasteBox(part, (text) => this.pasting.whole(text, this.grids.first)) : null,
     );
+    this.fold = h(
+      "button",
+      {
+        type: "button",
+        class: "fold",
+        "aria-expanded": "true",
+        "aria-controls": this.body.id,
+        onclick: () => this.#fold(!this.body.hidden),
+      },
+      part.title,
+    );
+    this.element = h(
+      "section",
+      { class: "card part", "aria-labelledby": id },
+      h("header", {}, h(level, { id }, this.fold), this.badge, this.worth),
+      this.body,
+    );
+    if (host.form) this.#prefill();
+  }
+
+  /** Write what the form fills in, such as the last row of a homogeneous matrix. */
+  #prefill() {
+    this.#fill(this.cells.filter((cell) => cell.place.prefill).map((cell) => [cell, cell.place.prefill ?? ""]));
+    this.changedAt = 0;
+  }
+
+  // What is shown of the part, and how far it is.
+
+  /** Fold or unfold the part. @param {boolean} isFolded */
+  setFolded(isFolded) {
+    this.body.hidden = isFolded;
+    this.fold.setAttribute("aria-expanded", String(!isFolded));
+  }
+
+  /** @param {boolean} isFolded */
+  #fold(isFolded) {
+    if (isFolded === this.body.hidden) return;
+    this.setFolded(isFolded);
+    this.host.form?.folded();
+  }
+
+  /** Show the part, and focus its first cell. */
+  jump() {
+    this.#fold(false);
+    this.element.scrollIntoView({ block: "start" });
+    this.grids.first.input.focus({ preventScroll: true });
+  }
+
+  /** Unfold the part and choose the tab, so that the cell is visible. @param {Front.PartCell} cell */
+  reveal(cell) {
+    this.#fold(false);
+    this.grids.show(cell);
+  }
+
+  /**
+   * The verdict, if the answer has not changed since, and how much is filled.
+   *
+   * @returns {Front.Progress}
+   */
+  get progress() {
+    const isCurrent = !this.badge.hidden && !this.element.classList.contains("outdated");
+    const verdict = isCurrent ? /** @type {Api.Verdict | undefined} */ (this.badge.dataset.verdict) : null;
+    return { verdict: verdict ?? null, ...this.grids.progress };
   }
 
   /** @param {Record<string, string>} choices */
@@ -75,7 +137,7 @@ export class PartView {
 
   /** The answer as the browser saves it. */
   get state() {
-    return { cells: this.cells.map((cell) => cell.text), choice: this.choice?.value ?? "" };
+    return { cells: this.grids.texts, choice: this.choice?.value ?? "" };
   }
 
   /**
@@ -88,11 +150,13 @@ export class PartView {
       this.choice.value = state.choice;
       this.#showChoice();
     }
-    return this.#fill(this.cells.map((cell, i) => [cell, state.cells[i] ?? ""]));
+    const saved = this.cells.map((_, i) => state.cells[i] ?? "");
+    const texts = this.host.form ? this.grids.shown(saved) : saved;
+    return this.#fill(this.cells.map((cell, i) => [cell, texts[i]]));
   }
 
   get isEmpty() {
-    return this.cells.every((cell) => cell.text.trim() === "") && this.choice?.value !== "none";
+    return this.choice?.value !== "none" && this.state.cells.every((text) => text.trim() === "");
   }
 
   /** The answer as it is posted. */
@@ -107,7 +171,27 @@ export class PartView {
     this.#quiet = true;
     for (const { target: cell, before, after } of changes) if (before !== after) cell.put(after);
     this.#quiet = false;
+    this.grids.markTabs();
     return changes;
+  }
+
+  /** Read all cells again, in another unit. */
+  readAgain() {
+    for (const cell of this.cells) this.#ask(cell);
+  }
+
+  /** Show how a cell is read; for what the form has filled in, nothing. @param {Front.PartCell} cell */
+  #ask(cell) {
+    const isPrefilled = Boolean(this.host.form) && cell.text !== "" && cell.text === cell.place.prefill;
+    cell.element.classList.toggle("prefilled", isPrefilled);
+    if (isPrefilled) cell.understood(null);
+    else this.host.previewer.ask(cell);
+  }
+
+  /** Write texts into cells as one step for undo. @param {[Front.PartCell, string][]} pairs */
+  write(pairs) {
+    this.host.history.note(this.#fill(pairs));
+    this.host.edited();
   }
 
   // The methods that the cells call.
@@ -122,53 +206,32 @@ export class PartView {
     this.changedAt = performance.now();
     cell.place.row.outdated();
     this.outdated();
-    this.host.previewer.ask(cell);
-    if (!this.#quiet) this.host.edited();
+    this.#ask(cell);
+    if (this.#quiet) return;
+    this.grids.markTabs();
+    this.host.edited();
   }
 
   /** @param {Front.PartCell} cell */
   entered(cell) {
-    this.#current = cell;
-    this.#showReading();
+    this.line.enter(cell);
+    this.host.form?.keys.show(cell);
   }
 
   /** @param {Front.PartCell} cell */
   understood(cell) {
-    if (cell === this.#current) this.#showReading(true);
-  }
-
-  /** Show below the grids how the current cell is read. */
-  #showReading(aloud = false) {
-    const cell = this.#current;
-    const reading = cell?.text.trim() ? cell.reading : null;
-    this.reading.classList.toggle("unread", Boolean(reading?.error));
-    if (!cell || !reading) return this.reading.replaceChildren(HELP);
-    const name = h("strong", {}, `${cell.place.spoken || this.part.title}: `);
-    if (reading.error) {
-      const { suggestion } = reading.error;
-      this.reading.replaceChildren(
-        name,
-        ...message(reading.error.message),
-        " ",
-        suggestion ? cell.repair(suggestion) : "",
-      );
-      if (aloud) this.host.announce(`Not read: ${reading.error.message}`, 1200);
-      return undefined;
-    }
-    const notes = reading.notes?.flatMap((note) => [" ", h("span", { class: "quiet" }, ...message(note.message))]) ??
-      [];
-    return this.reading.replaceChildren(name, mathml(reading.mathml) ?? visible(reading.text), ...notes);
+    this.line.understood(cell);
   }
 
   /** @param {Front.PartCell} cell @param {string} suggestion */
   repaired(cell, suggestion) {
-    this.host.history.note(this.#fill([[cell, suggestion]]));
-    this.host.edited();
+    this.write([[cell, suggestion]]);
     this.focus(cell);
   }
 
   /** @param {Front.PartCell} cell */
   focus(cell) {
+    this.reveal(cell);
     cell.input.focus();
     cell.input.select();
   }
@@ -184,7 +247,7 @@ export class PartView {
     const undone = undoKey(event);
     if (undone) return this.#undo(event, undone);
     if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) return this.host.check();
-    const next = target(event, cell, this.rows.map((row) => row.cells));
+    const next = this.grids.afterTab(event, cell) ?? target(event, cell, this.rows.map((row) => row.cells));
     if (event.key === "Enter") event.preventDefault();
     if (!next) return undefined;
     event.preventDefault();
@@ -194,110 +257,19 @@ export class PartView {
   /** @param {Event} event @param {Front.Direction} direction */
   #undo(event, direction) {
     event.preventDefault();
+    this.undo(direction);
+  }
+
+  /** @param {Front.Direction} direction */
+  undo(direction) {
     const cell = this.host.history[direction]();
-    if (cell) cell.input.focus();
+    if (cell) this.host.form?.showCell(cell);
     else this.host.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
   }
 
-  // Pasted texts. The service decides if a text is a table, and which cells it has.
-
   /** @param {ClipboardEvent} event @param {Front.PartCell} cell */
-  async pasted(event, cell) {
-    const text = event.clipboardData?.getData("text/plain") ?? "";
-    if (!BETWEEN_CELLS.test(text.trim())) return;
-    event.preventDefault();
-    let grid;
-    try {
-      const context = this.host.context();
-      grid = await this.host.service.preview({ ...context, part: this.part.id, text, quantity: cell.place.quantity });
-    } catch (error) {
-      this.host.failed(error);
-    }
-    const block = blockOf(text);
-    const pairs = (grid?.rows && this.#placed(grid.rows, cell)) ?? (block && this.#placedBlock(block, cell));
-    if (pairs) {
-      this.host.history.note(this.#fill(pairs));
-      this.host.edited();
-      this.focus(pairs[0][0]);
-      this.#say(`The pasted text filled ${pairs.length} cells. Press Ctrl+Z to undo.`, grid?.notes);
-      return;
-    }
-    const misfit = grid?.rows
-      ? `The pasted text has ${grid.rows.length} rows, which do not fit here.`
-      : grid?.error?.message;
-    const told = misfit && !grid?.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
-    // Joined into one line, a script or several lines would make the cell unusable.
-    if (told && (grid?.error?.code === SCRIPT || text.trim().includes("\n"))) return this.#say(told);
-    const before = cell.text;
-    cell.input.setRangeText(
-      text.replace(/\s*\n\s*/g, " ").trim(),
-      cell.input.selectionStart ?? 0,
-      cell.input.selectionEnd ?? 0,
-      "end",
-    );
-    const after = cell.text;
-    cell.put(after);
-    this.host.history.note([{ target: cell, before, after }]);
-    if (told) this.#say(told);
-  }
-
-  /**
-   * Return the cells that a pasted grid fills, with their texts, or null if it does not fit.
-   *
-   * @param {Api.PreviewCell[][]} read
-   * @param {Front.PartCell} cell
-   * @returns {[Front.PartCell, string][] | null}
-   */
-  #placed(read, cell) {
-    /** @type {(row: Api.PreviewCell[]) => string[]} */
-    const texts = (row) => row.map((each) => each.entry);
-    const rows = this.rows.map((row) => row.cells);
-    const isList = rows[0].length === 1 || rows.length === 1;
-    if (isList) {
-      const flat = read.flatMap(texts);
-      const all = rows.flat();
-      return flat.length === all.length ? all.map((each, i) => [each, flat[i]]) : null;
-    }
-    if (read.some((row) => row.length !== rows[0].length)) return null;
-    const first = this.#firstRow(read, cell);
-    if (first + read.length > rows.length) return null;
-    return read.flatMap((row, i) => rows[first + i].map((each, j) => pair(each, row[j].entry)));
-  }
-
-  /**
-   * Return the cells that a block from a spreadsheet fills, all in the grid of `cell`, or null if it does not fit.
-   *
-   * @param {string[][]} block
-   * @param {Front.PartCell} cell
-   */
-  #placedBlock(block, cell) {
-    const rows = this.rows.filter((row) => row.grid === cell.place.row.grid).map((row) => row.cells);
-    return placedFrom(cell, rows, block);
-  }
-
-  /**
-   * Return the first row that a pasted grid fills: the row with its first label, or, for a single matrix without a
-   * name, the first row of the cell's matrix.
-   *
-   * @param {Api.PreviewCell[][]} read
-   * @param {Front.PartCell} cell
-   */
-  #firstRow(read, cell) {
-    const labels = this.rows.map((row) => row.label);
-    if (this.layout.grids.length === 1) return read.length < labels.length ? labels.indexOf(cell.place.row.label) : 0;
-    const height = this.layout.grids[0].rows.length;
-    const named = labels.indexOf(read[0][0].row);
-    const isOne = read.length <= height && named === 0;
-    return isOne ? Math.floor(labels.indexOf(cell.place.row.label) / height) * height : Math.max(named, 0);
-  }
-
-  /** @param {string} text @param {Api.PreviewNote[]} [notes] */
-  #say(text, notes = []) {
-    const told = notes?.map((note) => note.message) ?? [];
-    this.reading.classList.remove("unread");
-    this.reading.replaceChildren(...message([text, ...told].join(" ")));
-    this.#current = null;
-    this.host.announce(text);
+  pasted(event, cell) {
+    this.pasting.pasted(event, cell);
   }
 
   // The report.
@@ -308,6 +280,7 @@ export class PartView {
    * @param {Api.PartReport} report
    */
   showReport(report) {
+    for (const cell of this.cells) cell.mark(null);
     const rows = new Map(report.rows.map((row) => [row.label, row]));
     for (const view of this.rows) {
       const row = rows.get(view.label);
@@ -315,7 +288,9 @@ export class PartView {
       rows.delete(view.label);
     }
     const more = [...rows.values()].flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]);
-    const items = [...report.feedback, ...more].map((each) => item(each, { verdict: report.verdict }));
+    const items = [...report.feedback, ...more].map((each) =>
+      this.#item(each, this.#at(each), { verdict: report.verdict })
+    );
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
     }
@@ -323,6 +298,34 @@ export class PartView {
     this.list.hidden = items.length === 0;
     this.setVerdict(report.verdict);
     this.worth.textContent = `${points(report.points, report.max_points)} points`;
+    this.grids.markTabs();
+  }
+
+  /**
+   * Return the item of a message, tied to its cells, with a button if the form can do what it proposes.
+   *
+   * @param {Api.Feedback} feedback
+   * @param {Front.PartCell[]} cells
+   * @param {Parameters<typeof item>[1]} options
+   */
+  #item(feedback, cells, options) {
+    const made = item(feedback, { ...options, action: proposal(this, feedback, cells) });
+    for (const cell of cells) cell.tell(made);
+    return made;
+  }
+
+  /** Return the cells at the places of a message. @param {Api.Feedback} feedback */
+  #at({ places = [] }) {
+    const isAt = (/** @type {Front.PartCell} */ { place }) =>
+      places.some(({ row, cell }) => row === place.row.label && cell === place.label);
+    return this.cells.filter(isAt);
+  }
+
+  /** Return the first cell that is wrong, or else the first that is missing. @returns {Front.PartCell | null} */
+  firstSlip(isMissing = false) {
+    const verdicts = isMissing ? ["missing"] : ["incorrect", "partial", "unreadable"];
+    const isSlip = (/** @type {Front.PartCell} */ cell) => verdicts.includes(cell.element.dataset.verdict ?? "");
+    return this.cells.find((cell) => isSlip(cell) && this.grids.isBegun(cell)) ?? null;
   }
 
   /** @param {Api.RowReport} row @param {Front.RowView} view */
@@ -332,7 +335,8 @@ export class PartView {
       const target = view.cells.find((each) => each.place.label === cell.label);
       const repair = target ? (/** @type {string} */ suggestion) => target.repair(suggestion) : null;
       const place = view.cells.length > 1 ? cellName(cell.label) : "";
-      return cell.feedback.map((each) => item(each, { place, verdict: cell.verdict, repair }));
+      const cells = target ? [target] : [];
+      return cell.feedback.map((each) => this.#item(each, cells, { place, verdict: cell.verdict, repair }));
     });
     return [...own, ...ofCells];
   }
@@ -354,6 +358,7 @@ export class PartView {
     this.setVerdict(null);
     this.list.hidden = true;
     for (const row of this.rows) row.mark(null);
+    this.grids.markTabs();
     this.worth.textContent = `${points(0, this.part.points).split(" / ")[1]} points`;
   }
 }

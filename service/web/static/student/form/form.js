@@ -1,0 +1,68 @@
+// What the form of an exercise does beyond single parts: the unit of angles, folded parts, the rail, keys for touch
+// screens, and the way to the first slip.
+
+import { KeyBar } from "./key_bar.js";
+import { Rail } from "./rail.js";
+import { Tools } from "./tools.js";
+
+export class Form {
+  /** @type {Front.PartView[]} */
+  parts = [];
+  /** @type {Rail} */
+  rail;
+
+  /** @param {Front.FormHost} host the exercise @param {() => void} clear */
+  constructor(host, clear) {
+    this.host = host;
+    this.tools = new Tools(host, () => this.#unitChanged(), clear);
+    this.keys = new KeyBar(host.exercise.symbols, () => this.parts[0].undo("undo"));
+  }
+
+  /** Take over the parts once they have been made. @param {Front.PartView[]} parts */
+  begin(parts) {
+    this.parts = parts;
+    this.rail = new Rail(parts);
+    const { folded } = this.host.store;
+    for (const part of parts) part.setFolded(folded.includes(part.part.id));
+  }
+
+  get angleUnit() {
+    return /** @type {Api.AngleUnit} */ (this.tools.unit.value);
+  }
+
+  /** Read angles without a unit in another one, and check again. @param {Api.AngleUnit} unit */
+  useUnit(unit) {
+    this.tools.unit.value = unit;
+    this.#unitChanged();
+    this.host.check();
+  }
+
+  #unitChanged() {
+    for (const part of this.parts) part.readAgain();
+    this.host.edited();
+  }
+
+  /** Remember which parts are folded. */
+  folded() {
+    this.host.store.saveFolded(this.parts.filter(({ body }) => body.hidden).map(({ part }) => part.id));
+  }
+
+  /** Show a cell of any part, and focus it. @param {Front.PartCell} cell */
+  showCell(cell) {
+    this.parts.find((part) => part.cells.includes(cell))?.reveal(cell);
+    cell.input.focus();
+  }
+
+  /**
+   * Lead to the first slip of the parts, wrong before missing. Return what to read out about it.
+   *
+   * @param {Front.PartView[]} parts
+   */
+  leadToSlip(parts) {
+    const [cell] = [false, true].flatMap((isMissing) => parts.flatMap((part) => part.firstSlip(isMissing) ?? []));
+    if (!cell) return "";
+    this.showCell(cell);
+    const [first] = cell.messages;
+    return `First slip: ${cell.input.ariaLabel}. ${first?.querySelector("p")?.textContent ?? ""}`;
+  }
+}

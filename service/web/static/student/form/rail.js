@@ -1,0 +1,60 @@
+// The rail of an exercise: how far each part is, as in "Table ✓ · Links 2/6 · Pose". A click leads to the part.
+
+import { h } from "../../shared/dom.js";
+import { SIGNS } from "../../shared/cell.js";
+
+/** @type {Record<string, string>} */
+const SHORT = {
+  dh_table: "Table",
+  dh_row: "Row",
+  link_transforms: "Links",
+  transform: "Pose",
+  rotation: "Rotation",
+  position: "Position",
+  euler_angles: "Angles",
+  screw_axes: "Screws",
+};
+
+/**
+ * Return a short name for each part: of its kind, or its title where two parts are of one kind.
+ *
+ * @param {Pick<Api.Part, "kind" | "title">[]} parts
+ */
+export function shortNames(parts) {
+  const kinds = parts.map(({ kind }) => kind);
+  return parts.map(({ kind, title }) =>
+    kinds.filter((each) => each === kind).length === 1 ? (SHORT[kind] ?? title) : title
+  );
+}
+
+export class Rail {
+  /** @type {HTMLElement[]} */
+  #states;
+
+  /** @param {Front.RailPart[]} parts */
+  constructor(parts) {
+    this.parts = parts;
+    this.#states = parts.map(() => h("span", { class: "mark" }));
+    const names = shortNames(parts.map(({ part }) => part));
+    const steps = parts.map((part, i) =>
+      h("li", {}, h("button", { type: "button", onclick: () => part.jump() }, h("span", {}, names[i]), this.#states[i]))
+    );
+    this.element = h("nav", { class: "rail", "aria-label": "Parts", hidden: parts.length < 2 }, h("ol", {}, ...steps));
+  }
+
+  update() {
+    this.parts.forEach((part, i) => {
+      const { verdict, done, of } = part.progress;
+      const state = this.#states[i];
+      const shown = verdict ? SIGNS[verdict] : done ? `${done}/${of}` : "";
+      const said = verdict ?? (done ? `${done} of ${of} filled` : "");
+      if (state.dataset.said === said) return;
+      state.dataset.said = said;
+      if (verdict) state.dataset.verdict = verdict;
+      else delete state.dataset.verdict;
+      state.replaceChildren(
+        ...(shown ? [h("span", { "aria-hidden": "true" }, shown), h("span", { class: "aloud" }, said)] : []),
+      );
+    });
+  }
+}

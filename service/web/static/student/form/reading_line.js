@@ -1,0 +1,63 @@
+// The line below the cells of a part: what cannot be read and why, and what the cell itself cannot show.
+
+import { h, message, visible } from "../../shared/dom.js";
+import { mathml } from "../../shared/markup.js";
+
+// The reading of a longer text may be cut off in its cell.
+const LONG = 40;
+const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a block of cells can be pasted into one.";
+
+export class ReadingLine {
+  /** @type {Front.PartCell | null} */
+  #current = null;
+  element = h("p", { class: "reading" }, HELP);
+
+  /**
+   * @param {string} title of the part
+   * @param {Front.PartHost["announce"]} announce
+   */
+  constructor(title, announce) {
+    this.title = title;
+    this.announce = announce;
+  }
+
+  /** Show how a cell is read from now on. @param {Front.PartCell} cell */
+  enter(cell) {
+    this.#current = cell;
+    this.#show(cell);
+  }
+
+  /** Show the new reading of a cell, if it is the current one. @param {Front.PartCell} cell */
+  understood(cell) {
+    if (cell === this.#current) this.#show(cell, true);
+  }
+
+  /** @param {Front.PartCell} cell */
+  #show(cell, aloud = false) {
+    const reading = cell.text.trim() ? cell.reading : null;
+    this.element.classList.toggle("unread", Boolean(reading?.error));
+    if (!reading) return this.element.replaceChildren(HELP);
+    const name = h("strong", {}, `${cell.place.spoken || this.title}: `);
+    if (reading.error) {
+      const { suggestion, message: why } = reading.error;
+      this.element.replaceChildren(name, ...message(why), " ", suggestion ? cell.repair(suggestion) : "");
+      if (aloud) this.announce(`Not read: ${why}`, 1200);
+      return undefined;
+    }
+    const notes = reading.notes?.flatMap((note) => [" ", h("span", { class: "quiet" }, ...message(note.message))]) ??
+      [];
+    // The cell itself shows how it is read.
+    const isLong = cell.text.length > LONG;
+    if (!isLong && !notes.length) return this.element.replaceChildren(HELP);
+    const whole = isLong ? mathml(reading.mathml) ?? visible(reading.text) : "";
+    return this.element.replaceChildren(name, whole, ...notes);
+  }
+
+  /** Say something else until the next cell is entered. @param {string} text @param {Api.PreviewNote[]} [notes] */
+  say(text, notes = []) {
+    this.element.classList.remove("unread");
+    this.element.replaceChildren(...message([text, ...notes.map((note) => note.message)].join(" ")));
+    this.#current = null;
+    this.announce(text);
+  }
+}

@@ -1,0 +1,50 @@
+// The line above the parts: the angle unit, whether the answers are saved, the link to them, and Clear.
+
+import { h } from "../../shared/dom.js";
+import { fragment } from "../../shared/storage.js";
+
+export class Tools {
+  /**
+   * `host` is the exercise. `unitChanged` and `clear` are called by the controls.
+   *
+   * @param {Front.FormHost} host
+   * @param {() => void} unitChanged
+   * @param {() => void} clear
+   */
+  constructor(host, unitChanged, clear) {
+    this.host = host;
+    this.saved = h("p", { class: "quiet saved" });
+    this.unit = h(
+      "select",
+      { "aria-label": "Angles without a unit", onchange: unitChanged },
+      h("option", { value: "radians" }, "radians"),
+      h("option", { value: "degrees" }, "degrees"),
+    );
+    this.element = h(
+      "div",
+      { class: "tools" },
+      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
+      this.saved,
+      h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link"),
+      h("button", { type: "button", class: "quiet-button", onclick: clear }, "Clear"),
+    );
+  }
+
+  async #share() {
+    const { service, exercise, answers } = this.host;
+    const address = service.address(`exercises/${encodeURIComponent(exercise.id)}`) + fragment(answers);
+    let told = "Link copied, with your answers";
+    try {
+      await navigator.clipboard.writeText(address);
+    } catch {
+      if (this.host.hasAttribute("linked")) {
+        history.replaceState(null, "", new URL(address).hash);
+        told = "The link is in the address bar";
+      } else {
+        told = "The browser did not allow copying";
+      }
+    }
+    this.saved.textContent = told;
+    this.host.announce(told);
+  }
+}
