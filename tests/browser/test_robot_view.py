@@ -56,6 +56,13 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
         cells(page).nth(i).fill(text)
     expect(page.get_by_role("checkbox", name="Show frame 4")).to_be_checked()
     expect(page.locator(".told")).to_be_hidden()
+    # The table is right: its last frame lies on the given tool frame.
+    gap = page.locator(".pose-numbers code").nth(2)
+    expect(gap).to_have_text("none")
+    words = page.locator(f"#{page.locator('.stage canvas').get_attribute('aria-describedby')}")
+    expect(words).to_contain_text("Given frame {4}: origin (1.2, 0, 0.05)")
+    expect(words).to_contain_text("The last frame of your table lies on the tool frame.")
+    expect(page.get_by_role("list", name="Legend")).to_contain_text("given frames")
     home, at_home = picture(page), tool(page)
     assert home != alone
 
@@ -64,7 +71,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     slider.press("End")
     expect(page.locator(".slider output").first).not_to_have_text("0°")
     assert picture(page) != home
-    robot, table = page.locator(".pose-numbers code").all_inner_texts()
+    robot, table, _ = page.locator(".pose-numbers code").all_inner_texts()
     x, y, z = map(float, at_home.split())
     angle = float(slider.input_value())
     turned = [x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z]
@@ -72,13 +79,21 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     assert table.split()[:2] == robot.split()[:2]
     # A slip in the table moves its frames away from the robot.
     cells(page).nth(4).fill("2 l3")
-    astray = page.locator(".pose-numbers code").last
+    astray = page.locator(".pose-numbers code").nth(1)
     expect(astray).not_to_have_text(table)
+    # The forearm is 0.6 long, and twice as long in the table.
+    expect(gap).to_have_text("0.6")
+    expect(page.locator("output.gap")).to_have_text("0.6")
+    expect(words).to_contain_text("to the tool frame: 0.6.")
     moved = picture(page)
     assert tool(page) == robot
     page.get_by_role("checkbox", name="Show frame 1").uncheck()
     assert picture(page) != moved
+    framed = picture(page)
+    page.get_by_role("checkbox", name="Given frames").uncheck()
+    assert picture(page) != framed
     page.get_by_role("checkbox", name="Side by side").check()
+    expect(page.locator("output.gap")).to_be_hidden()
     page.get_by_role("button", name="View from higher").click()
     page.locator(".stage canvas").focus()
     page.keyboard.press("ArrowRight")
