@@ -1,5 +1,6 @@
 """The 3D view: sliders, the student's table over the robot, and browsers without WebGL."""
 
+import base64
 import os
 from collections.abc import Callable
 from math import cos, sin
@@ -29,6 +30,26 @@ def picture(page: Page) -> bytes:
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
     return page.locator(".stage canvas").screenshot()
+
+
+# JavaScript: the number of colours along the edge of a picture.
+EDGE = """async (data) => {
+    const image = await createImageBitmap(await (await fetch(data)).blob())
+    const {width, height} = image
+    const canvas = new OffscreenCanvas(width, height)
+    const context = canvas.getContext('2d', {willReadFrequently: true})
+    context.drawImage(image, 0, 0)
+    // The frame around the stage has round corners.
+    const parts = [[20, 2, width - 40, 1], [2, 20, 1, height - 40], [width - 3, 20, 1, height - 40]]
+    const buffers = parts.map(part => context.getImageData(...part).data.buffer)
+    return new Set(buffers.flatMap(buffer => [...new Uint32Array(buffer)])).size
+}"""
+
+
+def is_cut(page: Page) -> bool:
+    """True if something is drawn at the upper edge or at a side of the stage."""
+    data = base64.b64encode(picture(page)).decode()
+    return int(page.evaluate(EDGE, f"data:image/png;base64,{data}")) > 1
 
 
 def tool(page: Page) -> str:
@@ -102,8 +123,12 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     expect(page.locator(".slider output").first).to_have_text("0°")
     expect(page.locator(".pose-numbers code").first).to_have_text(at_home)
     page.get_by_text("Lengths and other symbols").click()
+    page.get_by_role("checkbox", name="Side by side").uncheck()
+    assert not is_cut(page)
     page.get_by_role("spinbutton", name="l1").fill("3")
     expect(page.locator(".pose-numbers code").first).not_to_have_text(at_home)
+    # The robot is three times as high, so the view moves away from it.
+    assert not is_cut(page)
     page.set_viewport_size({"width": 320, "height": 700})
     assert violations(page, "") == []
     assert page.evaluate("document.documentElement.scrollWidth") <= 320

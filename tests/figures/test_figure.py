@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import combinations, product
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pytest
@@ -82,7 +83,7 @@ def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: P
 
 
 # A phone that is 390 pixels wide shows a figure in this room (`tests/browser/figures`).
-PHONE = (340, 384)
+PHONE: Final = (340, 384)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
