@@ -80,8 +80,10 @@ declare namespace Front {
     shown(i: number): boolean;
     labels: string[];
     given(): boolean;
-    gap(picture: Picture): import("../static/robot/frames/gap.js").Gap | null;
+    gap(picture: Picture): Gap | null;
   };
+  type Gap = import("../static/robot/frames/gap.js").Gap;
+  type LabelRoom = import("../static/robot/frames/label_places.js").Room;
   type DrawSvg = (theme: Api.Theme) => Promise<string | null | undefined>;
   type RobotView = import("../static/robot/robot_view.js").RobotView;
   type RobotFigure = import("../static/student/robot_figure.js").RobotFigure;

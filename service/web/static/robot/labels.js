@@ -57,7 +57,7 @@ export class Labels {
     this.palette = palette;
     this.stage = stage;
     this.camera = camera;
-    /** @type {import("./frames/label_places.js").Room[]} */
+    /** @type {Front.LabelRoom[]} */
     this.taken = [];
   }
 
@@ -78,7 +78,7 @@ export class Labels {
     return part;
   }
 
-  /** @param {import("./frames/label_places.js").Room[]} taken is the room of other texts in the stage. */
+  /** @param {Front.LabelRoom[]} taken is the room of other texts in the stage. */
   begin(taken = []) {
     this.#count = 0;
     this.taken = [...taken];

@@ -127,7 +127,7 @@ export class Shapes {
   /**
    * Update the drawn position of each visible part.
    *
-   * @param {import("./frames/label_places.js").Room[]} [taken] is the room that labels must avoid
+   * @param {Front.LabelRoom[]} [taken] is the room that labels must avoid
    */
   put(taken) {
     for (const batch of this.#all) batch.begin(taken);

@@ -177,7 +177,7 @@ export class PoseNumbers {
     this.element = h("div", { class: "pose-numbers" });
   }
 
-  /** @param {Front.Picture} picture @param {import("./frames/gap.js").Gap | null} gap */
+  /** @param {Front.Picture} picture @param {Front.Gap | null} gap */
   show({ frames, mechanism }, gap) {
     /** @type {[string, number[] | string][]} */
     const lines = [];

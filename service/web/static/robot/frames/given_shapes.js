@@ -45,7 +45,7 @@ export class GapShape {
     stage.append(this.text);
   }
 
-  /** @param {import("./gap.js").Gap | null} gap */
+  /** @param {Front.Gap | null} gap */
   put(gap) {
     this.group.visible = Boolean(gap && !isClosed(gap));
     this.text.hidden = !this.group.visible;

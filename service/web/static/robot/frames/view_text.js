@@ -10,7 +10,7 @@ const PARALLEL = 0.9999;
  *
  * @param {Front.Picture} picture
  * @param {string[]} labels of the given frames
- * @param {import("./gap.js").Gap | null} gap
+ * @param {Front.Gap | null} gap
  */
 export function viewText({ frames, mechanism }, labels, gap) {
   const lines = [];
@@ -24,7 +24,7 @@ export function viewText({ frames, mechanism }, labels, gap) {
 /**
  * Say how far the last frame of the table is from the tool frame.
  *
- * @param {import("./gap.js").Gap} gap
+ * @param {Front.Gap} gap
  */
 export function gapSentence(gap) {
   return isClosed(gap)
