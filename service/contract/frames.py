@@ -159,7 +159,8 @@ class DrawnConfiguration(BaseModel):
     """The mechanism in one picture, in the base frame.
 
     `axes` are unit vectors of the joint axes through `centres`. Link i is a line from joint i to
-    the next; the first link begins at the base, and the last one ends at the tool.
+    the next; the first link begins at the base, and the last one ends at the tool. `frames` are
+    the given frames, as named in the mechanism.
     """
 
     centres: list[Point]
@@ -169,14 +170,22 @@ class DrawnConfiguration(BaseModel):
     base_normal: Point
     tool: Point
     tool_direction: Point
+    frames: list[Matrix]
 
 
 class DrawnMechanism(BaseModel):
-    """The mechanism of the exercise: joint axes, links, base and tool, without frames."""
+    """The mechanism of the exercise: joint axes, links, base, tool, and the given frames."""
 
     size: float = Field(description="A reference length for the sizes of drawn joints and links.")
     azimuth: float = Field(description="The direction to the viewer: degrees about z0 from x0.")
     elevation: float = Field(description="The viewer's elevation above the x0-y0 plane in degrees.")
+    frames: list[str] = Field(
+        description="The labels of the frames that the exercise gives: `0` for {0}."
+    )
+    comparable: bool = Field(
+        description="True if the last frame of a table may be compared with the tool frame: the "
+        "exercise gives base and tool, and neither limits attempts nor tells only a score."
+    )
     configurations: list[DrawnConfiguration]
 
 

@@ -1,20 +1,22 @@
-"""The figure of a robot: a labelled drawing of its mechanism, with frames only on request."""
+"""The figure of a robot: a labelled drawing of its mechanism and of its frames."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from service.catalogue import Exercise, Joint, Variable
 from service.catalogue.robots.screw_robot import Reference
 from service.figures.drawing.dimensions import dimension
-from service.figures.drawing.frame_axes import frame_axes
+from service.figures.drawing.frame_axes import DrawnFrames, frame_axes, frame_names, named
 from service.figures.drawing.mechanism_solids import mechanism_solids
 from service.figures.drawing.motion_arrows import sliding_arrow, turning_arrow
-from service.figures.drawing.names import Label, name_label, sum_label
-from service.figures.drawing.placing import around
-from service.figures.drawing.sheet import Caption, Sheet, camera_for
+from service.figures.drawing.names import Label, frame_label, name_label, sum_label
+from service.figures.drawing.sheet import LARGE_ROOM, PHONE_ROOM, Caption, Sheet, camera_for
+from service.figures.drawing.solids import Camera
 from service.figures.drawing.style import Theme
+from service.figures.geometry.given_frames import GivenFrames, given_frames, table_frames_of
 from service.figures.geometry.lengths import NamedLength, named_lengths
 from service.figures.geometry.mechanism import (
     JOINT_LENGTH,
@@ -27,7 +29,15 @@ from service.figures.geometry.mechanism import (
 from service.figures.geometry.path import path_of
 from service.figures.geometry.symbol_numbers import drawing_numbers
 from service.figures.geometry.view import View, best_view
-from service.kinematics.transforms import Matrices, Numbers
+from service.kinematics.transforms import Numbers
+
+# The length of frame axes as a share of the mechanism's size: of base and tool, of many frames.
+_FRAME: Final = 0.24
+_MANY: Final = 0.18
+# How often a figure is drawn again, each time smaller, until it fits on a phone.
+_TRIES: Final = 4
+# The least share of its first size to which the mechanism shrinks.
+_LEAST: Final = 0.55
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +45,7 @@ class Subject:
     """The subject of a figure: a robot, its symbols, and a title for the text alternative.
 
     ``name`` is part of ids inside the SVG. With ``directed``, arrows show the joints' positive
-    directions. ``frames`` ``(frames, 4, 4)`` are drawn with the axis names x, y and z and the
-    indices ``labels``.
+    directions. Numbers in ``statement`` are shown as lengths.
     """
 
     name: str
@@ -45,8 +54,8 @@ class Subject:
     variables: tuple[Variable, ...]
     directed: bool = True
     view: View | None = None
-    frames: Matrices | None = None
-    labels: tuple[str, ...] = ()
+    statement: str = ""
+    frames: DrawnFrames | None = None
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -55,11 +64,14 @@ class Subject:
 
 
 def exercise_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
-    """Return the drawing for students, without frames, numbers or answers.
+    """Return the drawing for students: the robot and the given frames, without answers.
 
     Raises LookupError if the exercise has no robot.
     """
-    return figure(subject_of(exercise), theme)
+    subject, given = subject_of(exercise), given_frames(exercise)
+    # The statement speaks of the base frame's y axis; those of other frames follow from x and z.
+    axes = ["xyz" if number == 0 else "xz" for number in given.numbers]
+    return figure(replace(subject, frames=_at_home_of(exercise, given, axes)), theme)
 
 
 def subject_of(exercise: Exercise) -> Subject:
@@ -74,6 +86,7 @@ def subject_of(exercise: Exercise) -> Subject:
         exercise.variables,
         directed=all(getattr(part, "directions", "given") == "given" for part in exercise.parts),
         view=None if seen is None else View(seen.azimuth, seen.elevation),
+        statement=exercise.statement,
     )
 
 
@@ -82,32 +95,52 @@ def reference_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
 
     Raises LookupError if the exercise has no robot with a table.
     """
-    robot, subject = exercise.robot, subject_of(exercise)
-    numbers = as_samples(drawing_numbers(exercise.variables), 1)
-    first = robot.joints[0].index - 1
-    frames = robot.all_frames(numbers, 1)[:, 0]
-    labels = tuple(str(first + i) for i in range(len(frames)))
-    return figure(replace(subject, frames=frames, labels=labels), theme)
+    frames = table_frames_of(exercise.robot)
+    axes = ["xyz"] * len(frames.labels)
+    drawn = _at_home_of(exercise, frames, axes)
+    return figure(replace(subject_of(exercise), frames=drawn), theme, large=True)
 
 
-def figure(subject: Subject, theme: Theme = Theme.AUTO) -> str:
-    """Return the drawing as SVG: joints, links, names of lengths and of joint variables."""
+def _at_home_of(exercise: Exercise, frames: GivenFrames, axes: Sequence[str]) -> DrawnFrames:
+    values = as_samples(drawing_numbers(exercise.variables), 1)
+    return DrawnFrames(frames.at(values, 1)[:, 0], frames.labels, axes, braces=True)
+
+
+def figure(subject: Subject, theme: Theme = Theme.AUTO, *, large: bool = False) -> str:
+    """Return the drawing as SVG: joints, links, frames, names of lengths and of joint variables.
+
+    It fits on a phone unless it is ``large``.
+    """
     numbers = drawing_numbers(subject.variables)
     mechanism = mechanism_of(subject.reference, numbers)
     shown = _at_home(mechanism, numbers)
     view = subject.view or best_view(shown, mechanism.extent)
-    camera = camera_for(np.concatenate([*shown.links, shown.base[None]]), view)
-    sheet = Sheet(camera, mechanism.size)
-    solids = mechanism_solids(sheet, shown, mechanism, subject.name)
-    if subject.frames is not None:
-        drawn = frame_axes(
-            sheet.camera, subject.frames, subject.labels, 0.3 * mechanism.size, sheet.room
-        )
-        sheet.above += drawn
-    lengths = named_lengths(subject.reference, subject.variables)
-    _dimensions(sheet, shown, _measured(subject, lengths, numbers))
+    room = LARGE_ROOM if large else PHONE_ROOM
+    camera = camera_for(np.concatenate([*shown.links, shown.base[None]]), view, room)
+    least = _LEAST * camera.scale
+    lengths = named_lengths(subject.reference, subject.variables, subject.statement)
+    measured = list(_measured(subject, lengths, numbers))
     labelled = {length.names[0] for length in lengths if len(length.names) == 1}
-    _motions(sheet, shown, subject, labelled)
+
+    def drawn(camera: Camera) -> tuple[Sheet, list[str]]:
+        sheet = Sheet(camera, mechanism.size)
+        solids = mechanism_solids(sheet, shown, mechanism, subject.name)
+        frames = subject.frames
+        if frames is not None:
+            length = (_FRAME if len(frames.labels) < 3 else _MANY) * mechanism.size
+            sheet.above += frame_axes(camera, frames, length, sheet.room)
+        _dimensions(sheet, shown, measured)
+        _motions(sheet, shown, subject, labelled)
+        if frames is not None:
+            sheet.above += frame_names(camera, frames, sheet.room)
+        return sheet, solids
+
+    sheet, solids = drawn(camera)
+    for _ in range(_TRIES):
+        smaller = max(sheet.camera.scale / sheet.excess, least)
+        if large or smaller >= sheet.camera.scale:
+            break
+        sheet, solids = drawn(Camera(camera.rotation, smaller))
     caption = Caption(subject.name, subject.title, _description(subject, lengths))
     return sheet.svg(solids, caption, theme)
 
@@ -182,8 +215,7 @@ def _motions(sheet: Sheet, shown: Configuration, subject: Subject, labelled: set
     for joint, arrow in arrows:
         if joint.variable not in labelled:
             label = name_label(joint.variable)
-            place = sheet.room.place(label, around(arrow.middle, 15.0))
-            sheet.above.append(label.svg(place.x, place.y, "variable"))
+            sheet.above += named(label, arrow.beside, arrow.line, "variable", sheet.room)
 
 
 def _description(subject: Subject, lengths: Sequence[NamedLength]) -> str:
@@ -196,4 +228,6 @@ def _description(subject: Subject, lengths: Sequence[NamedLength]) -> str:
     if lengths:
         named = ", ".join(sum_label(length.names).text for length in lengths)
         words += f" Lengths marked: {named}."
+    if subject.frames is not None and subject.frames.labels:
+        words += f" Frames drawn: {frame_label(subject.frames.labels).text}."
     return f"{words} All joint angles are 0."

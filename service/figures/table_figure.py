@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from service.catalogue import Joint
-from service.figures.drawing.frame_axes import frame_axes
+from service.figures.drawing.frame_axes import DrawnFrames, frame_axes
 from service.figures.drawing.mechanism_solids import (
     ground_solid,
     joint_solid,
@@ -20,7 +20,7 @@ from service.figures.drawing.mechanism_solids import (
     mechanism_solids,
 )
 from service.figures.drawing.placing import TakenRoom
-from service.figures.drawing.sheet import Caption, Sheet, camera_for
+from service.figures.drawing.sheet import LARGE_ROOM, Caption, Sheet, camera_for
 from service.figures.drawing.solids import back_to_front, polyline
 from service.figures.drawing.style import Theme
 from service.figures.geometry.mechanism import Configuration, MovableMechanism, distinct
@@ -97,7 +97,9 @@ def table_figure(
         # A table whose frames all coincide is drawn as large as its parts.
         points, extent = np.concatenate([points, _UP[None]]), 1.0
     size = seen.mechanism.size if seen else 0.9 * extent
-    sheet = Sheet(camera_for(points, seen.view if seen else _PLAIN), size, TakenRoom(hasty=True))
+    sheet = Sheet(
+        camera_for(points, seen.view if seen else _PLAIN, LARGE_ROOM), size, TakenRoom(hasty=True)
+    )
     if seen is not None:
         solids = mechanism_solids(sheet, seen.shown, seen.mechanism, _CAPTION.name)
         for line in links:
@@ -109,7 +111,8 @@ def table_figure(
     if written is not None:
         length = max(_FRAME * size, _LEAST / sheet.camera.scale)
         names = [str(i) for i in range(len(written.frames))]
-        sheet.above += frame_axes(sheet.camera, written.frames, names, length, sheet.room)
+        frames = DrawnFrames(written.frames, names, ["xyz"] * len(names))
+        sheet.above += frame_axes(sheet.camera, frames, length, sheet.room)
     return sheet.svg(solids, _CAPTION, theme)
 
 

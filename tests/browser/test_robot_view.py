@@ -1,5 +1,6 @@
 """The 3D view: sliders, the student's table over the robot, and browsers without WebGL."""
 
+import base64
 import os
 from collections.abc import Callable
 from math import cos, sin
@@ -31,6 +32,26 @@ def picture(page: Page) -> bytes:
     return page.locator(".stage canvas").screenshot()
 
 
+# JavaScript: the number of colours along the edge of a picture.
+EDGE = """async (data) => {
+    const image = await createImageBitmap(await (await fetch(data)).blob())
+    const {width, height} = image
+    const canvas = new OffscreenCanvas(width, height)
+    const context = canvas.getContext('2d', {willReadFrequently: true})
+    context.drawImage(image, 0, 0)
+    // The frame around the stage has round corners.
+    const parts = [[20, 2, width - 40, 1], [2, 20, 1, height - 40], [width - 3, 20, 1, height - 40]]
+    const buffers = parts.map(part => context.getImageData(...part).data.buffer)
+    return new Set(buffers.flatMap(buffer => [...new Uint32Array(buffer)])).size
+}"""
+
+
+def is_cut(page: Page) -> bool:
+    """True if something is drawn at the upper edge or at a side of the stage."""
+    data = base64.b64encode(picture(page)).decode()
+    return int(page.evaluate(EDGE, f"data:image/png;base64,{data}")) > 1
+
+
 def tool(page: Page) -> str:
     return page.locator(".pose-numbers code").first.inner_text()
 
@@ -56,6 +77,13 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
         cells(page).nth(i).fill(text)
     expect(page.get_by_role("checkbox", name="Show frame 4")).to_be_checked()
     expect(page.locator(".told")).to_be_hidden()
+    # The table is right: its last frame lies on the given tool frame.
+    gap = page.locator(".pose-numbers code").nth(2)
+    expect(gap).to_have_text("none")
+    words = page.locator(f"#{page.locator('.stage canvas').get_attribute('aria-describedby')}")
+    expect(words).to_contain_text("Given frame {4}: origin (1.2, 0, 0.05)")
+    expect(words).to_contain_text("The last frame of your table lies on the tool frame.")
+    expect(page.get_by_role("list", name="Legend")).to_contain_text("given frames")
     home, at_home = picture(page), tool(page)
     assert home != alone
 
@@ -64,7 +92,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     slider.press("End")
     expect(page.locator(".slider output").first).not_to_have_text("0°")
     assert picture(page) != home
-    robot, table = page.locator(".pose-numbers code").all_inner_texts()
+    robot, table, _ = page.locator(".pose-numbers code").all_inner_texts()
     x, y, z = map(float, at_home.split())
     angle = float(slider.input_value())
     turned = [x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z]
@@ -72,13 +100,21 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     assert table.split()[:2] == robot.split()[:2]
     # A slip in the table moves its frames away from the robot.
     cells(page).nth(4).fill("2 l3")
-    astray = page.locator(".pose-numbers code").last
+    astray = page.locator(".pose-numbers code").nth(1)
     expect(astray).not_to_have_text(table)
+    # The forearm is 0.6 long, and twice as long in the table.
+    expect(gap).to_have_text("0.6")
+    expect(page.locator("output.gap")).to_have_text("0.6")
+    expect(words).to_contain_text("to the tool frame: 0.6.")
     moved = picture(page)
     assert tool(page) == robot
     page.get_by_role("checkbox", name="Show frame 1").uncheck()
     assert picture(page) != moved
+    framed = picture(page)
+    page.get_by_role("checkbox", name="Given frames").uncheck()
+    assert picture(page) != framed
     page.get_by_role("checkbox", name="Side by side").check()
+    expect(page.locator("output.gap")).to_be_hidden()
     page.get_by_role("button", name="View from higher").click()
     page.locator(".stage canvas").focus()
     page.keyboard.press("ArrowRight")
@@ -87,8 +123,12 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     expect(page.locator(".slider output").first).to_have_text("0°")
     expect(page.locator(".pose-numbers code").first).to_have_text(at_home)
     page.get_by_text("Lengths and other symbols").click()
+    page.get_by_role("checkbox", name="Side by side").uncheck()
+    assert not is_cut(page)
     page.get_by_role("spinbutton", name="l1").fill("3")
     expect(page.locator(".pose-numbers code").first).not_to_have_text(at_home)
+    # The robot is three times as high, so the view moves away from it.
+    assert not is_cut(page)
     page.set_viewport_size({"width": 320, "height": 700})
     assert violations(page, "") == []
     assert page.evaluate("document.documentElement.scrollWidth") <= 320

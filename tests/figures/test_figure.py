@@ -1,12 +1,13 @@
-"""The figures of all exercises are legible and accessible, and contain no answer."""
+"""The figures of all exercises are legible, show what is given, and contain no answer."""
 
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from itertools import product
+from itertools import combinations, product
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ from service.catalogue.files.schema import ViewSpec
 from service.catalogue.robots.robot import Robot
 from service.figures.drawing.style import Theme
 from service.figures.figure import default_view, exercise_figure, reference_figure
-from service.figures.geometry.mechanism import mechanism_of
+from service.figures.geometry.given_frames import given_frames
+from service.figures.geometry.mechanism import JOINT_LENGTH, mechanism_of
 from service.figures.geometry.symbol_numbers import drawing_numbers
 from service.figures.geometry.view import View
 from service.kinematics.transforms import Numbers
@@ -47,6 +49,11 @@ def texts(svg: str) -> list[str]:
     return ["".join(each.itertext()).translate(GREEK) for each in found]
 
 
+def labels(svg: str) -> set[str]:
+    """Return the names in a figure; a text may be a sum or a list of several."""
+    return {part for text in texts(svg) for part in re.split(r" \+ |, ", text)}
+
+
 # JavaScript: all pairs of texts in a figure whose boxes overlap, and all texts beyond its edge.
 MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
     const edge = svg.getBoundingClientRect(), title = svg.querySelector('title').textContent
@@ -75,19 +82,130 @@ def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: P
     assert page.locator("text").count() > 100
 
 
+# A phone that is 390 pixels wide shows a figure in this room (`tests/browser/figures`).
+PHONE: Final = (340, 384)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_figure_is_legible_on_a_phone(name: str) -> None:
+    """All letters, indices included, are at least 12 CSS pixels high."""
+    root = ET.fromstring(drawn(name))
+    _, _, width, height = map(float, root.attrib["viewBox"].split())
+    sizes = map(float, re.findall(r"font(?:-size)?:[a-z ]*([\d.]+)px", drawn(name)))
+    assert min(sizes) * min(PHONE[0] / width, PHONE[1] / height) >= 12
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_no_labels_overlap(name: str) -> None:
+    """Letters are assumed to be half as wide as high, and lines 11 pixels high."""
+    boxes = []
+    for text in ET.fromstring(drawn(name)).iter(f"{SVG}text"):
+        size = 13 if "number" in text.attrib["class"] else 17
+        parts = [(each.text or "", each.get("class")) for each in text]
+        wide = sum(len(part) * (13 if kind == "index" else size) / 2 for part, kind in parts)
+        boxes.append((float(text.attrib["x"]), float(text.attrib["y"]), wide))
+    assert boxes
+    for (x, y, wide), (u, v, other) in combinations(boxes, 2):
+        assert abs(x - u) >= (wide + other) / 2 or abs(y - v) >= 11
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) -> None:
+    """Frames {0} with the axes that the statement speaks of, lengths, and joint variables."""
+    exercise = SHIPPED[name]
+    statement = exercise.statement
+    told = labels(drawn(name))
+    assert set(re.findall(r"\{\w\}", statement)) - {"{i}"} <= told
+    assert set(re.findall(r"\b[xyz]\d\b", statement)) <= told
+    lengths = {v.name for v in exercise.variables if v.kind == "length" or v.joint}
+    assert {each for each in lengths if re.search(rf"\b{each}\b", statement)} <= told
+    assert set(re.findall(r"\b\d+\.\d+", statement)) <= told
+
+
+@pytest.mark.parametrize(
+    ("name", "frames"),
+    [
+        ("planar-rr", "02"), ("planar-rrr", "0e"), ("planar-rrr-standard", "03"), ("scara", "04"),
+        ("planar-rrr-drawn", "0123e"), ("rrrp-drawn", "01234"), ("stanford-arm-drawn", "0123456"),
+        ("rrrp-proximal", "04"), ("spherical-wrist", "36"), ("planar-rpr-poe", "sb"),
+    ],
+)  # fmt: skip
+def test_a_figure_draws_the_given_frames_and_no_others(name: str, frames: str) -> None:
+    """The other frames are the student's to choose."""
+    found = {each for each in labels(drawn(name)) if re.fullmatch(r"[xyz].|\{.\}", each)}
+    axes = {f"{axis}{frame}" for axis in "xz" for frame in frames}
+    assert found == {*axes, f"y{frames[0]}", *(f"{{{frame}}}" for frame in frames)}
+
+
+# What the statements of the `-drawn` exercises say of each frame in the home configuration: where
+# its z and x axes point, and its origin.
+X, Y, UP, DOWN = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1)
+STATED = {
+    "planar-rrr-drawn": [
+        (UP, X, ""), (UP, X, ""), (UP, X, "l1 0 0"), (UP, X, "l1+l2 0 0"), (UP, X, "l1+l2+l3 0 0"),
+    ],
+    "rrrp-drawn": [
+        (UP, X, ""), (UP, X, "l2 0 l1"), (DOWN, X, "l2+l3 0 l1"), (DOWN, X, "l2+l3 0 l1-l4"),
+        (DOWN, X, "l2+l3 0 l1-l4-q4"),
+    ],
+    "stanford-arm-drawn": [
+        (UP, X, ""), (Y, X, ""), (UP, X, "0 d2 0"), (UP, X, "0 d2 d3"), (Y, X, "0 d2 d3"),
+        (UP, X, "0 d2 d3"), (UP, X, "0 d2 d3+d6"),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_drawn_frames_agree_with_the_statement(name: str) -> None:
+    exercise = SHIPPED[name]
+    numbers = drawing_numbers(exercise.variables)
+    values = {symbol: np.array([number]) for symbol, number in numbers.items()}
+    poses = given_frames(exercise).at(values, 1)[:, 0]
+    for pose, (z, x, origin) in zip(poses, STATED[name], strict=True):
+        # The signed sum of symbols of each coordinate.
+        at = [
+            sum(float(f"{sign}1") * numbers[symbol] for sign, symbol in
+                re.findall(r"([+-]?)([a-z]\d)", term))
+            for term in origin.split() or ["0"] * 3
+        ]  # fmt: skip
+        assert pose[:3, 2] == pytest.approx(z, abs=1e-9)
+        assert pose[:3, 0] == pytest.approx(x, abs=1e-9)
+        assert pose[:3, 3] == pytest.approx(at, abs=1e-9)
+
+
+@pytest.mark.parametrize("free", ["base", "tool", "frames"])
+def test_frames_that_are_free_are_not_drawn(free: str) -> None:
+    exercise = SHIPPED["stanford-arm-drawn"]
+    [part] = exercise.parts
+    choice = {"frames": "free", free: "free"}
+    given = given_frames(replace(exercise, parts=(part.model_copy(update=choice),)))
+    assert given.labels == {"base": ("6",), "tool": ("0",), "frames": ("0", "6")}[free]
+
+
+@pytest.mark.parametrize("name", ["planar-rr", "planar-rrr", "scara", "stanford-arm"])
+def test_no_column_below_the_origin_suggests_a_length(name: str) -> None:
+    """The first joint stands on the ground, with its middle at the origin."""
+    exercise = SHIPPED[name]
+    assert exercise.reference is not None
+    numbers = drawing_numbers(exercise.variables)
+    mechanism = mechanism_of(exercise.reference, numbers)
+    [shown] = mechanism.at(np.array([[numbers[joint.variable] for joint in exercise.joints]]))
+    assert shown.centres[0] == pytest.approx([0, 0, 0])
+    assert shown.base == pytest.approx([0, 0, -JOINT_LENGTH / 2 * mechanism.size])
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_figure_reveals_only_what_the_statement_says(name: str) -> None:
-    """All texts are joint variables, lengths and their sums; there are no other numbers."""
+    """All texts are joint variables, lengths and their sums, frames, and stated numbers."""
     exercise = SHIPPED[name]
     known = {variable.name for variable in exercise.variables}
-    told = [part for text in texts(drawn(name)) for part in text.split(" + ")]
+    told = {each for each in labels(drawn(name)) if not re.fullmatch(r"[xyz].|\{.\}", each)}
     assert told
-    assert set(told) <= known
-    assert all(re.search(rf"\b{word}\b", stated(exercise)) for word in told)
-    assert not ET.fromstring(drawn(name)).findall(".//*[@class='frame frame-x']")
+    assert {each for each in told if not each[0].isdigit()} <= known
+    assert all(re.search(rf"(?<![\w.]){word}\b", stated(exercise)) for word in told)
     words = "".join(ET.fromstring(drawn(name)).find(f"{SVG}desc").itertext())  # type: ignore[union-attr]
-    numbers = re.findall(r"(?<![\w.])\d+(?:\.\d+)?", words.translate(GREEK))
-    assert set(numbers) <= {"0"}
+    numbers = re.findall(r"(?<![\w.{])\d+(?:\.\d+)?", words.translate(GREEK))
+    assert set(numbers) - told <= {"0"}
 
 
 def stated(exercise: Exercise) -> str:
@@ -99,11 +217,11 @@ def stated(exercise: Exercise) -> str:
 @pytest.mark.parametrize("name", TABLES)
 def test_every_joint_and_length_symbol_of_the_table_is_labelled(name: str) -> None:
     exercise = SHIPPED[name]
-    told = {part for text in texts(drawn(name)) for part in text.split(" + ")}
+    told = labels(drawn(name))
     robot = exercise.robot
     rows = robot.tables[robot.convention].rows
     lengths = {symbol for row in rows for cell in (row[0], row[2]) for symbol in cell.symbols}
-    assert told == lengths | {joint.variable for joint in robot.joints}
+    assert lengths | {joint.variable for joint in robot.joints} <= told
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -148,7 +266,8 @@ def test_a_theme_changes_only_the_style_sheet(theme: Theme) -> None:
     assert ("prefers-color-scheme:dark" in sheet[0]) == (theme is Theme.AUTO)
     assert ("@media print" in sheet[0]) == (theme is Theme.DARK)
     classes = set(" ".join(re.findall(r'class="([^"]+)"', themed)).split())
-    assert {each for each in classes if f".{each}" not in sheet[0]} <= {"variable", "length"}
+    unstyled = {each for each in classes if f".{each}" not in sheet[0]}
+    assert unstyled <= {"variable", "length", "frame-name"}
 
 
 @pytest.mark.parametrize("name", SHIPPED)

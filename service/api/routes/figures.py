@@ -43,10 +43,11 @@ def routes(catalogue: Catalogue) -> APIRouter:
     async def draw_figure(
         exercise_id: ExerciseId, theme: Annotated[Theme, _THEME] = Theme.AUTO
     ) -> Response:
-        """Draw the robot of an exercise: joints, links, names of lengths and joint variables.
+        """Draw the robot of an exercise: joints, links, given frames, lengths, joint variables.
 
-        The figure has no frames and no numbers. The angles of all joints are 0, and sliding
-        joints are extended. An exercise without a robot has no figure.
+        The figure shows no frame that the student may choose, and no number that the statement
+        does not name. The angles of all joints are 0, and sliding joints are extended. An exercise
+        without a robot has no figure.
         """
         exercise = exercise_or_404(catalogue, exercise_id)
         if exercise.reference is None:

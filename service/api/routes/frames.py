@@ -15,6 +15,7 @@ from service.api.http.problems import ProblemError, invalid
 from service.api.permissions.access import Access, require_reach
 from service.api.turns import run_in_turns
 from service.catalogue import Exercise
+from service.catalogue.feedback_level import FeedbackLevel
 from service.contract.frames import (
     ConvertedRow,
     DrawnConfiguration,
@@ -32,7 +33,13 @@ from service.contract.frames import (
 from service.contract.preview import PreviewError
 from service.expressions import Expression
 from service.figures.figure import default_view, subject_of
-from service.figures.geometry.mechanism import Configuration, MovableMechanism, mechanism_of
+from service.figures.geometry.given_frames import given_frames
+from service.figures.geometry.mechanism import (
+    Configuration,
+    MovableMechanism,
+    as_samples,
+    mechanism_of,
+)
 from service.figures.geometry.view import View
 from service.figures.table_figure import SeenMechanism, WrittenChain, table_figure
 from service.figures.tables.scope import DrawingScope, free_scope
@@ -40,7 +47,7 @@ from service.figures.tables.table_formulas import TableFormulas, table_formulas
 from service.figures.tables.table_frames import TableFrames, table_frames, table_to_draw
 from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.work_budget import WorkBudget
-from service.kinematics.transforms import Numbers
+from service.kinematics.transforms import Matrices, Numbers
 
 _MOST_MECHANISMS: Final = 64
 
@@ -80,8 +87,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         """Compute the frames of a table and the links of an exercise's mechanism.
 
         A table may be wrong or incomplete: its frames end at the first row that cannot be
-        read. The mechanism does not contain the answer of the exercise: no frames and no
-        parameters, only what a picture shows.
+        read. The mechanism does not contain the answer of the exercise: no parameters and no
+        frames but those that the exercise gives, only what a picture shows.
         """
         body = await read_body(FramesRequest, request)
         require_reach(access.caller(request), body.exercise)
@@ -112,7 +119,7 @@ def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms
     if exercise is not None:
         movable, view = mechanisms.of(exercise, numbers)
         shown = movable.at(amounts)
-        mechanism = _mechanism(movable, view, shown)
+        mechanism = _mechanism(exercise, movable, view, shown, numbers, amounts)
         seen = SeenMechanism(movable, shown[0], view)
     return FramesAnswer(
         symbols={name: numbers[name] for name in constants if name in used},
@@ -241,17 +248,32 @@ def _error(finding: Finding) -> PreviewError:
 
 
 def _mechanism(
-    mechanism: MovableMechanism, view: View, shown: Sequence[Configuration]
+    exercise: Exercise,
+    mechanism: MovableMechanism,
+    view: View,
+    shown: Sequence[Configuration],
+    numbers: Mapping[str, float],
+    amounts: Numbers,
 ) -> DrawnMechanism:
+    given = given_frames(exercise)
+    values = as_samples(numbers, len(amounts)) | {
+        joint.variable: amounts[:, i] for i, joint in enumerate(exercise.joints)
+    }
+    frames = np.moveaxis(given.at(values, len(amounts)), 1, 0)
+    hidden = exercise.attempts.limit is not None or exercise.feedback is FeedbackLevel.SCORE
     return DrawnMechanism(
         size=mechanism.size,
         azimuth=view.azimuth,
         elevation=view.elevation,
-        configurations=[_configuration(each) for each in shown],
+        frames=list(given.labels),
+        comparable=not hidden and given.numbers[:1] == (0,) and given.numbers[-1:] == (-1,),
+        configurations=[
+            _configuration(each, poses) for each, poses in zip(shown, frames, strict=True)
+        ],
     )
 
 
-def _configuration(shown: Configuration) -> DrawnConfiguration:
+def _configuration(shown: Configuration, frames: Matrices) -> DrawnConfiguration:
     return DrawnConfiguration(
         centres=_plain(shown.centres),
         axes=_plain(shown.axes),
@@ -260,6 +282,7 @@ def _configuration(shown: Configuration) -> DrawnConfiguration:
         base_normal=_plain(shown.base_normal),
         tool=_plain(shown.tool),
         tool_direction=_plain(shown.tool_direction),
+        frames=_plain(frames),
     )
 
 

@@ -66,10 +66,11 @@ def _lines(
         for rank, distance in enumerate(_DISTANCES):
             moved = measured + distance * extent * offset
             points = np.linspace(moved[0], moved[1], 15)
-            penalty = room.crowding(points, 11.0) + 0.6 * rank
+            penalty = room.crowding(points, 11.0) + 0.6 * rank + 3.0 * room.covered(points)
             for start, end in zip(measured, moved, strict=True):
                 # Near the piece, the witness lines are hidden, so check only their outer part.
-                penalty += 0.3 * room.crowding(np.linspace(start, end, 12)[8:], 4.0)
+                witness = np.linspace(start, end, 12)
+                penalty += 0.3 * room.crowding(witness[8:], 4.0) + 3.0 * room.covered(witness)
             penalty += 4.0 * max(0.0, _PLAIN_ANGLE - angle) + 1.5 * max(0.0, 0.7 - shown)
             # Of two equal sides, prefer the one farther from the middle, where the arm is.
             middle = moved.mean(axis=0)

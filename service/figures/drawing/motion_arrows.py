@@ -4,9 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from service.figures.drawing.dimensions import arrowhead
-from service.figures.drawing.placing import TakenRoom
+from service.figures.drawing.placing import TakenRoom, around
 from service.figures.drawing.solids import Camera, perpendicular, polyline
 from service.kinematics.transforms import Numbers
 
@@ -22,8 +23,16 @@ class MotionArrow:
 
     @property
     def middle(self) -> Numbers:
-        """The middle point, near which the name of the variable is placed."""
+        """The middle point."""
         return np.asarray(self.line[len(self.line) // 2])
+
+    @property
+    def beside(self) -> list[Numbers]:
+        """The places for the name of the variable, the best first."""
+        outwards = np.sign(self.line[-1] - self.line[0]) * [16.0, 4.0]
+        ends = [self.line[-1] + outwards, self.line[0] - outwards]
+        near = around(self.middle, 15.0)
+        return [*near[:12], *ends, *near[12:]]
 
     def svg(self) -> Iterator[str]:
         """Yield the SVG of the line and of its heads."""
@@ -49,8 +58,12 @@ def turning_arrow(
     lines = [
         camera.seen(centre + end * offset * axis + arc) for end in _nearer_end_first(camera, axis)
     ]
-    best = min(lines, key=lambda line: room.crowding(line, 5.0))
-    return MotionArrow(best, both)
+
+    def penalty(line: Numbers) -> float:
+        crossed = sum(map(room.crossings, sliding_window_view(line[::4], 2, axis=0).mT))
+        return room.crowding(line, 5.0) + 3.0 * room.covered(line) + crossed
+
+    return MotionArrow(min(lines, key=penalty), both)
 
 
 def _nearer_end_first(camera: Camera, axis: Numbers) -> tuple[float, float]:
@@ -77,7 +90,7 @@ def sliding_arrow(
         return room.crossings(1.3 * line - 0.3 * line.mean(axis=0))
 
     best = min(beside(1, 0), key=lambda line: room.crowding(line, 7.0))
-    for reach in (1, 1.6, 2.2):
+    for reach in (1, 1.6, 2.2, 3):
         if crossings(best):
             others = [line for along in (0, 1, -1) for line in beside(reach, along)]
             freest = sorted(others, key=lambda line: room.crowding(line, 7.0))

@@ -12,11 +12,15 @@ import numpy as np
 from service.figures.drawing.names import SIZE, Label
 from service.kinematics.transforms import Numbers
 
+# A label farther than this from what it names gets a line that leads there.
+_NEXT_TO = 16.0
 # The minimum gap between two labels.
 _APART = 3.0
 # Half the height of a label: letters with their indices.
 HALF_HEIGHT = 0.56 * SIZE
 _TURNS = np.radians([-35, 35, 145, -145, 0, 180, 90, -90, 65, -65, 115, -115])
+# Points spread over a rectangle from -1 to 1.
+_SPREAD = np.array([(x, y) for y in (-1.0, 0.0, 1.0) for x in (-1.0, -0.5, 0.0, 0.5, 1.0)])
 # Places around a point; labels are wider than high.
 _AROUND = np.stack([1.25 * np.cos(_TURNS), np.sin(_TURNS)], axis=-1)
 
@@ -33,13 +37,24 @@ class Rectangle:
     @classmethod
     def of(cls, label: Label, x: float, y: float) -> "Rectangle":
         """Return the room of a label centred at the point (x, y)."""
-        return cls(x, y, label.width / 2 + 1, HALF_HEIGHT)
+        return cls(x, y, label.width / 2 + 1, HALF_HEIGHT * label.size / SIZE)
 
     def overlaps(self, other: "Rectangle", apart: float = 0.0) -> bool:
         """True if two rectangles overlap, or if the gap between them is less than ``apart``."""
         across = self.half_width + other.half_width + apart
         upright = self.half_height + other.half_height + apart
         return abs(self.x - other.x) < across and abs(self.y - other.y) < upright
+
+    def leader(self, points: Numbers) -> Numbers | None:
+        """Return the line ``(2, 2)`` from the nearest of ``points`` to the label.
+
+        None if the label is next to it.
+        """
+        half, centre = (self.half_width, self.half_height), np.array([self.x, self.y])
+        near = np.clip(points, centre - half, centre + half)
+        gaps = np.linalg.norm(near - points, axis=1)
+        k = int(gaps.argmin())
+        return np.array([points[k], near[k]]) if gaps[k] > _NEXT_TO else None
 
     def holds_any(self, points: Numbers) -> bool:
         """True if the rectangle contains one of the points ``(points, 2)``."""
@@ -49,9 +64,7 @@ class Rectangle:
     @property
     def points(self) -> Numbers:
         """Points spread over the rectangle, ``(15, 2)``."""
-        x = np.linspace(self.x - self.half_width, self.x + self.half_width, 5)
-        y = np.linspace(self.y - self.half_height, self.y + self.half_height, 3)
-        return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        return np.asarray(_SPREAD * (self.half_width, self.half_height) + (self.x, self.y))
 
 
 @dataclass(slots=True)
@@ -67,6 +80,7 @@ class TakenRoom:
     _radii: list[float] = field(default_factory=list)
     _weights: list[float] = field(default_factory=list)
     labels: list[Rectangle] = field(default_factory=list)
+    _arrays: tuple[Numbers, Numbers, Numbers, Numbers] | None = None
 
     def take_line(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
         """Mark the room along a line ``(points, 2)`` as taken."""
@@ -75,6 +89,15 @@ class TakenRoom:
             self._ends.append(end)
             self._radii.append(radius)
             self._weights.append(weight)
+        self._arrays = None
+
+    def _strokes(self) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+        """Return the starts, ends, radii and weights of all strokes as arrays."""
+        if self._arrays is None:
+            lists = (self._starts, self._ends, self._radii, self._weights)
+            starts, ends, radii, weights = map(np.array, lists)
+            self._arrays = starts, ends, radii, weights
+        return self._arrays
 
     @property
     def ends(self) -> list[Numbers]:
@@ -85,31 +108,39 @@ class TakenRoom:
         """Return how crowded the points ``(points, 2)`` are: 0 if no stroke is in ``clearance``."""
         if not self._starts:
             return 0.0
-        starts, ends = np.array(self._starts), np.array(self._ends)
+        starts, ends, radii, weights = self._strokes()
         step = ends - starts
         square = np.maximum((step**2).sum(axis=1), 1e-12)
         offset = points[:, None] - starts
         share = np.clip((offset * step).sum(axis=-1) / square, 0.0, 1.0)
         distance = np.linalg.norm(offset - share[..., None] * step, axis=-1)
-        lacking = np.clip(1 - (distance - np.array(self._radii)) / clearance, 0.0, 1.5)
-        return float((lacking * np.array(self._weights)).max(axis=1).sum())
+        lacking = np.clip(1 - (distance - radii) / clearance, 0.0, 1.5)
+        return float((lacking * weights).max(axis=1).sum())
+
+    def covered(self, line: Numbers) -> int:
+        """Count the labels that a line ``(points, 2)`` would cover."""
+        return sum(label.holds_any(line) for label in self.labels)
 
     def crossings(self, line: Numbers) -> int:
         """Count the labels and the strokes of full weight that a line ``(points, 2)`` crosses."""
-        written = sum(label.holds_any(line) for label in self.labels)
+        written = self.covered(line)
         if not self._starts:
             return written
-        starts, ends, first, last = np.array(self._starts), np.array(self._ends), line[0], line[-1]
+        starts, ends, _, weights = self._strokes()
+        first, last = line[0], line[-1]
         # Two segments cross if each has its ends on both sides of the other.
         parted = _turn(first, last, starts) * _turn(first, last, ends) < 0
         parting = _turn(starts, ends, first) * _turn(starts, ends, last) < 0
-        return written + int((parted & parting & (np.array(self._weights) >= 1)).sum())
+        return written + int((parted & parting & (weights >= 1)).sum())
 
-    def place(self, label: Label, wanted: Iterable[Numbers]) -> Rectangle:
+    def place(
+        self, label: Label, wanted: Iterable[Numbers], named: Numbers | None = None
+    ) -> Rectangle:
         """Return the best free place for a label, and mark it as taken.
 
         Earlier points in ``wanted`` are better. The place never overlaps another label: if all
-        wanted places do, the label is placed farther away.
+        wanted places do, the label is placed farther away. If ``named``, the points that the label
+        names, are far from it, a leader connects them, and does not cover other labels.
         """
         best: tuple[float, Rectangle] | None = None
         size = Rectangle.of(label, 0.0, 0.0)
@@ -120,6 +151,11 @@ class TakenRoom:
             if any(place.overlaps(other, _APART) for other in self.labels):
                 continue
             penalty = 0.08 * rank + (0.0 if self.hasty else self.crowding(place.points, 5.0))
+            if best is not None and penalty >= best[0]:
+                continue
+            leader = None if named is None or self.hasty else place.leader(named)
+            if leader is not None:
+                penalty += 0.5 + 4.0 * self.covered(np.linspace(leader[0], leader[1], 12))
             if best is None or penalty < best[0]:
                 best = (penalty, place)
         assert best is not None

@@ -13,9 +13,13 @@ from service.figures.drawing.style import Theme, style_sheet
 from service.figures.geometry.view import View
 from service.kinematics.transforms import Numbers
 
-# The room for the mechanism in pixels. Lengths and names are drawn around it.
-_WIDTH, _HEIGHT, _LARGEST = 460.0, 430.0, 540.0
-_MARGIN = 14.0
+# The room for the mechanism in pixels: its width, height and longest distance. Lengths and names
+# are drawn around it.
+PHONE_ROOM = (300.0, 330.0, 400.0)
+LARGE_ROOM = (460.0, 430.0, 540.0)
+# The room for a whole figure on a phone, which shows it almost as large, so that it is legible.
+_WIDEST, _HIGHEST = 352.0, 404.0
+_MARGIN = 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +52,32 @@ class Sheet:
         self.room.take_line(points, radius, weight)
         self.points += [points - radius, points + radius]
 
-    def svg(self, solids: Sequence[str], caption: Caption, theme: Theme) -> str:
-        """Return the whole figure, as large as its content; ``solids`` are the middle layer."""
+    @property
+    def _box(self) -> tuple[float, float, float, float]:
+        """The left and top edge of the figure, its width and its height."""
         labels = self.room.labels
         corners = [np.array([[r.x - r.half_width, r.y - r.half_height]]) for r in labels]
         corners += [np.array([[r.x + r.half_width, r.y + r.half_height]]) for r in labels]
         taken = np.concatenate([*self.room.ends, *self.points, *corners])
         low, high = taken.min(axis=0) - _MARGIN, taken.max(axis=0) + _MARGIN
-        edges = (*np.floor(low), *np.ceil(high - np.floor(low)))
-        left, top, width, height = (float(edge) for edge in edges)
+        low = np.floor(low)
+        width, height = np.ceil(high - low).tolist()
+        return float(low[0]), float(low[1]), width, height
+
+    @property
+    def excess(self) -> float:
+        """The factor by which the drawn mechanism is too large for a phone; 1 if the figure fits.
+
+        Labels do not shrink with the mechanism.
+        """
+        drawn = np.ptp(np.concatenate(self.points), axis=0)
+        over = np.array(self._box[2:]) - [_WIDEST, _HIGHEST]
+        factors = 1.01 * drawn / np.maximum(drawn - over, drawn / 2)
+        return float(np.where(over > 0, factors, 1.0).max())
+
+    def svg(self, solids: Sequence[str], caption: Caption, theme: Theme) -> str:
+        """Return the whole figure, as large as its content; ``solids`` are the middle layer."""
+        left, top, width, height = self._box
         body = "\n".join(chain(self.below, solids, self.above))
         return f"""\
 <svg xmlns="http://www.w3.org/2000/svg" role="img" aria-labelledby="{caption.name}-title \
@@ -72,9 +93,10 @@ height="{numbers(height)}"/>
 """
 
 
-def camera_for(points: Numbers, view: View) -> Camera:
-    """Return the camera whose scale fits all points ``(points, 3)`` into the mechanism's room."""
+def camera_for(points: Numbers, view: View, room: tuple[float, float, float]) -> Camera:
+    """Return the camera whose scale fits all points ``(points, 3)`` into the room."""
     width, height = np.ptp(Camera.of(view, 1.0).seen(points), axis=0)
     longest = float(np.linalg.norm(np.ptp(points, axis=0)))
-    scale = min(_WIDTH / max(width, 1e-9), _HEIGHT / max(height, 1e-9), _LARGEST / longest)
+    wide, high, far = room
+    scale = min(wide / max(width, 1e-9), high / max(height, 1e-9), far / longest)
     return Camera.of(view, scale)

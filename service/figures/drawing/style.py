@@ -17,18 +17,19 @@ _LIGHT: Final = {
     "paper": "#ffffff", "ink": "#1c2430", "rod": "#d5dae1", "turning": "#7fb0e6",
     "turning-light": "#e9f3fd", "cap": "#d3e6f9", "side0": "#fbe9c6", "side1": "#f3d596",
     "side2": "#e2b964", "ground": "#eef0f3", "soft": "#5d6877", "axis": "#7b8696",
-    "motion": "#b3261e", "chain": "#8e44ad", "x": "#c62828", "y": "#1f7a34", "z": "#1d4fc4",
+    "motion": "#7a2fb0", "chain": "#8e44ad", "x": "#c62828", "y": "#1f7a34", "z": "#1d4fc4",
 }  # fmt: skip
 _DARK: Final = {
     "paper": "#12161d", "ink": "#e8ecf2", "rod": "#465061", "turning": "#2f5f96",
     "turning-light": "#6da3dd", "cap": "#4a7fb9", "side0": "#c99a44", "side1": "#a67c31",
     "side2": "#7f5e22", "ground": "#232a35", "soft": "#a7b2c2", "axis": "#8b97a8",
-    "motion": "#ff8a7a", "chain": "#d19cf0", "x": "#ff8080", "y": "#6fd68a", "z": "#8ab4ff",
+    "motion": "#d8a5ff", "chain": "#d19cf0", "x": "#ff8080", "y": "#6fd68a", "z": "#8ab4ff",
 }  # fmt: skip
 _SHAPES: Final = """\
 text{font:italic 17px "STIX Two Text","Latin Modern Roman",Cambria,Georgia,"Times New Roman",serif;\
 text-anchor:middle;stroke-width:4px;stroke-linejoin:round;paint-order:stroke}
-.index{font-size:12.2px;font-style:normal}
+.number{font-size:13.3px}
+.index{font-size:13.3px;font-style:normal}
 .sign{font-style:normal}
 polyline{fill:none}
 .rim,.rod{stroke-linejoin:round}
@@ -38,10 +39,13 @@ polyline{fill:none}
 .grip-rim,.grip{stroke-linecap:round;stroke-linejoin:round}
 .axis{stroke-width:1px;stroke-dasharray:11 3 2 3}
 .witness{stroke-width:.7px}
+.leader{stroke-width:.8px}
 .dimension{stroke-width:.9px}
 .motion{stroke-width:1.7px}
 .motion-halo{stroke-width:4px}
 .frame{stroke-width:2.2px}
+.frame-halo{stroke-width:4.4px}
+.origin{stroke-width:1.4px}
 .chain{stroke-width:2.6px;stroke-linejoin:round;stroke-linecap:round}
 """
 
@@ -82,11 +86,12 @@ def _colours(of: Mapping[str, str]) -> str:
         ".grip": f"stroke:{of['rod']}",
         ".point": f"fill:{ink}",
         ".axis": f"stroke:{of['axis']}",
-        ".witness,.dimension": f"stroke:{soft}",
+        ".witness,.dimension,.leader": f"stroke:{soft}",
         ".dimension-head": f"fill:{soft}",
         ".motion": f"stroke:{of['motion']}",
         ".chain": f"stroke:{of['chain']}",
-        ".motion-halo": f"stroke:{paper}",
+        ".motion-halo,.frame-halo": f"stroke:{paper}",
+        ".origin": f"fill:{ink};stroke:{paper}",
         ".motion-head,.variable": f"fill:{of['motion']}",
     }
     for axis in "xyz":

@@ -1,5 +1,7 @@
-"""The named lengths in a figure: pieces of the path that are as long as a sum of symbols."""
+"""The named lengths in a figure: pieces of the path that are as long as the statement says."""
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,8 +27,10 @@ class NamedLength:
     names: tuple[str, ...]
 
 
-def named_lengths(reference: Reference, variables: tuple[Variable, ...]) -> list[NamedLength]:
-    """Return the pieces whose length is a symbol or a sum of symbols, without numbers.
+def named_lengths(
+    reference: Reference, variables: tuple[Variable, ...], statement: str = ""
+) -> list[NamedLength]:
+    """Return the pieces whose length is a sum of symbols, or a number in the statement.
 
     Students know all symbols of an exercise, so the names reveal nothing.
     """
@@ -40,13 +44,27 @@ def named_lengths(reference: Reference, variables: tuple[Variable, ...]) -> list
     # A sum begins with the constant symbols: l4 + q4.
     names = [each.name for each in sorted(lengths, key=lambda each: each.joint or 0)]
     terms = np.array([*(values[name] for name in names), np.ones(TRIALS)]).T
+    numbers = _decimals(statement)
     found = []
     for i, step in enumerate(np.diff(path.corners, axis=0)):
         share = _sum_of(step, terms)
         if share is not None:
             whole = tuple(name for name, each in zip(names, share, strict=False) if each)
             found.append(NamedLength(i, i + 1, whole))
+        elif number := _stated(step, numbers):
+            found.append(NamedLength(i, i + 1, (number,)))
     return found
+
+
+def _decimals(statement: str) -> dict[str, float]:
+    """Return the decimals that a text contains: their spelling, and their value."""
+    return {found: float(found) for found in re.findall(r"(?<![\w.])\d+\.\d+", statement)}
+
+
+def _stated(step: Numbers, numbers: Mapping[str, float]) -> str | None:
+    """Return the number as long as a piece ``(samples, 3)`` of constant length, or None."""
+    length = np.linalg.norm(step, axis=1)
+    return next((text for text, n in numbers.items() if np.abs(length - n).max() < _EXACT), None)
 
 
 def _sum_of(step: Numbers, terms: Numbers) -> Numbers | None:

@@ -151,8 +151,16 @@ def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableM
 
 
 def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
-    """Return the track with the largest size of parts for which there is enough room."""
-    tracks = [_Track.of(path, screws, joints, share) for share in _SIZES]
+    """Return the track with the largest size of parts for which there is enough room.
+
+    If it can, the first joint stands on the ground at the origin, so that no column below the
+    origin suggests a length.
+    """
+    tracks = [
+        _Track.of(path, screws, joints, share, sunk=sunk)
+        for share in _SIZES
+        for sunk in (False, True)
+    ]
     return next((track for track in tracks if track.has_room), tracks[-1])
 
 
@@ -176,7 +184,13 @@ class _Track:
 
     @classmethod
     def of(
-        cls, path: ChainPath, screws: Numbers, joints: Sequence[Joint], share: float
+        cls,
+        path: ChainPath,
+        screws: Numbers,
+        joints: Sequence[Joint],
+        share: float,
+        *,
+        sunk: bool,
     ) -> "_Track":
         corners = path.corners[:, 0]
         extent = float(np.linalg.norm(np.ptp(corners, axis=0)))
@@ -191,7 +205,7 @@ class _Track:
                 pieces, joints, screws, directions, strict=True
             )
         ]
-        foot, normal = _foot(corners, pieces[0], lines[0], size)
+        foot, normal = _foot(corners, pieces[0], lines[0], size, sunk=sunk)
         corners = np.concatenate([foot[None], corners])
         pieces = [piece + 1 for piece in pieces]
         reached = np.concatenate(
@@ -210,6 +224,9 @@ class _Track:
             while last < high and on_line[last + 1]:
                 last += 1
             stretches.append((reached[first], reached[last]))
+        if not sunk and stretches[0][1] - reached[1] < _SAME < reached[1]:
+            # The first joint has no room above the origin: its middle is there.
+            stretches[0] = (reached[1], reached[1])
         first_last = np.array(stretches)
         return cls(
             corners=corners,
@@ -315,12 +332,13 @@ class _Track:
 
 
 def _foot(
-    corners: Numbers, piece: int, line: tuple[Numbers, Numbers], size: float
+    corners: Numbers, piece: int, line: tuple[Numbers, Numbers], size: float, *, sunk: bool
 ) -> tuple[Numbers, Numbers]:
     """Return the point on the ground, and the normal of the ground.
 
     If the first joint has no room on its axis between the origin and the first link, the ground is
-    below the origin, and below all parts that hang down.
+    below the origin: by half the length of the joint, or, if ``sunk``, by its whole length, so that
+    another joint has room at the origin. The ground is above an arm that hangs down from it.
     """
     up = np.array([0.0, 0.0, 1.0])
     origin = corners[0]
@@ -329,7 +347,9 @@ def _foot(
     room = np.linalg.norm(corners[piece + 1] - origin) if on_axis else np.inf
     if room > (JOINT_LENGTH + _CLEARANCE) * size:
         return origin, up
-    hanging = float(origin[2] - corners[:, 2].min())
-    depth = max((JOINT_LENGTH + 0.1) * size, hanging + 3 * _CLEARANCE * size)
+    depth = (JOINT_LENGTH + 0.1 if sunk else JOINT_LENGTH / 2) * size
     along = direction * np.sign(direction @ up) if abs(direction @ up) > 0.7 else up
+    leaving = np.diff(distinct(corners), axis=0)[:1]
+    if (leaving @ along < -0.7 * np.linalg.norm(leaving, axis=-1)).any():
+        along = -along
     return origin - depth * along, along

@@ -76,8 +76,16 @@ declare namespace Api {
     base_normal: number[];
     tool: number[];
     tool_direction: number[];
+    frames: number[][][];
   };
-  type DrawnMechanism = { size: number; azimuth: number; elevation: number; configurations: DrawnConfiguration[]; };
+  type DrawnMechanism = {
+    size: number;
+    azimuth: number;
+    elevation: number;
+    frames: string[];
+    comparable: boolean;
+    configurations: DrawnConfiguration[];
+  };
   type EarlierReport = {
     replaced_at: string;
     version: string;

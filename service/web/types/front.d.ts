@@ -96,7 +96,12 @@ declare namespace Front {
     beside(): boolean;
     robot(): boolean;
     shown(i: number): boolean;
+    labels: string[];
+    given(): boolean;
+    gap(picture: Picture): Gap | null;
   };
+  type Gap = import("../static/robot/frames/gap.js").Gap;
+  type LabelRoom = import("../static/robot/frames/label_places.js").Room;
   type DrawSvg = (theme: Api.Theme) => Promise<string | null | undefined>;
   type RobotView = import("../static/robot/robot_view.js").RobotView;
   type RobotFigure = import("../static/student/robot_figure.js").RobotFigure;
@@ -104,6 +109,7 @@ declare namespace Front {
   type FlatScene = import("../static/robot/flat_scene.js").FlatScene;
   type Shapes = import("../static/robot/shapes.js").Shapes;
   type Scene = import("../static/vendor/three-0.185.1.module.min.js").Scene;
+  type Camera = import("../static/vendor/three-0.185.1.module.min.js").PerspectiveCamera;
   type Vector2 = import("../static/vendor/three-0.185.1.module.min.js").Vector2;
   type Palette = typeof import("../static/robot/palette.js").LIGHT;
   type ViewHost = {

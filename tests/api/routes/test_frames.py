@@ -1,14 +1,21 @@
 import json
 import re
+from collections.abc import Mapping
+from dataclasses import replace
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
+from service.api.application import application
 from service.catalogue import Exercise
+from service.catalogue.attempts import AttemptsSpec
+from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.robots.robot import Robot
 from service.contract.frames import MOST_CONFIGURATIONS
+from tests.api.conftest import InProcess
 from tests.shipped import shipped_exercises
 
 ROOT = Path(__file__).parents[3]
@@ -74,13 +81,41 @@ def test_a_mechanism_tells_nothing_that_the_statement_does_not(
     fields = {
         "symbols", "joints", "mechanism", "joint", "variable", "kind", "low", "high", "home",
         "size", "azimuth", "elevation", "configurations", "centres", "axes", "links", "base",
-        "base_normal", "tool", "tool_direction",
+        "base_normal", "tool", "tool_direction", "frames", "comparable",
     }  # fmt: skip
-    assert told - public <= {*fields, "R", "P"}
+    assert told - public - set(found["mechanism"]["frames"]) <= {*fields, "R", "P"}
     svg = client.get(f"/v1/exercises/{name}/figure.svg").text
     shown = set(re.findall(r"<text[^>]*>(.*?)</text>", svg))
     plain = {re.sub(r"<[^>]*>", "", each).replace("θ", "theta") for each in shown}
-    assert not (parameters(exercise) - public) & plain
+    stated = set(re.findall(r"\b\d+\.\d+", exercise.statement))
+    assert not (parameters(exercise) - public - stated) & plain
+
+
+def test_given_frames_move_with_the_robot(client: httpx.Client) -> None:
+    """{0} stays. The tool frame is at the tool, with x along link 2 of the planar arm."""
+    body = {"exercise": "planar-rr", "joints": [[0, 0], [0.4, 0.7]]}
+    mechanism = answered(client, body)["mechanism"]
+    assert mechanism["frames"] == ["0", "2"]
+    assert mechanism["comparable"] is True
+    for shown, angle in zip(mechanism["configurations"], [0, 1.1], strict=True):
+        base, tool = shown["frames"]
+        assert base == [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+        assert [row[3] for row in tool[:3]] == pytest.approx(shown["tool"])
+        assert [row[0] for row in tool[:3]] == pytest.approx([cos(angle), sin(angle), 0])
+    # All frames of an exercise that gives them all, and none that a student may choose.
+    assert answered(client, {"exercise": "rrrp-drawn"})["mechanism"]["frames"] == [*"01234"]
+    assert answered(client, {"exercise": "rrrp"})["mechanism"]["frames"] == [*"04"]
+
+
+@pytest.mark.parametrize(
+    "hidden", [{"attempts": AttemptsSpec(limit=3)}, {"feedback_by_attempt": (FeedbackLevel.SCORE,)}]
+)
+def test_an_exercise_that_counts_compares_no_frames(hidden: Mapping[str, Any]) -> None:
+    """A gap of 0 would say that a table is right."""
+    exercise = replace(SHIPPED["planar-rr"], **hidden)
+    app = application({exercise.id: exercise})
+    with httpx.Client(transport=InProcess(app), base_url="http://service") as own:
+        assert answered(own, {"exercise": exercise.id})["mechanism"]["comparable"] is False
 
 
 def test_another_choice_of_frames_gives_the_same_mechanism(client: httpx.Client) -> None:

@@ -64,8 +64,10 @@ test("a mechanism keeps its base, and its axes the length 1", () => {
     base_normal: [0, 0, 1],
     tool: [2, 0, 0],
     tool_direction: [1, 0, 0],
+    frames: [turned(0)],
   };
-  const other = { ...one, centres: [[0, 4, 0]], axes: [[0, 1, 0]], tool: [0, 2, 0], tool_direction: [0, 1, 0] };
+  const frames = [turned(Math.PI / 2, 4, 8)];
+  const other = { ...one, centres: [[0, 4, 0]], axes: [[0, 1, 0]], tool: [0, 2, 0], tool_direction: [0, 1, 0], frames };
   const { mechanism } = between({ frames: null, mechanism: one }, { frames: null, mechanism: other }, 0.25);
   // A quarter of the way between (1, 0) and (0, 1) is (3, 1), of length 1.
   const axis = [3 / Math.sqrt(10), 1 / Math.sqrt(10), 0];
@@ -74,6 +76,8 @@ test("a mechanism keeps its base, and its axes the length 1", () => {
   close(mechanism.tool, [1.5, 0.5, 0]);
   close(mechanism.tool_direction, axis);
   assert.deepEqual(mechanism.base, [0, 0, 0]);
+  close(column(mechanism.frames[0], 0), axis);
+  close(column(mechanism.frames[0], 3), [1, 2, 0]);
 });
 
 test("a sweep sends three requests, each for pictures between the earlier ones", async () => {

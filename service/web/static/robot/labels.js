@@ -10,7 +10,9 @@ import {
   PlaneGeometry,
   ShaderMaterial,
   Vector2,
+  Vector3,
 } from "../vendor/three-0.185.1.module.min.js";
+import { takePlace } from "./frames/label_places.js";
 
 // The height of a text in the texture in pixels, and the share of it that letters fill.
 const LINE = 48;
@@ -49,10 +51,14 @@ export class Labels {
    *
    * @param {Front.Palette} palette
    * @param {Vector2} stage
+   * @param {Front.Camera} camera
    */
-  constructor(palette, stage) {
+  constructor(palette, stage, camera) {
     this.palette = palette;
     this.stage = stage;
+    this.camera = camera;
+    /** @type {Front.LabelRoom[]} */
+    this.taken = [];
   }
 
   /**
@@ -72,17 +78,28 @@ export class Labels {
     return part;
   }
 
-  begin() {
+  /** @param {Front.LabelRoom[]} taken is the room of other texts in the stage. */
+  begin(taken = []) {
     this.#count = 0;
+    this.taken = [...taken];
   }
 
-  /** @param {Object3D} part */
-  add({ matrixWorld, userData: { text, height, centre } }) {
+  /**
+   * Draw a label next to its place, clear of the labels before it; leave it out if there is no room.
+   *
+   * @param {Object3D} part
+   */
+  add({ matrixWorld, userData: { text, height, centre: wanted } }) {
     const { place, piece, box } = this.mesh.geometry.attributes;
     const [x, y, z] = matrixWorld.elements.slice(12, 15);
+    const at = new Vector3(x, y, z).project(this.camera);
+    const pixels = { x: ((at.x + 1) / 2) * this.stage.x, y: ((at.y + 1) / 2) * this.stage.y };
+    const [across, up] =
+      takePlace({ ...pixels, width: height * text.ratio, height, centre: [wanted.x, wanted.y] }, this.taken) ?? [];
+    if (across === undefined || up === undefined) return;
     place.setXYZ(this.#count, x, y, z);
     piece.setXYZW(this.#count, .../** @type {Written} */ (text).piece);
-    box.setXYZW(this.#count, height * text.ratio, height, centre.x, centre.y);
+    box.setXYZW(this.#count, height * text.ratio, height, across, up);
     this.#count += 1;
   }
 

@@ -106,6 +106,7 @@ export function between(from, to, share) {
       base_normal: one.base_normal,
       tool: point(one.tool, other.tool),
       tool_direction: direction(one.tool_direction, other.tool_direction),
+      frames: one.frames.map((frame, i) => frameBetween(frame, other.frames[i], point)),
     },
   };
 }

@@ -14,6 +14,11 @@ export const LIGHT = {
   x: 0xc62828,
   y: 0x1f7a34,
   z: 0x1d4fc4,
+  xPale: 0xe59a9a,
+  yPale: 0x93c7a1,
+  zPale: 0x9db4ec,
+  gap: 0xd97706,
+  quiet: "#5d6877",
 };
 const DARK = {
   rod: 0x5b6678,
@@ -28,6 +33,11 @@ const DARK = {
   x: 0xff8080,
   y: 0x6fd68a,
   z: 0x8ab4ff,
+  xPale: 0x96545a,
+  yPale: 0x467d57,
+  zPale: 0x5470a8,
+  gap: 0xfbbf24,
+  quiet: "#a7b2c2",
 };
 
 /**

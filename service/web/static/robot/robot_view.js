@@ -2,6 +2,7 @@
 // the pictures, `stage.js` shows them, in 3D if the browser can, and `view_panels.js` has the controls.
 
 import { h, message } from "../shared/dom.js";
+import { ViewWords } from "./frames/view_words.js";
 import { column, pictureOf, Sweep } from "./motion.js";
 import { Stage } from "./stage.js";
 import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
@@ -40,7 +41,8 @@ export class RobotView {
    */
   constructor(host) {
     this.host = host;
-    this.stage = new Stage((theme) => this.#drawing(theme));
+    this.words = new ViewWords((text) => host.announce?.(text));
+    this.stage = new Stage((theme) => this.#drawing(theme), this.words.text.id);
     this.told = h("p", { class: "told" });
     this.numbers = new PoseNumbers();
     this.sliders = new JointSliders(this);
@@ -53,15 +55,18 @@ export class RobotView {
       { type: "button", class: "quiet-button", onclick: () => this.goHome() },
       "Home configuration",
     );
+    this.given = this.#switch("Given frames", true);
     this.over = h("div", { class: "switches" }, this.robot.label, this.beside.label);
     this.element = h(
       "section",
       { class: "robot-view", "aria-label": "3D view" },
       h("link", { rel: "stylesheet", href: STYLE }),
       this.stage.element,
+      this.words.text,
+      this.words.legend,
       this.told,
       this.sliders.element,
-      h("div", { class: "switches" }, this.home, this.over),
+      h("div", { class: "switches" }, this.home, this.given.label, this.over),
       this.frames.element,
       this.numbers.element,
       this.symbols.element,
@@ -77,6 +82,7 @@ export class RobotView {
   close() {
     this.#closed = true;
     clearTimeout(this.#timer);
+    this.words.close();
     this.stage.close();
     this.element.remove();
   }
@@ -222,6 +228,8 @@ export class RobotView {
     this.#stale(false);
     if (!answer) return;
     this.picture = pictureOf(answer);
+    this.words.show(answer);
+    this.given.label.hidden = this.stage.isFlat || !answer.mechanism?.frames.length;
     this.sliders.show(answer.joints, this.#values);
     this.symbols.show(answer.symbols);
     this.#showTold(answer);
@@ -249,6 +257,9 @@ export class RobotView {
       beside: () => this.beside.box.checked,
       robot: () => this.robot.box.checked || !frames,
       shown: (i) => this.frames.isShown(i),
+      labels: mechanism?.frames ?? [],
+      given: () => this.given.box.checked,
+      gap: (shown) => this.words.gap(shown),
     };
     this.stage.show(subject, picture);
     if (this.#refit) this.stage.reset();
@@ -339,7 +350,8 @@ export class RobotView {
 
   #showNumbers() {
     if (!this.picture) return;
-    this.numbers.show(this.picture);
+    this.numbers.show(this.picture, this.words.gap(this.picture));
+    this.words.describe(this.picture);
     this.host.moved?.(this.picture);
   }
 }

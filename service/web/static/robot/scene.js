@@ -13,6 +13,7 @@ import {
   WebGLRenderer,
 } from "../vendor/three-0.185.1.module.min.js";
 import { OrbitControls } from "../vendor/three-0.185.1.orbit-controls.js";
+import { GapShape, GhostFrames } from "./frames/given_shapes.js";
 import { column } from "./motion.js";
 import { paletteOf } from "./palette.js";
 import { ChainShape, FramesShape, MechanismShape } from "./robot_shapes.js";
@@ -33,6 +34,8 @@ export class RobotScene {
   #subject;
   #asked = 0;
   #fitted = false;
+  // True unless the user has moved a point out of the picture.
+  #wasInside = true;
   // The offset of a table's chain from the robot, if they are shown side by side.
   aside = new Vector3();
 
@@ -66,7 +69,10 @@ export class RobotScene {
     this.controls.enableZoom = false;
     this.canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), { capture: true });
     this.canvas.addEventListener("focusout", () => (this.controls.enableZoom = false));
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("change", () => {
+      if (this.#fitted) this.#wasInside = this.#isInside();
+      this.draw();
+    });
     this.resizing = new ResizeObserver(() => this.#resize());
     this.resizing.observe(stage);
     this.stop = new AbortController();
@@ -78,7 +84,8 @@ export class RobotScene {
   }
 
   /**
-   * Draw a subject: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`.
+   * Draw a subject: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot, labels, given,
+   * gap}`.
    *
    * @param {Front.Subject} subject
    * @param {Front.Picture} picture
@@ -93,12 +100,12 @@ export class RobotScene {
 
   #build() {
     this.#clear();
-    const { kinds, rowKinds, size, convention, solid } = this.#subject;
+    const { kinds, rowKinds, size, convention, solid, labels } = this.#subject;
     const { frames, mechanism } = this.#picture;
     this.palette = paletteOf(this.stage);
     const [below, above] = (this.shapes = [
-      new Shapes(this.palette, this.solids, this.size),
-      new Shapes(this.palette, this.over, this.size),
+      new Shapes(this.palette, this.solids, this.size, this.camera),
+      new Shapes(this.palette, this.over, this.size, this.camera),
     ]);
     this.mechanism = mechanism && new MechanismShape(below, kinds, size, mechanism);
     const count = frames?.length ?? 0;
@@ -107,11 +114,16 @@ export class RobotScene {
     if (this.mechanism) this.solids.add(this.mechanism.group);
     if (this.chain) (solid ? this.solids : this.over).add(this.chain.group);
     if (this.frames) this.over.add(this.frames.group);
+    // The labels of later parts give way to those of earlier ones.
+    this.ghosts = mechanism && new GhostFrames(above, labels, 0.26 * size);
+    this.gap = mechanism && new GapShape(above, size, this.stage);
+    if (this.ghosts && this.gap) this.over.add(this.ghosts.group, this.gap.group);
     for (const each of this.shapes) each.finish();
   }
 
   #clear() {
-    for (const part of [this.mechanism, this.chain, this.frames]) part?.group.removeFromParent();
+    for (const part of [this.mechanism, this.chain, this.frames, this.ghosts, this.gap]) part?.group.removeFromParent();
+    this.gap?.dispose();
     for (const each of this.shapes ?? []) each.dispose();
   }
 
@@ -129,8 +141,11 @@ export class RobotScene {
    */
   move(picture) {
     this.#picture = picture;
-    const { shown, robot, beside } = this.#subject;
+    const { shown, robot, beside, given, gap } = this.#subject;
     if (this.mechanism && picture.mechanism) this.mechanism.put(picture.mechanism);
+    if (this.ghosts && picture.mechanism) this.ghosts.put(picture.mechanism.frames);
+    if (this.ghosts) this.ghosts.group.visible = given();
+    this.gap?.put(beside() ? null : gap(picture));
     if (this.mechanism) this.mechanism.group.visible = robot();
     if (picture.frames) {
       this.chain?.put(picture.frames);
@@ -139,24 +154,52 @@ export class RobotScene {
     const aside = beside() ? this.aside : new Vector3();
     this.chain?.group.position.copy(aside);
     this.frames?.group.position.copy(aside);
+    if (this.#wasInside && !this.#isInside()) this.#fit(this.camera.position.clone().sub(this.controls.target));
     this.draw();
   }
 
-  /** Restore the initial view, with everything in it. */
-  reset() {
-    const { azimuth, elevation, beside } = this.#subject;
-    const [turn, height] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180);
-    const towards = new Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
-    const across = new Vector3(-Math.sin(turn), Math.cos(turn), 0);
+  /** Return all points that the view must contain. */
+  #points() {
     const { mechanism, frames } = this.#picture;
+    const { beside } = this.#subject;
     const robot = mechanism
       ? [mechanism.base, mechanism.tool, ...mechanism.centres, ...mechanism.links.flat()].map(vector)
       : [];
     const chain = (frames ?? []).map((frame) => vector(column(frame, 3)));
-    const widths = [...robot, ...chain].map((point) => point.dot(across));
+    return [...robot, ...chain.map((point) => (beside() ? point.add(this.aside) : point))];
+  }
+
+  /** True if all points are in the picture. */
+  #isInside() {
+    this.camera.updateMatrixWorld();
+    return this.#points().every((point) => {
+      const { x, y } = point.project(this.camera);
+      return Math.abs(x) < 1 && Math.abs(y) < 1;
+    });
+  }
+
+  /** Restore the initial view, with everything in it. */
+  reset() {
+    const { azimuth, elevation } = this.#subject;
+    const [turn, height] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180);
+    const towards = new Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
+    const across = new Vector3(-Math.sin(turn), Math.cos(turn), 0);
+    this.aside = new Vector3();
+    const widths = this.#points().map((point) => point.dot(across));
     const width = Math.max(...widths, 0) - Math.min(...widths, 0);
     this.aside = across.clone().multiplyScalar(width + 0.45 * this.#subject.size);
-    const points = [...robot, ...chain.map((point) => (beside() ? point.add(this.aside) : point))];
+    this.#fit(towards);
+  }
+
+  /**
+   * Move the camera so that everything is in the picture, seen from the direction `offset`.
+   *
+   * @param {Vector3} offset
+   */
+  #fit(offset) {
+    const towards = offset.clone().normalize();
+    const across = new Vector3(-towards.y, towards.x, 0).normalize();
+    const points = this.#points();
     const low = points.reduce((least, point) => least.min(point), points[0]?.clone() ?? new Vector3());
     const high = points.reduce((most, point) => most.max(point), low.clone());
     const middle = low.clone().add(high).multiplyScalar(0.5);
@@ -178,6 +221,7 @@ export class RobotScene {
     this.camera.position.copy(middle).addScaledVector(towards, this.distance);
     this.controls.update();
     this.#fitted = true;
+    this.#wasInside = true;
     this.draw();
   }
 
@@ -235,7 +279,8 @@ export class RobotScene {
     this.#asked = 0;
     if (this.inSoftware && !fine) this.resting = setTimeout(() => this.#render(true), AT_REST);
     if (this.renderer.getPixelRatio() !== this.#ratio(fine)) this.renderer.setPixelRatio(this.#ratio(fine));
-    for (const each of this.shapes ?? []) each.put();
+    const taken = this.gap?.follow(this.camera, this.size);
+    for (const each of this.shapes ?? []) each.put(taken);
     this.renderer.clear();
     this.renderer.render(this.solids, this.camera);
     this.renderer.clearDepth();

@@ -98,11 +98,13 @@ export class Shapes {
    * @param {Front.Palette} palette
    * @param {Front.Scene} scene
    * @param {Front.Vector2} stage
+   * @param {Front.Camera} camera
    */
-  constructor(palette, scene, stage) {
+  constructor(palette, scene, stage, camera) {
     this.palette = palette;
     this.scene = scene;
     this.stage = stage;
+    this.camera = camera;
   }
 
   /** @param {keyof typeof SHAPES} shape @param {keyof Front.Palette} colour @param {boolean} [flat] */
@@ -122,9 +124,13 @@ export class Shapes {
     for (const batch of this.#all) this.scene.add(batch.mesh);
   }
 
-  /** Update the drawn position of each visible part. */
-  put() {
-    for (const batch of this.#all) batch.begin();
+  /**
+   * Update the drawn position of each visible part.
+   *
+   * @param {Front.LabelRoom[]} [taken] is the room that labels must avoid
+   */
+  put(taken) {
+    for (const batch of this.#all) batch.begin(taken);
     this.scene.updateMatrixWorld();
     this.scene.traverseVisible((each) => each.userData.batch?.add(each));
     for (const batch of this.#all) batch.end();
@@ -149,21 +155,30 @@ export class Shapes {
   /**
    * Return three arrows from the origin, each with its letter: x red, y green, z blue.
    *
+   * If `index` is given, they are thin and pale, and the letters have this index; y has none.
+   *
    * @param {number} length
+   * @param {string | null} [index]
    */
-  frame(length) {
+  frame(length, index = null) {
+    const isGhost = index !== null;
+    const thin = isGhost ? 0.55 : 1;
     const group = new Group();
     for (const [name, axis] of AXES) {
       const direction = vector(axis);
-      const shaft = this.mesh("thin", name, true);
-      lay(shaft, new Vector3(), direction.clone().multiplyScalar(0.82 * length), 0.022 * length);
-      const head = this.mesh("cone", name, true);
+      /** @type {keyof Front.Palette} */
+      const colour = isGhost ? `${name}Pale` : name;
+      const shaft = this.mesh("thin", colour, true);
+      lay(shaft, new Vector3(), direction.clone().multiplyScalar(0.82 * length), 0.022 * thin * length);
+      const head = this.mesh("cone", colour, true);
       head.quaternion.setFromUnitVectors(UP, direction);
       head.position.copy(direction).multiplyScalar(0.9 * length);
-      head.scale.set(0.065 * length, 0.2 * length, 0.065 * length);
-      const letter = this.label(name, name, 13);
+      head.scale.set(0.065 * thin * length, 0.2 * length, 0.065 * thin * length);
+      group.add(shaft, head);
+      if (isGhost && name === "y") continue;
+      const letter = this.label(name + (index ?? ""), isGhost ? "quiet" : name, 17);
       letter.position.copy(direction).multiplyScalar(1.16 * length);
-      group.add(shaft, head, letter);
+      group.add(letter);
     }
     group.matrixAutoUpdate = false;
     return group;
@@ -171,7 +186,7 @@ export class Shapes {
 
   /** @param {string} text @param {keyof Front.Palette} colour @param {number} height */
   label(text, colour, height) {
-    this.#labels ??= new Labels(this.palette, this.stage);
+    this.#labels ??= new Labels(this.palette, this.stage, this.camera);
     return this.#labels.part(text, colour, height);
   }
 

@@ -27,12 +27,15 @@ export class Stage {
   #closed = false;
 
   /**
-   * `draw(theme)` returns the SVG of the current picture, for a browser without WebGL.
+   * `draw(theme)` returns the SVG of the current picture, for a browser without WebGL. `textId` is the id of the text
+   * that says where everything is.
    *
    * @param {Front.DrawSvg} draw
+   * @param {string} textId
    */
-  constructor(draw) {
+  constructor(draw, textId) {
     this.draw = draw;
+    this.textId = textId;
     this.room = h("div", { class: "stage" });
     this.element = h("div", { class: "stage-frame" }, this.room);
     this.isFlat = false;
@@ -93,6 +96,7 @@ export class Stage {
       "aria-label",
       "The robot in 3D. Arrow keys rotate the view, plus and minus zoom, 0 resets the view.",
     );
+    canvas.setAttribute("aria-describedby", this.textId);
     canvas.addEventListener("keydown", (event) => this.#pressed(event, scene));
     /** @type {(text: string, name: string, act: () => void) => HTMLElement} */
     const button = (text, name, act) =>

@@ -1,6 +1,7 @@
 // The panels around the picture of a robot: sliders, values of symbols, frame switches, coordinates.
 
 import { decimal, h, visible } from "../shared/dom.js";
+import { gapText, isClosed } from "./frames/gap.js";
 import { column } from "./motion.js";
 import { symbolName } from "./names.js";
 
@@ -176,20 +177,21 @@ export class PoseNumbers {
     this.element = h("div", { class: "pose-numbers" });
   }
 
-  /** @param {Front.Picture} picture */
-  show({ frames, mechanism }) {
-    /** @type {[string, number[]][]} */
+  /** @param {Front.Picture} picture @param {Front.Gap | null} gap */
+  show({ frames, mechanism }, gap) {
+    /** @type {[string, number[] | string][]} */
     const lines = [];
     const last = frames && frames.length - 1;
     if (mechanism) lines.push(["Tool of the robot", mechanism.tool]);
     if (last && last > 0) lines.push([`Origin of your frame {${last}}`, column(frames[last], 3)]);
+    if (gap) lines.push(["Gap to the tool frame", isClosed(gap) ? "none" : gapText(gap)]);
     if (this.element.children.length !== lines.length) {
       this.element.replaceChildren(...lines.map(() => h("p", {}, h("span"), h("code"))));
     }
-    lines.forEach(([name, point], i) => {
+    lines.forEach(([name, shown], i) => {
       const [label, value] = this.element.children[i].children;
       label.textContent = name;
-      value.textContent = point.map(decimal).join("  ");
+      value.textContent = typeof shown === "string" ? shown : shown.map(decimal).join("  ");
     });
   }
 }

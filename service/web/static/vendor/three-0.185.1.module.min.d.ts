@@ -25,6 +25,8 @@ export class Vector3 {
   dot(other: Vector3): number;
   length(): number;
   distanceTo(other: Vector3): number;
+  normalize(): this;
+  project(camera: PerspectiveCamera): this;
   toArray(): [number, number, number];
 }
 export class Matrix4 {

@@ -1,0 +1,51 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { gapBetween, gapText, isClosed } from "../../../service/web/static/robot/frames/gap.js";
+import { takePlace } from "../../../service/web/static/robot/frames/label_places.js";
+import { viewText } from "../../../service/web/static/robot/frames/view_text.js";
+
+const IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
+// Turned by 90 degrees about z, at (3, 4, 0).
+const QUARTER = [[0, -1, 0, 3], [1, 0, 0, 4], [0, 0, 1, 0], [0, 0, 0, 1]];
+// Turned by 180 degrees about x.
+const HALF = [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]];
+
+test("a gap is a length and an angle", () => {
+  const gap = gapBetween(IDENTITY, QUARTER);
+  assert.equal(gap.length, 5);
+  assert.ok(Math.abs(gap.turn - 90) < 1e-9);
+  assert.equal(gapText(gap), "5, turned by 90°");
+  assert.equal(gapText(gapBetween(IDENTITY, HALF)), "turned by 180°");
+  assert.ok(!isClosed(gapBetween(IDENTITY, HALF)));
+  assert.ok(isClosed(gapBetween(QUARTER, QUARTER)));
+  assert.equal(gapText(gapBetween(IDENTITY, [[1, 0, 0, 0.5], ...IDENTITY.slice(1)])), "0.5");
+});
+
+test("no two labels overlap, and one without room is left out", () => {
+  const label = { x: 100, y: 100, width: 30, height: 14, centre: [0.5, 0.5] };
+  const taken = [];
+  const places = Array.from({ length: 60 }, () => takePlace(label, taken));
+  assert.deepEqual(places[0], [0.5, 0.5]);
+  assert.ok(places.includes(null));
+  assert.ok(taken.length > 5);
+  taken.forEach((one, i) =>
+    taken.slice(0, i).forEach((other) =>
+      assert.ok(one.left >= other.right || other.left >= one.right || one.low >= other.high || other.low >= one.high)
+    )
+  );
+});
+
+test("the text says where the tool and the frames are", () => {
+  const mechanism = { tool: [3, 4, 0], frames: [IDENTITY, QUARTER] };
+  const text = viewText({ frames: [IDENTITY], mechanism }, ["0", "2"], gapBetween(IDENTITY, QUARTER));
+  assert.equal(
+    text,
+    "The tool of the robot is at (3, 4, 0). " +
+      "Given frame {0}: origin (0, 0, 0), x along the base's x, z along the base's z. " +
+      "Given frame {2}: origin (3, 4, 0), x along the base's y, z along the base's z. " +
+      "Frame {0} of your table: origin (0, 0, 0), x along the base's x, z along the base's z. " +
+      "From the last frame of your table to the tool frame: 5, turned by 90°.",
+  );
+  const closed = viewText({ frames: [QUARTER], mechanism: null }, [], gapBetween(QUARTER, QUARTER));
+  assert.match(closed, /lies on the tool frame\.$/);
+});
