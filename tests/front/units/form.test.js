@@ -8,7 +8,7 @@ import {
   sentTexts,
   shownTexts,
   together,
-} from "../../../service/web/static/student/form/progress.js";
+} from "../../../service/web/static/student/form/part_progress.js";
 import { proposedUnit, reordered, writtenOrder } from "../../../service/web/static/student/form/proposals.js";
 import { shortNames } from "../../../service/web/static/student/form/rail.js";
 import { nextTab } from "../../../service/web/static/student/form/tabs.js";

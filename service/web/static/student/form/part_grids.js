@@ -1,7 +1,7 @@
 // All grids of a part: their cells, what they hold, and the tabs if there are several.
 
 import { gridsOf } from "../grid_view.js";
-import { filled, isTouched, sentTexts, shownTexts, together } from "./progress.js";
+import { filled, isTouched, sentTexts, shownTexts, together } from "./part_progress.js";
 import { Tabs } from "./tabs.js";
 
 /** @param {Front.PartCell} cell @returns {Front.Written} */
