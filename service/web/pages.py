@@ -6,9 +6,9 @@ from typing import Final
 from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
-from service.api.statement import statement_html
 from service.catalogue import Exercise
 from service.formats.shared.html_templates import html, own_html
+from service.typeset.statement import statement_html
 from service.web.assets import Assets
 
 # The entries of the menu: text, and address relative to the root.
@@ -100,6 +100,6 @@ def _kinds_of(exercise: Exercise) -> Iterable[str]:
     return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
 
 
-def _markdown(text: str) -> Markup:
+def _markdown(text: str, exercise: Exercise) -> Markup:
     """Return a text of the exercise's author as HTML."""
-    return own_html(statement_html(text))
+    return own_html(statement_html(text, exercise.symbols))

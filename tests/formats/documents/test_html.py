@@ -29,8 +29,8 @@ def test_all_submissions_are_on_one_page() -> None:
 
 def test_each_cell_shows_its_entry_and_its_sign() -> None:
     told = re.sub(r"\s+", " ", read("wrong"))
-    assert "✓ l1 ✗ pi/2 ✓ 0 ✓ q2 0.42 / 2.53" in told
-    assert "row 2 alpha:" in told
+    assert "✓ l 1 ✗ π 2 ✓ 0 ✓ q 2 0.42 / 2.53" in told
+    assert "row 2 α :" in told
 
 
 def test_hostile_text_is_shown_as_text() -> None:

@@ -2,7 +2,7 @@
 
 import { decimal, h, visible } from "../shared/dom.js";
 import { column } from "./motion.js";
-import { symbolName } from "./names.js";
+import { symbolName } from "../typeset/names.js";
 
 const STEPS = 400;
 const DEGREES = 180 / Math.PI;

@@ -2,6 +2,7 @@
 
 import { h, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
+import { symbolName, typeset } from "../typeset/names.js";
 
 /**
  * Return the section with the task. Beside the cells, it scrolls separately, also by keyboard.
@@ -11,16 +12,18 @@ import { html } from "../shared/markup.js";
  * @param {Front.RobotFigure | null} robot
  */
 export function about({ title, source, statement, statement_html: markup, symbols }, level, robot) {
+  const names = new Set(symbols.map((symbol) => symbol.name));
+  const maths = (/** @type {string} */ each) => typeset(visible(each), names);
   const header = h(
     "header",
     {},
-    h(level, { id: "title" }, visible(title)),
-    h("p", { class: "quiet" }, visible(source)),
+    h(level, { id: "title" }, ...typeset(visible(title))),
+    h("p", { class: "quiet" }, ...typeset(visible(source))),
   );
-  const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
+  const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, ...maths(each)));
   const terms = symbols.flatMap(({ name, unit, description }) => [
-    h("dt", {}, h("code", {}, visible(name))),
-    h("dd", {}, visible(unit ? `${description} (${unit})` : description)),
+    h("dt", {}, symbolName(name), " ", h("code", {}, visible(name))),
+    h("dd", {}, ...maths(unit ? `${description} (${unit})` : description)),
   ]);
   const head = h(level === "h1" ? "h2" : "h3", {}, "Symbols");
   return h(

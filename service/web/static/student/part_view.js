@@ -1,12 +1,13 @@
 // A part of an exercise: its prompt, cells and report, and the line that shows how the current cell is read.
 
-import { h, message, points, visible } from "../shared/dom.js";
+import { h, points, visible } from "../shared/dom.js";
 import { gridsOf } from "./grid_view.js";
 import { layoutOf } from "./kinds.js";
 import { html, mathml } from "../shared/markup.js";
 import { cellName, item } from "./messages.js";
 import { blockOf, pair, placedFrom } from "../shared/pasted_block.js";
 import { target, undoKey } from "../shared/keyboard.js";
+import { typeset, typesetMessage } from "../typeset/names.js";
 
 // A text with one of these may hold several cells; the service decides.
 const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
@@ -29,6 +30,7 @@ export class PartView {
   constructor(part, host, level) {
     this.part = part;
     this.host = host;
+    this.symbols = new Set(host.exercise?.symbols.map((symbol) => symbol.name));
     this.layout = layoutOf(part);
     const { rows, elements } = gridsOf(this.layout, part, this, `part-${part.id}`);
     this.rows = rows;
@@ -42,7 +44,7 @@ export class PartView {
     this.element = h(
       "section",
       { class: "card part", "aria-labelledby": id },
-      h("header", {}, h(level, { id }, part.title), this.badge, this.worth),
+      h("header", {}, h(level, { id }, ...typeset(visible(part.title))), this.badge, this.worth),
       h("div", { class: "prompt" }, ...html(part.prompt_html)),
       this.list,
       this.choice,
@@ -143,19 +145,21 @@ export class PartView {
     const reading = cell?.text.trim() ? cell.reading : null;
     this.reading.classList.toggle("unread", Boolean(reading?.error));
     if (!cell || !reading) return this.reading.replaceChildren(HELP);
-    const name = h("strong", {}, `${cell.place.spoken || this.part.title}: `);
+    const name = h("strong", {}, ...typeset(visible(`${cell.place.spoken || this.part.title}: `)));
     if (reading.error) {
       const { suggestion } = reading.error;
       this.reading.replaceChildren(
         name,
-        ...message(reading.error.message),
+        ...typesetMessage(reading.error.message, this.symbols),
         " ",
         suggestion ? cell.repair(suggestion) : "",
       );
       if (aloud) this.host.announce(`Not read: ${reading.error.message}`, 1200);
       return undefined;
     }
-    const notes = reading.notes?.flatMap((note) => [" ", h("span", { class: "quiet" }, ...message(note.message))]) ??
+    const notes = reading.notes?.flatMap((
+      note,
+    ) => [" ", h("span", { class: "quiet" }, ...typesetMessage(note.message, this.symbols))]) ??
       [];
     return this.reading.replaceChildren(name, mathml(reading.mathml) ?? visible(reading.text), ...notes);
   }
@@ -295,7 +299,7 @@ export class PartView {
   #say(text, notes = []) {
     const told = notes?.map((note) => note.message) ?? [];
     this.reading.classList.remove("unread");
-    this.reading.replaceChildren(...message([text, ...told].join(" ")));
+    this.reading.replaceChildren(...typesetMessage([text, ...told].join(" "), this.symbols));
     this.#current = null;
     this.host.announce(text);
   }
@@ -315,7 +319,9 @@ export class PartView {
       rows.delete(view.label);
     }
     const more = [...rows.values()].flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]);
-    const items = [...report.feedback, ...more].map((each) => item(each, { verdict: report.verdict }));
+    const items = [...report.feedback, ...more].map((each) =>
+      item(each, { verdict: report.verdict, symbols: this.symbols })
+    );
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
     }
@@ -327,12 +333,13 @@ export class PartView {
 
   /** @param {Api.RowReport} row @param {Front.RowView} view */
   #items(row, view) {
-    const own = row.feedback.map((each) => item(each, { verdict: row.verdict }));
+    const { symbols } = this;
+    const own = row.feedback.map((each) => item(each, { verdict: row.verdict, symbols }));
     const ofCells = row.cells.flatMap((cell) => {
       const target = view.cells.find((each) => each.place.label === cell.label);
       const repair = target ? (/** @type {string} */ suggestion) => target.repair(suggestion) : null;
       const place = view.cells.length > 1 ? cellName(cell.label) : "";
-      return cell.feedback.map((each) => item(each, { place, verdict: cell.verdict, repair }));
+      return cell.feedback.map((each) => item(each, { place, verdict: cell.verdict, repair, symbols }));
     });
     return [...own, ...ofCells];
   }

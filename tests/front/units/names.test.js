@@ -1,0 +1,16 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { pieces } from "../../../service/web/static/typeset/names.js";
+import file from "../../typeset/names.json" with { type: "json" };
+
+const GREEK = new Map([["alpha", "α"], ["theta", "θ"], ["phi", "φ"], ["pi", "π"]]);
+
+/** @param {string | { stem: string, below: string, above: string }} piece */
+const shown = (piece) =>
+  typeof piece === "string" ? piece : `<${GREEK.get(piece.stem) ?? piece.stem}|${piece.below}|${piece.above}>`;
+
+for (const [text, expected] of file.cases) {
+  test(`the names of “${text}” are those that the service finds`, () => {
+    assert.equal(pieces(text, new Set(file.symbols)).map(shown).join(""), expected);
+  });
+}
