@@ -15,7 +15,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any, Final
 
 from service.typeset.formulas import matrix
-from service.typeset.names import typeset
+from service.typeset.names import in_one_line, unbound
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
@@ -53,8 +53,7 @@ def statement_html(statement: str, symbols: frozenset[str] = frozenset()) -> str
     MathML is shown as it is written.
     """
     shown = _TURNING.sub(lambda mark: f"[U+{ord(mark[0]):04X}]", statement)
-    html: str = _markdown().render(shown, {_SYMBOLS: symbols})
-    return html
+    return in_one_line(_markdown().render(shown, {_SYMBOLS: symbols}))
 
 
 def formula_html(latex: str, *, display: bool = False) -> str:
@@ -93,7 +92,7 @@ def _displayed(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object)
 
 
 def _text(_renderer: object, tokens: "Sequence[Token]", i: int, _: object, env: Any) -> str:
-    return typeset(tokens[i].content, env[_SYMBOLS])
+    return unbound(tokens[i].content, env[_SYMBOLS])
 
 
 def _fence(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object) -> str:

@@ -26,8 +26,9 @@ def test_names_are_found_in_a_text(text: str, expected: str) -> None:
 def test_a_name_is_mathml_and_the_rest_is_escaped() -> None:
     assert typeset("<b> theta1 in {0}: R_2^0") == (
         "&lt;b&gt; <math><msub><mi>θ</mi><mn>1</mn></msub></math> in "
-        '<math><mrow><mo stretchy="false">{</mo><mn>0</mn><mo stretchy="false">}</mo></mrow></math>'
-        ": <math><msubsup><mi>R</mi><mn>2</mn><mn>0</mn></msubsup></math>"
+        '<span class="maths"><math><mrow><mo stretchy="false">{</mo><mn>0</mn>'
+        '<mo stretchy="false">}</mo></mrow></math>:</span>'
+        " <math><msubsup><mi>R</mi><mn>2</mn><mn>0</mn></msubsup></math>"
     )
 
 

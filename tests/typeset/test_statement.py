@@ -44,8 +44,10 @@ def test_a_matrix_and_a_table() -> None:
 def test_names_are_typeset_but_not_in_code() -> None:
     html = statement_html("Rot_z(theta) and z_i, `theta1`, *not* l", frozenset({"l"}))
     assert html == (
-        "<p><math><msub><mi>Rot</mi><mi>z</mi></msub></math>(<math><mi>θ</mi></math>) and "
-        "<math><msub><mi>z</mi><mi>i</mi></msub></math>, <code>theta1</code>, <em>not</em> "
+        '<p><span class="maths"><math><msub><mi>Rot</mi><mi>z</mi></msub></math>'
+        "(<math><mi>θ</mi></math>)</span> and "
+        '<span class="maths"><math><msub><mi>z</mi><mi>i</mi></msub></math>,</span> '
+        "<code>theta1</code>, <em>not</em> "
         "<math><mi>l</mi></math></p>\n"
     )
 

@@ -6,7 +6,7 @@ visible line and is escaped, unless it is HTML that the service itself made (``o
 
 import base64
 import hashlib
-from collections.abc import Iterator, Set
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -71,12 +71,12 @@ def lines(text: str) -> Markup:
     return escape("\n".join(map(visible, text.split("\n"))))
 
 
-def typeset(text: object, symbols: Set[str] = frozenset()) -> Markup:
+def typeset(text: object, symbols: Container[str] = ()) -> Markup:
     """Return the visible text as HTML with its names in MathML."""
     return own_html(names.typeset(visible(str(text)), symbols))
 
 
-def in_unicode(text: str, symbols: Set[str] = frozenset()) -> str:
+def in_unicode(text: str, symbols: Container[str] = ()) -> str:
     """Return the text with its names in Unicode, for the title of a page."""
     return names.in_unicode(text, symbols)
 

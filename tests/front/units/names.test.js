@@ -3,7 +3,9 @@ import { test } from "node:test";
 import { pieces } from "../../../service/web/static/typeset/names.js";
 import file from "../../typeset/names.json" with { type: "json" };
 
-const GREEK = new Map([["alpha", "α"], ["theta", "θ"], ["phi", "φ"], ["pi", "π"]]);
+const GREEK = new Map(
+  [..."αalpha θtheta φphi πpi μmu ΓGamma λlambda ΩOmega ηeta τtau".split(" ")].map((each) => [each.slice(1), each[0]]),
+);
 
 /** @param {string | { stem: string, below: string, above: string }} piece */
 const shown = (piece) =>

@@ -18,7 +18,7 @@ const ATTRIBUTES = new Set(
     "columnalign scope start colspan rowspan").split(" "),
 );
 
-const CLASSES = new Set(["display", "matrix"]);
+const CLASSES = new Set(["display", "maths", "matrix"]);
 
 /** @type {{ createHTML(text: string): string } | undefined} */
 const policy = /** @type {any} */ (globalThis).trustedTypes?.createPolicy("dh-grader", {

@@ -23,6 +23,7 @@ const NAME = new RegExp(
     String.raw`)(?![\p{L}\p{Nd}_]|[\{@])`,
   "gu",
 );
+const AXIS = /^[xyz][\s-]+ax[ei]s(?![A-Za-z])/;
 const SIGN = new RegExp(
   String.raw`(?<![^\s(\[,;=])-(?=[0-9(${LETTERS}]|[A-Za-z][0-9_]|(?:${SPELLED.join("|")})(?![A-Za-z]))`,
   "gu",
@@ -38,7 +39,19 @@ const SIGN = new RegExp(
  * @returns {(string | Element)[]}
  */
 export function typeset(text, symbols = new Set()) {
-  return pieces(text, symbols).map((piece) => (typeof piece === "string" ? piece : make("math", element(piece))));
+  /** @type {(string | Element)[]} */
+  const shown = pieces(text, symbols).map((piece) => typeof piece === "string" ? piece : make("math", element(piece)));
+  for (let i = 0; i < shown.length; i++) {
+    const formula = shown[i];
+    if (!(formula instanceof Element)) continue;
+    const [before, after] = [shown[i - 1], shown[i + 1]].map((each) => (typeof each === "string" ? each : ""));
+    const opening = before.match(/[(\[−]*$/)?.[0] ?? "";
+    const closing = after.match(/^[),.;:!?\]²³]*/)?.[0] ?? "";
+    if (opening) shown[i - 1] = before.slice(0, -opening.length);
+    if (closing) shown[i + 1] = after.slice(closing.length);
+    if (opening || closing) shown[i] = h("span", { class: "maths" }, opening, formula, closing);
+  }
+  return shown;
 }
 
 /**
@@ -95,9 +108,10 @@ function nameOf(match, symbols) {
   const name = { stem, below: plain + below, above };
   const isLetter = stem.length === 1 && (name.below || above || LETTERS.includes(stem));
   const isGreek = SPELLED.includes(stem) || (Object.hasOwn(GREEK, stem) && name.below);
-  if (isLetter || isGreek || below.length === 1 || /^\d+$/.test(below)) return name;
+  const isAxis = !name.below && AXIS.test(match.input?.slice(match.index) ?? "");
+  if (isAxis || isLetter || isGreek || below.length === 1 || /^\d+$/.test(below)) return name;
   const written = match[0].split("^")[0];
-  return symbols.has(written) && !WORDS.has(written) ? name : null;
+  return symbols.has(written) && (!WORDS.has(written) || written === match.input) ? name : null;
 }
 
 /** @param {Name} name */
