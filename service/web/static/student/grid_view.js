@@ -83,7 +83,14 @@ export class RowView {
         owner,
       );
     });
-    const head = h("th", { scope: "row" }, h("span", {}, ...typeset(row.head, new Set([row.head]))), this.sign);
+    const aloud = h("span", { class: "aloud" }, row.head);
+    const head = h(
+      "th",
+      { scope: "row" },
+      h("span", { "aria-hidden": "true" }, ...typeset(row.head, new Set([row.head]))),
+      aloud,
+      this.sign,
+    );
     this.element = h("tr", {}, head, ...this.cells.map((cell) => cell.element), this.worth);
     this.list = h("ul");
     this.notes = h("tr", { class: "notes", hidden: true }, h("td", { colspan: grid.columns.length + 2 }, this.list));
