@@ -15,8 +15,9 @@ FILES = 12
 ROOMS = {
     "vendor": set[str](),
     "shared": set[str](),
-    "robot": {"shared", "vendor"},
-    "student": {"shared", "robot"},
+    "typeset": {"shared"},
+    "robot": {"shared", "typeset", "vendor"},
+    "student": {"shared", "typeset", "robot"},
     "play": {"shared", "robot", "student"},
     "tutor": {"shared", "student"},
 }
