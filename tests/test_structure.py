@@ -18,8 +18,9 @@ TESTS = ROOT / "tests"
 
 # Each package or file of service/ may import those listed before it.
 PACKAGES = (
-    "version", "time_slices", "expressions", "grids", "kinematics", "catalogue", "grading",
-    "solutions", "figures", "authoring", "importing", "submissions", "contract", "statistics",
+    "version", "time_slices", "expressions", "grids", "typeset", "kinematics", "catalogue",
+    "grading", "solutions", "figures", "authoring", "importing", "submissions", "contract",
+    "statistics",
     "formats", "local_grading", "bundles", "attempts", "access", "client", "settings",
     "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip

@@ -12,6 +12,7 @@ from typing import Final
 from service.bundles.archive import BundledFile
 from service.bundles.content import BundleContent, template
 from service.catalogue import Exercise
+from service.typeset.statement import statement_html
 
 ENTRY_POINT: Final = "/usr/local/bin/grade-submission"
 # The program starts and grades within two seconds; a container on a busy machine takes longer.
@@ -76,16 +77,25 @@ def _page(content: BundleContent) -> bytes:
 def _exercise(exercise: Exercise) -> Iterator[str]:
     """Yield the HTML of the statement and the parts."""
     yield f"  <h4>{_text(exercise.title)}</h4>\n"
-    for paragraph in exercise.statement.split("\n\n"):
-        yield f"  <p>{_text(' '.join(paragraph.split()))}</p>\n"
+    yield f"  <div>{_typeset(exercise.statement, exercise)}</div>\n"
     yield f"  <p>Hand in <code>{exercise.id}.json</code>, with an answer to each part:</p>\n"
     yield "  <ul>\n"
     for part in exercise.parts:
         title = f"{_text(part.title)} ({part.points:g} points)"
-        yield f"    <li><code>{part.id}</code>: {title}. {_text(part.prompt)}</li>\n"
+        yield f"    <li><code>{part.id}</code>: {title}. {_typeset(part.prompt, exercise)}</li>\n"
     yield "  </ul>\n"
 
 
 def _text(text: str) -> str:
-    """Escape text for HTML, and braces, because PrairieLearn replaces text in double braces."""
-    return escape(text).replace("{", "&#123;").replace("}", "&#125;")
+    """Escape text for HTML."""
+    return _braces(escape(text))
+
+
+def _typeset(text: str, exercise: Exercise) -> str:
+    """Return a statement or a prompt as HTML and MathML."""
+    return _braces(statement_html(text, exercise.symbols))
+
+
+def _braces(html: str) -> str:
+    """Escape braces, because PrairieLearn replaces text in double braces."""
+    return html.replace("{", "&#123;").replace("}", "&#125;")

@@ -78,6 +78,11 @@ class Exercise:
         return self.reference
 
     @property
+    def symbols(self) -> frozenset[str]:
+        """The names of its variables and symbols, as it declares them."""
+        return frozenset(variable.name for variable in self.variables)
+
+    @property
     def joints(self) -> tuple[Joint, ...]:
         """The robot's joints; empty without a robot."""
         return self.reference.joints if self.reference else ()

@@ -7,9 +7,9 @@ from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
 from service.api.routes.reference import SCRIPT, START, STYLE
-from service.api.statement import statement_html
 from service.catalogue import Exercise, by_level
 from service.formats.shared.html_templates import html, own_html
+from service.typeset.statement import statement_html
 from service.web.assets import Assets
 from service.web.catalogue_words import kinds_of, words_of
 
@@ -98,6 +98,6 @@ def page(
     )
 
 
-def _markdown(text: str) -> Markup:
+def _markdown(text: str, exercise: Exercise) -> Markup:
     """Return a text of the exercise's author as HTML."""
-    return own_html(statement_html(text))
+    return own_html(statement_html(text, exercise.symbols))

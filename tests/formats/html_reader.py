@@ -17,6 +17,9 @@ ALLOWED: Mapping[str, AbstractSet[str]] = {
     "th": {"scope"}, "svg": {"class", "role", "aria-label", "viewbox"},
     "circle": {"class", "cx", "cy", "r", "stroke-width", "stroke-dasharray", "transform"},
     "text": {"x", "y", "text-anchor"},
+    "math": set(), "mi": {"mathvariant"}, "mn": set(), "mo": {"form", "rspace", "stretchy"},
+    "mrow": set(), "mspace": {"width"}, "mfrac": set(), "msqrt": set(), "msub": set(),
+    "msup": set(), "msubsup": set(),
 }  # fmt: skip
 VOID = {"meta"}
 

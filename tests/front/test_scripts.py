@@ -16,9 +16,10 @@ ROOMS = {
     "vendor": set[str](),
     "pages": set[str](),
     "shared": set[str](),
-    "robot": {"shared", "vendor"},
+    "typeset": {"shared"},
+    "robot": {"shared", "typeset", "vendor"},
     "catalogue": {"shared"},
-    "student": {"shared", "robot", "pages", "catalogue"},
+    "student": {"shared", "typeset", "robot", "pages", "catalogue"},
     "play": {"shared", "robot", "student"},
     "tutor": {"shared", "student"},
 }

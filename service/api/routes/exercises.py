@@ -7,9 +7,9 @@ from fastapi import APIRouter
 
 from service.api.document.openapi import refusals
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.statement import statement_html
 from service.catalogue import FeedbackLevel, least
 from service.contract.exercises import ExerciseList, ExerciseView
+from service.typeset.statement import statement_html
 
 
 def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
@@ -44,14 +44,14 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         parts = [
             {
                 **dict(part),
-                "prompt_html": statement_html(part.prompt),
+                "prompt_html": statement_html(part.prompt, exercise.symbols),
                 "shape": part.shape(exercise.reference),
             }
             for part in exercise.parts
         ]
         return {
             **fields,
-            "statement_html": statement_html(exercise.statement),
+            "statement_html": statement_html(exercise.statement, exercise.symbols),
             "figure": exercise.reference is not None,
             "feedback": least(exercise.feedback, feedback),
             "symbols": exercise.variables,

@@ -28,15 +28,17 @@ _LATEX: Final = re.compile(
 )
 _STARS: Final = {"*": "*", "ast": "*", "star": "⋆", "prime": "′", "'": "′", "circ": "°"}
 _INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
+# Before the name of a function: l cos φ, not lcos φ.
+_THIN_TIMES: Final = "<mo rspace='0.17em'>&#x2062;</mo>"
 _APPLY: Final = "<mo>&#x2061;</mo>"
 
 
 def to_mathml(node: Node) -> str:
     """Return ``node`` as one ``<math>`` element."""
-    return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{_row(node)}</math>'
+    return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{row(node)}</math>'
 
 
-def _row(node: Node) -> str:
+def row(node: Node) -> str:
     """Return ``node`` as one element inside ``<math>``."""
     match node:
         case Number(literal=literal):
@@ -46,7 +48,7 @@ def _row(node: Node) -> str:
         case SymbolNode(symbol):
             return _variable(symbol)
         case Call(function, arguments):
-            return _call(function, [_row(argument) for argument in arguments])
+            return _call(function, [row(argument) for argument in arguments])
         case Unit(operand, "deg"):
             return _mrow(f"{_at(operand, ATOM)}<mo>°</mo>")
         case Unit(operand):
@@ -60,16 +62,18 @@ def _row(node: Node) -> str:
 def _binary(node: Binary) -> str:
     operator, left, right = node.operator, node.left, node.right
     if operator == "^":
-        return f"<msup>{_at(left, ATOM)}{_row(right)}</msup>"
+        return f"<msup>{_at(left, ATOM)}{row(right)}</msup>"
     if operator == "/":
         if isinstance(left, Negation):
             # The sign of -π/2 is drawn before the fraction, as typed.
-            return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
-        return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
+            return _mrow(f"<mo>−</mo><mfrac>{row(left.operand)}{row(right)}</mfrac>")
+        return f"<mfrac>{row(left)}{row(right)}</mfrac>"
     if operator == "*":
-        times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
+        is_function = type(right) is Call or (type(right) is Binary and type(right.left) is Call)
+        invisible = _THIN_TIMES if is_function else _INVISIBLE_TIMES
+        times = "<mo>⋅</mo>" if begins_with_digit(right) else invisible
         return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
-    return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
+    return _mrow(f"{row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
 
 
 def _mrow(inside: str) -> str:
@@ -89,15 +93,16 @@ def _variable(symbol: Symbol) -> str:
     match = None if symbol.latex is None else _LATEX.fullmatch(symbol.latex)
     if match is None:
         stem, index = stem_and_index(symbol.name)
-        return _scripted(_identifier(stem), index, "")
+        return scripted(stem, index, "")
     below = match["below"] or match["below2"] or ""
-    return _scripted(_identifier(match["base"]), below, match["above"] or "")
+    return scripted(match["base"], below, match["above"] or "")
 
 
-def _scripted(base: str, below: str, above: str) -> str:
-    parts = [base, *(_identifier(_unbraced(part)) for part in (below, above) if part)]
+def scripted(base: str, below: str, above: str) -> str:
+    """Return the element of a name with an index and a superscript, each in LaTeX or plain text."""
+    parts = [_identifier(base), *(_identifier(_unbraced(part)) for part in (below, above) if part)]
     if len(parts) == 1:
-        return base
+        return parts[0]
     tag = "msubsup" if below and above else "msub" if below else "msup"
     return f"<{tag}>{''.join(parts)}</{tag}>"
 
@@ -127,7 +132,7 @@ def _call(function: str, arguments: list[str]) -> str:
 
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:
-    element = _row(node)
+    element = row(node)
     if not needs_brackets(node, place, signed=not first and _begins_with_sign(node)):
         return element
     return _mrow(f"<mo>(</mo>{element}<mo>)</mo>")

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from service.catalogue import Exercise
 from service.grading import Report, Verdict
 from service.grading.report import rounded_points
 from service.submissions.outline import SetExercise
@@ -25,7 +26,7 @@ class AnsweredExercise:
     """An assigned exercise, with the facts that formats need.
 
     ``worth`` is its points in a submission: the points of its parts, unless an assignment gives it
-    another weight.
+    another weight. ``symbols`` are the names that it declares, if they are known.
     """
 
     id: str
@@ -33,6 +34,7 @@ class AnsweredExercise:
     source: str
     parts: tuple[AnsweredPart, ...]
     worth: float
+    symbols: frozenset[str] = frozenset()
 
     @property
     def points(self) -> float:
@@ -44,7 +46,8 @@ def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExerc
     """Return an exercise for results. It is worth its own points, unless ``worth`` is given."""
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
-    return AnsweredExercise(exercise.id, exercise.title, exercise.source, parts, worth)
+    symbols = exercise.symbols if isinstance(exercise, Exercise) else frozenset()
+    return AnsweredExercise(exercise.id, exercise.title, exercise.source, parts, worth, symbols)
 
 
 def is_answered(report: Report) -> bool:

@@ -6,7 +6,7 @@ visible line and is escaped, unless it is HTML that the service itself made (``o
 
 import base64
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -22,6 +22,7 @@ from service.formats.shared.plain_text import (
     whole_percent,
     whole_score,
 )
+from service.typeset import formulas, names
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -52,8 +53,8 @@ def html_pieces(template: str, /, **values: object) -> Iterator[bytes]:
 def own_html(text: str) -> Markup:
     """Return HTML that templates do not escape. The service itself must have made it.
 
-    There are three such texts: style sheets, statements (``statement_html``) and formulas in MathML
-    (``formula_html``).
+    There are four such texts: style sheets, statements (``statement_html``), formulas in MathML
+    (``formula_html``, ``formula``) and texts with names in MathML (``typeset``).
     """
     return Markup(text)
 
@@ -68,6 +69,21 @@ def style_sheet(file: Path) -> StyleSheet:
 def lines(text: str) -> Markup:
     """Return the text as HTML with its line breaks; each line of it is visible."""
     return escape("\n".join(map(visible, text.split("\n"))))
+
+
+def typeset(text: object, symbols: Container[str] = ()) -> Markup:
+    """Return the visible text as HTML with its names in MathML."""
+    return own_html(names.typeset(visible(str(text)), symbols))
+
+
+def in_unicode(text: str, symbols: Container[str] = ()) -> str:
+    """Return the text with its names in Unicode, for the title of a page."""
+    return names.in_unicode(text, symbols)
+
+
+def formula(text: str) -> Markup:
+    """Return a formula in MathML, or as visible text if it is unreadable."""
+    return own_html(formulas.formula(visible(text)))
 
 
 @cache
@@ -87,7 +103,17 @@ def environment() -> "Environment":
         auto_reload=False,
         cache_size=-1,
     )
-    functions = (code_pieces, lines, number, percent, whole_percent, whole_score)
+    functions = (
+        code_pieces,
+        formula,
+        in_unicode,
+        lines,
+        number,
+        percent,
+        typeset,
+        whole_percent,
+        whole_score,
+    )
     made.filters |= {each.__name__: each for each in functions}
     return made
 

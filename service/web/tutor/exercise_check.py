@@ -7,7 +7,6 @@ from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from service.api.statement import statement_html
 from service.catalogue import (
     ID_ADVICE,
     CatalogueError,
@@ -19,6 +18,7 @@ from service.catalogue import (
 from service.catalogue.files.lines import line_of, value_lines
 from service.formats.shared.plain_text import number
 from service.submissions.file_content import MAX_TOML_DOTS
+from service.typeset.statement import statement_html
 
 # The largest exercise that comes with the program has 8 kB.
 MAX_CHARACTERS: Final = 64 * 1024
@@ -114,7 +114,7 @@ def _preview(exercise: Exercise) -> ExercisePreview:
     return ExercisePreview(
         exercise.title,
         exercise.source,
-        statement_html(exercise.statement),
+        statement_html(exercise.statement, exercise.symbols),
         parts,
         exercise_figure(exercise) if exercise.reference is not None else None,
     )

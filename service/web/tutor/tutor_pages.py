@@ -1,15 +1,14 @@
 """Tutors' pages as HTML."""
 
 from typing import Final
-from xml.etree.ElementTree import Element, fromstring, tostring
 
 from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
-from service.api.statement import formula_html
 from service.catalogue import Exercise, Robot
 from service.formats.shared.html_templates import own_html
 from service.solutions import solve
+from service.typeset.statement import formula_html
 from service.web.assets import Assets
 from service.web.pages import page
 
@@ -111,18 +110,4 @@ def _spoken(latex: str) -> str:
 
 def _formula(latex: str) -> Markup:
     """Return a formula of a model solution as MathML."""
-    formula = fromstring(formula_html(latex, display=latex.startswith(("\\begin", "A_"))))
-    for parent in list(formula.iter()):
-        _draw_brackets(parent)
-    return own_html(tostring(formula, encoding="unicode", method="html"))
-
-
-def _draw_brackets(parent: Element) -> None:
-    """Leave the brackets of matrices to the style sheet: few fonts have brackets that grow."""
-    for table in parent.findall("mtable"):
-        at = list(parent).index(table)
-        around = [parent[i] for i in (at - 1, at + 1) if 0 <= i < len(parent)]
-        if [each.text for each in around] == ["[", "]"]:
-            table.set("class", "bracketed")
-            for bracket in around:
-                parent.remove(bracket)
+    return own_html(formula_html(latex, display=latex.startswith(("\\begin", "A_"))))

@@ -55,6 +55,7 @@ declare namespace Front {
   };
   // What a part needs from its host.
   interface PartHost {
+    exercise?: Api.Exercise;
     service: PreviewService;
     previewer: import("../static/student/previewer.js").Previewer;
     history: {

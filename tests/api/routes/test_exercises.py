@@ -180,3 +180,12 @@ def test_readiness_counts_the_exercises(
     client: httpx.Client, catalogue: Mapping[str, Exercise]
 ) -> None:
     assert client.get("/readyz").json() == {"status": "ready", "exercises": len(catalogue)}
+
+
+def test_statements_and_prompts_are_typeset(client: httpx.Client) -> None:
+    shown = client.get("/v1/exercises/baxter-left-arm").json()
+    assert "<msub><mi>θ</mi><mn>2</mn></msub>" in shown["statement_html"]
+    assert shown["statement_html"].count("<li>") == 7
+    shown = client.get("/v1/exercises/dh-conditions").json()
+    # The prompt has a length of the exercise in its matrix.
+    assert "<mtd><mi>h</mi></mtd>" in shown["parts"][0]["prompt_html"]

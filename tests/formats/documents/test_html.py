@@ -29,8 +29,24 @@ def test_all_submissions_are_on_one_page() -> None:
 
 def test_each_cell_shows_its_entry_and_its_sign() -> None:
     told = re.sub(r"\s+", " ", read("wrong"))
-    assert "✓ l1 ✗ pi/2 ✓ 0 ✓ q2 0.42 / 2.53" in told
-    assert "row 2 alpha:" in told
+    assert "✓ l 1 ✗ π 2 ✓ 0 ✓ q 2 0.42 / 2.53" in told
+    assert "row 2 α :" in told
+
+
+class Prose(PageReader):
+    """Collects the texts outside of formulas and code."""
+
+    def handle_data(self, data: str) -> None:
+        if not {"math", "code", "style", "title"} & set(self.open):
+            self.texts.append(data)
+
+
+def test_names_and_entries_are_typeset() -> None:
+    page = document("html", *(cases()[name] for name in ("right", "wrong", "unreadable")))
+    plain = r"theta|alpha|\bpi\b|[αθπ]|(?<![A-Za-z0-9.])[A-Za-z][0-9](?![A-Za-z0-9])|\{\w\}|\*"
+    texts = [text for text in Prose(page).texts if "version" not in text]
+    assert any("is not right: compare" in text for text in texts)
+    assert [text for text in texts if re.search(plain, text)] == []
 
 
 def test_hostile_text_is_shown_as_text() -> None:

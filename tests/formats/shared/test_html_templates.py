@@ -17,6 +17,8 @@ TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
 # The functions that call `own_html`, with the HTML that each one passes.
 TRUSTED = {
     "formats/shared/html_templates.py style_sheet": "the style sheets of reports",
+    "formats/shared/html_templates.py typeset": "texts with names in MathML: names.typeset()",
+    "formats/shared/html_templates.py formula": "formulas in MathML: formulas.formula()",
     "web/pages.py _markdown": "statements and prompts: statement_html()",
     "web/tutor/tutor_pages.py _formula": "MathML of model solutions: formula_html()",
 }

@@ -3,7 +3,7 @@
 import { decimal, h, visible } from "../shared/dom.js";
 import { gapText, isClosed } from "./frames/gap.js";
 import { column } from "./motion.js";
-import { symbolName } from "./names.js";
+import { symbolName } from "../typeset/names.js";
 
 const STEPS = 400;
 const DEGREES = 180 / Math.PI;

@@ -18,6 +18,8 @@ const ATTRIBUTES = new Set(
     "columnalign scope start colspan rowspan").split(" "),
 );
 
+const CLASSES = new Set(["display", "maths", "matrix"]);
+
 /** @type {{ createHTML(text: string): string } | undefined} */
 const policy = /** @type {any} */ (globalThis).trustedTypes?.createPolicy("dh-grader", {
   createHTML: (/** @type {string} */ text) => text,
@@ -41,6 +43,7 @@ function copied(node) {
   }
   const element = document.createElementNS(node.namespaceURI, node.localName);
   for (const { name, value } of node.attributes) if (ATTRIBUTES.has(name)) element.setAttribute(name, value);
+  element.classList.add(...[...node.classList].filter((name) => CLASSES.has(name)));
   element.append(...children);
   return element;
 }

@@ -2,6 +2,7 @@
 
 import { h, number, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
+import { symbolName, typeset } from "../typeset/names.js";
 
 /**
  * Return the badges below the title: the convention, and for the shown parts the points; minutes are of all parts.
@@ -26,17 +27,19 @@ function badges({ conventions, minutes, parts }, shown) {
  */
 export function about(exercise, shown, level, robot) {
   const { title, summary, statement, statement_html: markup, symbols } = exercise;
+  const names = new Set(symbols.map((symbol) => symbol.name));
+  const maths = (/** @type {string} */ each) => typeset(visible(each), names);
   const header = h(
     "header",
     {},
-    h(level, { id: "title", part: "title" }, visible(title)),
-    summary ? h("p", { class: "quiet" }, visible(summary)) : null,
+    h(level, { id: "title", part: "title" }, ...typeset(visible(title))),
+    summary ? h("p", { class: "quiet" }, ...maths(summary)) : null,
     badges(exercise, shown),
   );
-  const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
+  const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, ...maths(each)));
   const terms = symbols.flatMap(({ name, unit, description }) => [
-    h("dt", {}, h("code", {}, visible(name))),
-    h("dd", {}, visible(unit ? `${description} (${unit})` : description)),
+    h("dt", {}, symbolName(name), " ", h("code", {}, visible(name))),
+    h("dd", {}, ...maths(unit ? `${description} (${unit})` : description)),
   ]);
   const head = h(level === "h1" ? "h2" : "h3", {}, "Symbols");
   return h(

@@ -16,6 +16,7 @@ import { Form } from "./form/form.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
 import { lock } from "./embedding/readonly.js";
+import { typeset } from "../typeset/names.js";
 import { RobotFigure } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
 import { answersIn, Store } from "../shared/storage.js";
@@ -249,7 +250,7 @@ export class DhExercise extends HTMLElement {
     this.main.replaceChildren(
       task,
       h("div", { class: "parts" }, this.form.tools.element, this.received, ...elements, this.bar.element),
-      h("p", { class: "quiet source", part: "source" }, `Source: ${visible(exercise.source)}`),
+      h("p", { class: "quiet source", part: "source" }, "Source: ", ...typeset(visible(exercise.source))),
     );
     this.main.hidden = false;
     lock(this.main, this.#parts, this.hasAttribute("readonly"));

@@ -2,6 +2,7 @@
 
 import { h, points } from "../shared/dom.js";
 import { Cell, SIGNS } from "../shared/cell.js";
+import { typeset } from "../typeset/names.js";
 
 /**
  * Return the rows of a layout in order (`rows`), and their tables (`elements`).
@@ -43,7 +44,7 @@ function gridElement(grid, part, owner, id, rows) {
     rows.push(view);
     body.append(view.element, view.notes);
   });
-  const caption = h("caption", { class: grid.title ? "named" : "aloud" }, grid.title || part.title);
+  const caption = h("caption", { class: grid.title ? "named" : "aloud" }, ...typeset(grid.title || part.title));
   const table = h("table", { class: grid.look }, caption, h("thead", { class: isMatrix ? "aloud" : null }, head), body);
   return h("div", { class: "scroll" }, table);
 }
@@ -85,7 +86,14 @@ export class RowView {
         owner,
       );
     });
-    const head = h("th", { scope: "row" }, h("span", {}, row.head), this.sign);
+    const aloud = h("span", { class: "aloud" }, row.head);
+    const head = h(
+      "th",
+      { scope: "row" },
+      h("span", { "aria-hidden": "true" }, ...typeset(row.head, new Set([row.head]))),
+      aloud,
+      this.sign,
+    );
     this.element = h("tr", {}, head, ...this.cells.map((cell) => cell.element), this.worth);
     this.list = h("ul");
     // The messages leave the first and the last column free, so that the brackets of a matrix go on beside them.

@@ -1,7 +1,8 @@
 // The messages of a report as list items.
 
-import { h, message, visible } from "../shared/dom.js";
+import { h, visible } from "../shared/dom.js";
 import { SIGNS } from "../shared/cell.js";
+import { typesetMessage } from "../typeset/names.js";
 
 /** @type {Record<string, string>} */
 const NAMES = { alpha: "α", theta: "θ" };
@@ -17,9 +18,11 @@ const EXPECTED = "expected";
  *   verdict?: Api.Verdict,
  *   repair?: ((suggestion: string) => HTMLElement) | null,
  *   action?: HTMLElement | null,
- * }} [options]
+ *   symbols?: Set<string>,
+ * }} [options] `symbols` are the names that the exercise declares
  */
-export function item(feedback, { place = "", verdict = "incorrect", repair = null, action = null } = {}) {
+export function item(feedback, { place = "", verdict = "incorrect", repair = null, action = null, symbols } = {}) {
+  const maths = (/** @type {string} */ each) => typesetMessage(each, symbols);
   const isError = feedback.severity === "error";
   const kind = isError ? verdict : "note";
   const badge = h(
@@ -29,17 +32,17 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
     isError ? h("span", { class: "aloud" }, verdict) : null,
   );
   const where = [place, feedback.places ? placesInWords(feedback.places) : ""].filter(Boolean).join(": ");
-  const text = h("p", {}, where ? h("strong", {}, visible(where), ": ") : null, ...message(feedback.message));
+  const text = h("p", {}, where ? h("strong", {}, ...maths(where), ": ") : null, ...maths(feedback.message));
   const correction = feedback.correction;
   if (correction) {
     text.append(
       " ",
       ...(correction.latex === undefined
-        ? message(correction.text)
+        ? maths(correction.text)
         : ["It should be ", h("code", {}, visible(correction.text)), "."]),
     );
   }
-  if (feedback.values) text.append(" ", h("span", { class: "quiet" }, visible(counterexample(feedback.values))));
+  if (feedback.values) text.append(" ", h("span", { class: "quiet" }, ...maths(counterexample(feedback.values))));
   if (feedback.suggestion && repair) text.append(" ", repair(feedback.suggestion));
   if (action) text.append(" ", action);
   return h("li", {}, badge, text);

@@ -1,6 +1,6 @@
 // A part of an exercise: its prompt, cells and report, and the line that shows how the current cell is read.
 
-import { h, points } from "../shared/dom.js";
+import { h, points, visible } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
 import { html } from "../shared/markup.js";
 import { cellName, item } from "./messages.js";
@@ -10,6 +10,7 @@ import { Pasting } from "./form/pasting.js";
 import { proposal } from "./form/proposals.js";
 import { ReadingLine } from "./form/reading_line.js";
 import { target, undoKey } from "../shared/keyboard.js";
+import { typeset } from "../typeset/names.js";
 
 export class PartView {
   changedAt = 0;
@@ -25,6 +26,7 @@ export class PartView {
   constructor(part, host, level) {
     this.part = part;
     this.host = host;
+    this.symbols = new Set(host.exercise?.symbols.map((symbol) => symbol.name));
     this.layout = layoutOf(part);
     this.grids = new PartGrids(this.layout, part, this);
     this.rows = this.grids.rows;
@@ -34,7 +36,7 @@ export class PartView {
     this.badge = h("span", { class: "badge", hidden: true });
     this.worth = h("span", { class: "points" }, `${points(0, part.points).split(" / ")[1]} points`);
     this.list = h("ul", { class: "messages", hidden: true });
-    this.line = new ReadingLine(part.title, (text, pause) => host.announce(text, pause));
+    this.line = new ReadingLine(part.title, this.symbols, (text, pause) => host.announce(text, pause));
     this.reading = this.line.element;
     const id = `part-${part.id}-title`;
     this.body = h(
@@ -57,7 +59,7 @@ export class PartView {
         "aria-controls": this.body.id,
         onclick: () => this.#fold(!this.body.hidden),
       },
-      part.title,
+      ...typeset(visible(part.title)),
     );
     this.element = h(
       "section",
@@ -309,7 +311,7 @@ export class PartView {
    * @param {Parameters<typeof item>[1]} options
    */
   #item(feedback, cells, options) {
-    const made = item(feedback, { ...options, action: proposal(this, feedback, cells) });
+    const made = item(feedback, { ...options, symbols: this.symbols, action: proposal(this, feedback, cells) });
     for (const cell of cells) cell.tell(made);
     return made;
   }
@@ -330,7 +332,8 @@ export class PartView {
 
   /** @param {Api.RowReport} row @param {Front.RowView} view */
   #items(row, view) {
-    const own = row.feedback.map((each) => item(each, { verdict: row.verdict }));
+    const { symbols } = this;
+    const own = row.feedback.map((each) => item(each, { verdict: row.verdict, symbols }));
     const ofCells = row.cells.flatMap((cell) => {
       const target = view.cells.find((each) => each.place.label === cell.label);
       const repair = target ? (/** @type {string} */ suggestion) => target.repair(suggestion) : null;

@@ -1,7 +1,8 @@
 // The line below the cells of a part: what cannot be read and why, and what the cell itself cannot show.
 
-import { h, message, visible } from "../../shared/dom.js";
+import { h, visible } from "../../shared/dom.js";
 import { mathml } from "../../shared/markup.js";
+import { typeset, typesetMessage } from "../../typeset/names.js";
 
 // The reading of a longer text may be cut off in its cell.
 const LONG = 40;
@@ -14,10 +15,12 @@ export class ReadingLine {
 
   /**
    * @param {string} title of the part
+   * @param {Set<string>} symbols that the exercise declares
    * @param {Front.PartHost["announce"]} announce
    */
-  constructor(title, announce) {
+  constructor(title, symbols, announce) {
     this.title = title;
+    this.symbols = symbols;
     this.announce = announce;
   }
 
@@ -37,14 +40,21 @@ export class ReadingLine {
     const reading = cell.text.trim() ? cell.reading : null;
     this.element.classList.toggle("unread", Boolean(reading?.error));
     if (!reading) return this.element.replaceChildren(HELP);
-    const name = h("strong", {}, `${cell.place.spoken || this.title}: `);
+    const name = h("strong", {}, ...typeset(visible(`${cell.place.spoken || this.title}: `)));
     if (reading.error) {
       const { suggestion, message: why } = reading.error;
-      this.element.replaceChildren(name, ...message(why), " ", suggestion ? cell.repair(suggestion) : "");
+      this.element.replaceChildren(
+        name,
+        ...typesetMessage(why, this.symbols),
+        " ",
+        suggestion ? cell.repair(suggestion) : "",
+      );
       if (aloud) this.announce(`Not read: ${why}`, 1200);
       return undefined;
     }
-    const notes = reading.notes?.flatMap((note) => [" ", h("span", { class: "quiet" }, ...message(note.message))]) ??
+    const notes = reading.notes?.flatMap((
+      note,
+    ) => [" ", h("span", { class: "quiet" }, ...typesetMessage(note.message, this.symbols))]) ??
       [];
     // The cell itself shows how it is read.
     const isLong = cell.text.length > LONG;
@@ -56,7 +66,9 @@ export class ReadingLine {
   /** Say something else until the next cell is entered. @param {string} text @param {Api.PreviewNote[]} [notes] */
   say(text, notes = []) {
     this.element.classList.remove("unread");
-    this.element.replaceChildren(...message([text, ...notes.map((note) => note.message)].join(" ")));
+    this.element.replaceChildren(
+      ...typesetMessage([text, ...notes.map((note) => note.message)].join(" "), this.symbols),
+    );
     this.#current = null;
     this.announce(text);
   }

@@ -1,5 +1,7 @@
 r"""Statements as HTML, from Markdown with LaTeX between dollar signs, which becomes MathML.
 
+Names in the text are typeset (``service/typeset/names.py``), and so is a fenced block ``matrix``.
+
 Authors of exercise files write text, never HTML: tags and scripts in it are shown as text. The
 library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so only the
 plain MathML of its result is kept.
@@ -11,6 +13,9 @@ from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from html import escape
 from typing import TYPE_CHECKING, Any, Final
+
+from service.typeset.formulas import matrix
+from service.typeset.names import in_one_line, unbound
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
@@ -36,15 +41,19 @@ _LINKS: Final = re.compile(r"(?:https?://|mailto:|#)", re.IGNORECASE)
 _TURNING: Final = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
+# The name of what the Markdown library passes to our rules.
+_SYMBOLS: Final = "symbols"
+
+
 @lru_cache(maxsize=256)
-def statement_html(statement: str) -> str:
+def statement_html(statement: str, symbols: frozenset[str] = frozenset()) -> str:
     """Return the statement as HTML that is safe in any page: no scripts, styles or pictures.
 
-    A formula that cannot be converted to MathML is shown as it is written.
+    ``symbols`` are the names that the exercise declares. A formula that cannot be converted to
+    MathML is shown as it is written.
     """
     shown = _TURNING.sub(lambda mark: f"[U+{ord(mark[0]):04X}]", statement)
-    html: str = _markdown().render(shown)
-    return html
+    return in_one_line(_markdown().render(shown, {_SYMBOLS: symbols}))
 
 
 def formula_html(latex: str, *, display: bool = False) -> str:
@@ -72,12 +81,26 @@ def _markdown() -> "MarkdownIt":
     )
     # A paragraph must not contain a block.
     markdown.add_render_rule("math_inline_double", _displayed)
+    markdown.add_render_rule("text", _text)
+    markdown.add_render_rule("fence", _fence)
     return markdown
 
 
 def _displayed(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object) -> str:
     formula = _formula(tokens[i].content.strip(), {"display_mode": True})
     return f'<span class="math display">{formula}</span>'
+
+
+def _text(_renderer: object, tokens: "Sequence[Token]", i: int, _: object, env: Any) -> str:
+    return unbound(tokens[i].content, env[_SYMBOLS])
+
+
+def _fence(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object) -> str:
+    """Return a block of code; a block with the word ``matrix`` and perhaps a name is a matrix."""
+    kind, _blank, name = tokens[i].info.strip().partition(" ")
+    text = tokens[i].content
+    shown = matrix(text, name.strip()) if kind == "matrix" else None
+    return shown or f"<pre><code>{escape(text)}</code></pre>\n"
 
 
 def _formula(latex: str, options: Mapping[str, Any]) -> str:
@@ -92,6 +115,11 @@ def _formula(latex: str, options: Mapping[str, Any]) -> str:
         root = None
     if root is None or not _plain(root):
         return f"<code>{escape(latex)}</code>"
+    for element in root.iter():
+        for before, table, after in zip(element, element[1:], element[2:], strict=False):
+            if table.tag == "mtable" and before.text == "[" and after.text == "]":
+                # The style sheet draws its brackets: few fonts have some that grow.
+                table.set("class", "matrix")
     return ET.tostring(root, encoding="unicode")
 
 

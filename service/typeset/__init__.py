@@ -1,0 +1,1 @@
+"""Texts and formulas as students read them: names and matrices in MathML."""

@@ -1,0 +1,136 @@
+r"""Typeset the names in a text: theta1 becomes θ with the index 1.
+
+`static/typeset/names.js` applies the same rules in a browser; the cases of
+`tests/typeset/names.json` hold for both. These are names:
+
+- the symbols that an exercise declares; ``a``, ``A`` and ``I`` in a longer text are English words,
+- Greek letters, also by their small English names: alpha, phi_2,
+- a letter with an index or a superscript: x0, z_i, L1, R_2^0, R^T,
+- a word with an index of one letter or of digits: Rot_z,
+- frames in braces: {0}, {i-1}, {e},
+- ``x``, ``y`` and ``z`` before "axis" or "axes".
+
+Whatever stands in a web address, after a backslash or in a longer word is none.
+"""
+
+import re
+from collections.abc import Container, Iterator
+from html import escape
+from typing import Final, NamedTuple
+
+from service.expressions.characters import greek
+from service.expressions.printing.mathml import scripted
+
+# These are also English words, or kinds of robots.
+_WORDS: Final = {"a", "A", "I", "delta", "iota"}
+_SPELLED: Final = [name for name in greek.LETTERS if name.islower() and name not in _WORDS]
+_INDEX: Final = rf"[0-9A-Za-z{greek.CLASS}]+|\{{[^{{}}\s]{{1,8}}\}}"
+_NAME: Final = re.compile(
+    r"\w+://\S+"
+    r"|(?<![\w\\@#$'’}])(?:"
+    r"(?P<frame>\{[0-9A-Za-z](?:[-−+]?[0-9])?\})"
+    rf"|(?P<stem>[A-Za-z{greek.CLASS}]+)(?P<digits>[0-9₀-₉]*)"
+    rf"(?:_(?P<below>{_INDEX}))?(?:\^(?P<above>{_INDEX}|\*))?"
+    r")(?![^\W²³]|[{@])"
+)
+# A hyphen that is a sign: before a number or a name, and after nothing that it could join.
+_SIGN: Final = re.compile(
+    rf"(?<![^\s(\[,;=])-(?=[0-9({greek.CLASS}]|[A-Za-z][0-9_]|(?:{'|'.join(_SPELLED)})(?![A-Za-z]))"
+)
+_AXIS: Final = re.compile(r"[xyz](?=[\s-]+ax[ei]s(?![A-Za-z]))")
+# A formula, an argument in brackets, and the signs that must stay in one line with them.
+_FORMULA: Final = r'(?:<span class="math inline">)?<math[^>]*>(?:(?!</math>).)*</math>(?:</span>)?'
+_RUN: Final = re.compile(
+    rf"[(\[−]+{_FORMULA}(?:\({_FORMULA})?[),.;:!?\]²³]*|{_FORMULA}(?:\({_FORMULA}[),.;:!?\]²³]*|[),.;:!?\]²³]+)"
+)
+_LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_PLAIN: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+
+
+class TypesetName(NamedTuple):
+    """A name in a text: a letter, a word or a frame, with an index and a superscript."""
+
+    stem: str
+    below: str = ""
+    above: str = ""
+
+    @property
+    def mathml(self) -> str:
+        """Return the element of the name."""
+        if not self.stem.startswith("{"):
+            return scripted(self.stem, self.below, self.above)
+        brace = '<mo stretchy="false">{}</mo>'.format
+        return f"<mrow>{brace('{')}{scripted(self.stem[1:-1], '', '')}{brace('}')}</mrow>"
+
+    @property
+    def unicode(self) -> str:
+        """Return the name for places without markup: θ₁."""
+        index = self.below.translate(_LOWERED) if self.below.isdigit() else f"_{self.below}"
+        above = f"^{self.above}" if self.above else ""
+        return f"{greek.LETTERS.get(self.stem, self.stem)}{index if self.below else ''}{above}"
+
+
+def typeset(text: str, symbols: Container[str] = ()) -> str:
+    """Return a text as HTML with its names in MathML; all else is escaped.
+
+    ``symbols`` are the names that the exercise declares.
+    """
+    return in_one_line("".join(_html(text, symbols)))
+
+
+def unbound(text: str, symbols: Container[str]) -> str:
+    """Return the HTML of a text that is only a part of a line."""
+    return "".join(_html(text, symbols))
+
+
+def in_one_line(html: str) -> str:
+    """Keep formulas of an HTML text in one line with the brackets and signs next to them."""
+    return _RUN.sub(lambda run: f'<span class="maths">{run[0]}</span>', html)
+
+
+def _html(text: str, symbols: Container[str]) -> Iterator[str]:
+    for piece in pieces(text, symbols):
+        yield escape(piece) if isinstance(piece, str) else f"<math>{piece.mathml}</math>"
+
+
+def in_unicode(text: str, symbols: Container[str] = ()) -> str:
+    """Return a text with its names in Unicode, for places without markup."""
+    found = pieces(text, symbols)
+    return "".join(piece if isinstance(piece, str) else piece.unicode for piece in found)
+
+
+def pieces(text: str, symbols: Container[str] = ()) -> Iterator[str | TypesetName]:
+    """Yield the names in a text, and the texts between them."""
+    text = _SIGN.sub("−", text)
+    done = 0
+    for match in _NAME.finditer(text):
+        if (name := _name(match, symbols)) is not None:
+            if match.start() > done:
+                yield text[done : match.start()]
+            yield name
+            done = match.end()
+    if done < len(text):
+        yield text[done:]
+
+
+def _name(match: re.Match[str], symbols: Container[str]) -> TypesetName | None:
+    """Return the name that a match is, or None if it is a word."""
+    if match["frame"]:
+        return TypesetName(match["frame"].replace("-", "−"))
+    stem, below, above = match["stem"], match["below"] or "", match["above"] or ""
+    if stem is None:
+        return None
+    digits = match["digits"].translate(_PLAIN)
+    below, above = (each.strip("{}").replace("-", "−") for each in (below, above))
+    name = TypesetName(stem, digits + below, above)
+    if len(stem) == 1 and (name.below or above or stem in greek.NAMES):
+        return name
+    if _AXIS.match(match.string, match.start()) and not name.below:
+        return name
+    if stem in _SPELLED or (stem in greek.LETTERS and name.below):
+        return name
+    if len(below) == 1 or below.isdigit():
+        return name
+    written = match[0].partition("^")[0]
+    is_word = written in _WORDS and written != match.string
+    return name if written in symbols and not is_word else None
