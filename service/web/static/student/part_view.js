@@ -4,6 +4,7 @@ import { h, message, points, visible } from "../shared/dom.js";
 import { gridsOf } from "./grid_view.js";
 import { layoutOf } from "./kinds.js";
 import { html, mathml } from "../shared/markup.js";
+import { lostItems } from "./lost_points.js";
 import { cellName, item } from "./messages.js";
 import { blockOf, pair, placedFrom } from "../shared/pasted_block.js";
 import { target, undoKey } from "../shared/keyboard.js";
@@ -319,6 +320,7 @@ export class PartView {
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
     }
+    items.push(...lostItems(report));
     this.list.replaceChildren(...items);
     this.list.hidden = items.length === 0;
     this.setVerdict(report.verdict);
