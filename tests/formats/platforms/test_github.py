@@ -62,7 +62,7 @@ def test_an_annotation_has_the_messages_of_its_part() -> None:
     assert zeros.startswith("Row 1 is worth little: ")
     assert pose.properties["title"] == "Pose of the end effector: 7 / 8 points"
     assert (total.name, total.properties["title"]) == ("error", "Not passed")
-    assert total.data == "11 / 16 points, 67.4 %. 80 % is needed to pass."
+    assert total.data == "11 / 16 points, 68.7 %. 80 % is needed to pass."
 
 
 def test_a_right_submission_has_only_a_notice() -> None:
