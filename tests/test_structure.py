@@ -28,7 +28,15 @@ PACKAGES = (
 # The packages of grading, in layers: each may import earlier layers, and packages of its own layer
 # if there is no cycle.
 GRADING_FLOORS = (
-    {"feedback", "formula_text", "misconception", "numerics", "report", "work_budget"},
+    {
+        "feedback",
+        "formula_text",
+        "lost_points",
+        "misconception",
+        "numerics",
+        "report",
+        "work_budget",
+    },
     {"reading"},
     {"part"},
     {"judging"},  # right or wrong; why it is wrong is diagnosis

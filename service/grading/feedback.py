@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from service.catalogue import FeedbackLevel
+from service.grading.lost_points import without_places
 from service.grading.report import (
     CellReport,
     Correction,
@@ -169,7 +170,7 @@ def _has_unexplained_cells(part: PartReport) -> bool:
 def _without_rows(report: PartReport) -> PartReport:
     """Return the mark of a part without rows, but with all messages on unreadable cells.
 
-    Those messages reveal nothing, and students need them.
+    Those messages reveal nothing, and students need them. Lost points have no places.
     """
     reading = tuple(
         replace(message, places=(Place(row.label, cell.label),))
@@ -177,7 +178,9 @@ def _without_rows(report: PartReport) -> PartReport:
         for cell in row.cells
         for message in cell.feedback
     )
-    return replace(report, rows=(), feedback=(*report.feedback, *reading))
+    lost = without_places(report.lost) if report.rows else report.lost
+    feedback = (*report.feedback, *reading)
+    return replace(report, rows=(), feedback=feedback, lost=lost, little_worth=None)
 
 
 # Notes that need no span: if several cells share one, it is shown once, without spans.

@@ -9,7 +9,7 @@ from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
 from service.grading.feedback import Finding, UnreadableAnswerError, parts_at_level
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
-from service.grading.judging.marks import has_earned, part_report, unjudged_report
+from service.grading.judging.marking.marks import has_earned, part_report, unjudged_report
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.kinds import KINDS
 from service.grading.numerics.samples import draw
@@ -135,7 +135,11 @@ class _Graded:
         It must have earned ``share`` of the points by content, in any marking, and be an arm with
         the robot's joints.
         """
-        if self.judged is None or self.chain is None or not has_earned(self.judged, share):
+        if (
+            self.judged is None
+            or self.chain is None
+            or not has_earned(self.part, self.judged, share)
+        ):
             return False
         return can_carry(self.chain, grading)
 

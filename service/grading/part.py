@@ -139,7 +139,8 @@ class Content:
     worth. With ``besides``, each group has a small worth besides its content cells. With ``equal``,
     all groups are worth the same. ``most`` is the largest number of cells that count, because a
     student's own choices may add content cells. With ``empty_is_wrong``, an empty cell costs as
-    much as a wrong one, so that leaving a cell empty gains nothing.
+    much as a wrong one, so that leaving a cell empty gains nothing. ``usual`` are the numbers of
+    rows and content cells of the reference, if those of an answer may differ.
     """
 
     known: tuple[tuple[bool, ...], ...]
@@ -148,6 +149,7 @@ class Content:
     equal: bool = False
     most: int | None = None
     empty_is_wrong: bool = False
+    usual: tuple[int, int] | None = None
 
     @property
     def count(self) -> int:

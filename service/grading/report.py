@@ -109,8 +109,35 @@ class RowReport:
 
 
 @dataclass(frozen=True, slots=True)
+class LostPoints:
+    """Points that a part has lost, and where: ``message`` follows "−0.5: ".
+
+    ``row`` and ``cells`` are labels; both are absent if the answer has lost them as a whole.
+    """
+
+    code: str
+    points: float
+    message: str
+    row: str | None = None
+    cells: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LittleWorth:
+    """The reason why rows of zeros are worth few points."""
+
+    rows: tuple[str, ...]
+    points: float
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
 class PartReport:
-    """One part: its rows share its points."""
+    """One part: its rows share its points.
+
+    The points of ``lost`` sum to ``max_points`` - ``points``. It is empty in reports of versions
+    that did not have it. ``little_worth`` is present if a right row of zeros earned little.
+    """
 
     part: str
     kind: str
@@ -120,6 +147,8 @@ class PartReport:
     follow_through: bool
     rows: tuple[RowReport, ...]
     feedback: tuple[Feedback, ...] = ()
+    lost: tuple[LostPoints, ...] = ()
+    little_worth: LittleWorth | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,8 +34,8 @@ def test_matrices_that_follow_from_a_wrong_table_earn_points(scara: Exercise) ->
     links = [A1, a2_with("a1"), A3, A4]
     position = ["a1*c1 + a1*c12", "a1*s1 + a1*s12", "-d3 - d4"]
     parts = graded(scara, table=wrong, links=links, pose=pose_with("a1"), position=position)
-    # One of the four content cells is wrong; each row is worth a fifth more.
-    assert parts["table"].points == pytest.approx(8 * 3.8 / 4.8, abs=1e-5)
+    # One of the four content cells is wrong: 1.75 points each, and each row 0.25.
+    assert parts["table"].points == 8 - 1.75
     for name in ("links", "pose", "position"):
         assert parts[name].points == parts[name].max_points, name
         assert parts[name].follow_through, name
@@ -100,7 +100,7 @@ def test_no_part_follows_from_a_chain_with_lost_freedom(scara: Exercise) -> None
         list("0001"),
     ]
     parts = graded(scara, table=bare, pose=pose)
-    assert parts["table"].points == pytest.approx(8 * 0.8 / 4.8, abs=1e-5)
+    assert parts["table"].points == 4 * 0.25
     assert not parts["pose"].follow_through
     assert parts["pose"].points <= 4
 

@@ -211,7 +211,7 @@ def test_a_row_that_is_not_an_object_earns_nothing(
     answer = table(EXACT.rows(STANFORD))
     answer["rows"][2] = row
     found = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
-    assert [row.points for row in found.rows] == about(points(STANFORD, 12, [2] * 4))
+    assert [row.points for row in found.rows] == about(points(STANFORD, [2] * 4))
     assert found.rows[2].verdict in (Verdict.UNREADABLE, Verdict.MISSING)
 
 

@@ -53,9 +53,9 @@ def test_a_row_is_worth_its_content_cells(
     for i, j in wrong:
         rows[i][j] += " + 0.321"
     report = graded_table(given_frames[robot.exercise], rows)
-    expected = points(robot, report.max_points, [i for i, _ in wrong])
+    expected = points(robot, [i for i, _ in wrong])
     assert [row.points for row in report.rows] == about(expected)
-    assert [row.max_points for row in report.rows] == about(points(robot, report.max_points, []))
+    assert [row.max_points for row in report.rows] == about(points(robot, []))
     assert report.points == pytest.approx(sum(expected), abs=1e-5)
     assert (report.points == report.max_points) is (not wrong)
     for i, row in enumerate(report.rows):
@@ -90,12 +90,14 @@ def test_a_wrong_answer_is_gradable(given_frames: Mapping[str, Exercise]) -> Non
 UNREAD = [("a1", "0", "0", "q1"), ("a2", "0", "(", "q2")]
 ONE_WRONG = [("a1", "0", "0", "q1"), ("a1", "0", "0", "q2")]
 TOO_MANY = [*RIGHT, ("1", "1", "1", "1")]
-# By hand: a1 and a2 are the content cells of the eight; each row is worth a fifth more, which is
-# the cost of the unread 0.
+# By hand: a1 and a2 are the content cells of the eight. Of 7 points, 2.4 units, a unit is 2.92,
+# rounded to 3 points; each row has half a point more. The unread 0 costs a fifth of 3 points,
+# rounded to 0.5. By cells, 28 quarters for 8 cells: every other cell gets one more, a point; a2 and
+# its d are among them.
 MARKINGS = {
-    "content": {"wrong": 7 * 1.4 / 2.4, "unread": 7 * 2.2 / 2.4, "extra": 7 * 1.4 / 2.4},
-    "cells": {"wrong": 7 * 7 / 8, "unread": 7 * 7 / 8, "extra": 7 * 1 / 2},
-    "rows": {"wrong": 7 * 1 / 2, "unread": 7 * 1 / 2, "extra": 7 * 1 / 2},
+    "content": {"wrong": 4.0, "unread": 6.5, "extra": 4.0},
+    "cells": {"wrong": 6.0, "unread": 6.0, "extra": 3.5},
+    "rows": {"wrong": 3.5, "unread": 3.5, "extra": 3.5},
     "whole": {"wrong": 0.0, "unread": 0.0, "extra": 0.0},
 }
 
@@ -115,12 +117,13 @@ def test_a_part_says_how_it_is_marked(
         assert (report.verdict is Verdict.PARTIAL) is (0 < expected < 7), name
 
 
-def test_thirds_add_up_without_rounding_errors(make_exercise: Callable[[str], Exercise]) -> None:
+def test_parts_of_a_tenth_of_a_point_add_up(make_exercise: Callable[[str], Exercise]) -> None:
     exercise = make_exercise(STRICT.replace("points = 1\n", "points = 0.1\n"))
     report = handed_in(exercise, {"again": table(RIGHT), "table": table(RIGHT)})
     assert (report.points, report.score) == (7.1, 1.0)
     one_off = handed_in(exercise, {"again": table([RIGHT[0], ("a2", "0", "1", "q2")])})
-    assert part(one_off, "again").points == 0.058333
+    # Ten hundredths for 2.4 units: a unit costs four.
+    assert part(one_off, "again").points == 0.06
 
 
 ROTATION = """

@@ -38,7 +38,7 @@ def check(slip: Slip, exercise: Exercise) -> None:
     # An empty cell costs as much as a wrong one, an unreadable cell only its worth.
     wrong = slip.verdict is not Verdict.UNREADABLE
     wrong = wrong or is_known(slip.robot, slip.row, slip.column)
-    expected = points(slip.robot, report.max_points, [slip.row] * wrong, [slip.row] * (not wrong))
+    expected = points(slip.robot, [slip.row] * wrong, [slip.row] * (not wrong))
     assert report.verdict is Verdict.PARTIAL, slip
     assert [row.points for row in report.rows] == about(expected), slip
     assert report.points == pytest.approx(sum(expected), abs=1e-5), slip

@@ -14,7 +14,7 @@ from rich.text import Text
 from service.formats.shared.aligned import AlignedColumn, AlignedTable, StyledText
 from service.formats.shared.class_summary import ClassSummary, pass_line, result_line
 from service.formats.shared.graded import GradedSubmission, is_answered
-from service.formats.shared.messages import SIGNS, Message, messages
+from service.formats.shared.messages import SIGNS, Message, marks, messages
 from service.formats.shared.plain_text import percent, points, visible
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import PartReport, Report, Severity, Verdict
@@ -29,6 +29,7 @@ _COLOURS: Final[Mapping[Verdict, str]] = {
 # More submissions than this get one line each instead of a report.
 _IN_FULL: Final = 8
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
+_ASCII_MARKS: Final = str.maketrans({"−": "-", "α": "alpha", "θ": "theta"})
 # Longer lines are hard to read however wide the terminal is.
 _WIDEST: Final = 100
 _INDENT: Final = 2
@@ -138,6 +139,7 @@ class _Page:
         if any(cell.read for row in part.rows for cell in row.cells):
             self._print(self._read(part).on(self._console, self._width, _INDENT))
         lines = [line for message in messages(part) for line in self._message(message)]
+        lines += [line for text in marks(part) for line in self._marks(text)]
         self._console.print(_as_they_are(lines, self._console))
 
     def _table(self, part: PartReport) -> AlignedTable:
@@ -187,6 +189,12 @@ class _Page:
         yield Text.assemble(first, *lines[:1])
         for line in lines[1:]:
             yield Text.assemble(" " * first.cell_len, line)
+
+    def _marks(self, text: str) -> Iterator[Text]:
+        """Yield the lines of a text on marks, indented like the messages."""
+        shown = Text(text.translate(_ASCII_MARKS) if self._ascii else text)
+        for line in shown.wrap(self._console, self._width - 2 * _INDENT):
+            yield Text.assemble(" " * 2 * _INDENT, line)
 
     def _mark(self, verdict: Verdict) -> StyledText:
         sign = SIGNS[verdict]

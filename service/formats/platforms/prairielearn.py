@@ -43,7 +43,7 @@ def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
     lines = (
         line if each.report is None else f"{each.name}: {line}"
         for each in results
-        for line in each.lines()
+        for line in each.message_lines()
     )
     return {"gradable": False, "score": 0.0, "format_errors": list(dict.fromkeys(lines))}
 

@@ -39,7 +39,8 @@ def part_details(result: PartResult) -> str:
     if report is None:
         return f"- {escaped(shortened(result.file.problem, LONGEST))}\n"
     blocks = [_table(result, report.rows)] if report.rows else []
-    if items := list(first_lines(map(_item, result.messages()), MESSAGES_TOLD)):
+    items = list(first_lines(map(_item, result.messages()), MESSAGES_TOLD))
+    if items := [*items, *map(escaped, result.marks())]:
         blocks.append("".join(f"- {item}\n" for item in items))
     return "\n".join(blocks)
 

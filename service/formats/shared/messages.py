@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from service.formats.shared.plain_text import visible
+from service.formats.shared.plain_text import number, visible
 from service.grading import (
     Correction,
     Feedback,
@@ -15,6 +15,7 @@ from service.grading import (
     Verdict,
 )
 from service.grading.feedback import EXPECTED, YOURS
+from service.grading.lost_points import NO_ANSWER, NOT_READ
 from service.grading.report import messages_of
 
 # The sign of each verdict.
@@ -62,6 +63,21 @@ def messages(part: PartReport) -> Iterator[Message]:
         yield _message(nothing, (), Verdict.MISSING, ())
     for feedback, places, verdict in messages_of(part):
         yield _message(feedback, places, verdict, part.rows)
+
+
+def marks(part: PartReport, weight: float = 1.0) -> list[str]:
+    """Return a line with the lost points and their places, such as ``−0.5: α in row 2``.
+
+    A second line says why a row of zeros earned little. A message already says that an answer is
+    missing or cannot be read.
+    """
+    lost = [
+        f"−{number(each.points * weight)}: {each.message}"
+        for each in part.lost
+        if each.code not in (NO_ANSWER, NOT_READ)
+    ]
+    notes = [part.little_worth.message] if part.little_worth else []
+    return [visible(line) for line in filter(None, ["; ".join(lost), *notes])]
 
 
 def _message(

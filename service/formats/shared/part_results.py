@@ -6,7 +6,7 @@ from itertools import chain, count
 from typing import Final
 
 from service.formats.shared.graded import AnsweredPart, GradedFile, GradedSubmission
-from service.formats.shared.messages import Message, messages
+from service.formats.shared.messages import Message, marks, messages
 from service.formats.shared.plain_text import first_lines, points, shortened, visible
 from service.grading import PartReport, RowReport, Verdict
 from service.grading.report import rounded_points
@@ -57,12 +57,21 @@ class PartResult:
         """Return the messages on the part."""
         return messages(self.report) if self.report else iter(())
 
-    def lines(self) -> list[str]:
+    def marks(self) -> list[str]:
+        """Return lines with the lost points and their places."""
+        lines = marks(self.report, self.file.weight) if self.report else []
+        return [shortened(line, LONGEST) for line in lines]
+
+    def message_lines(self) -> list[str]:
         """Return a line for each message; their length and number are limited."""
         if self.report is None:
             return [shortened(visible(self.file.problem), LONGEST)]
         lines = (shortened(f"{each.label} {each.line}", LONGEST) for each in self.messages())
         return list(first_lines(lines, MESSAGES_TOLD))
+
+    def lines(self) -> list[str]:
+        """Return the lines of the messages, then those of the lost points."""
+        return [*self.message_lines(), *self.marks()]
 
 
 def part_results(submission: GradedSubmission) -> list[PartResult]:

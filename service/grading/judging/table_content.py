@@ -36,13 +36,15 @@ def table_content(
     task = _Task(exercise.version, part.id, convention, part, exercise)
     # Unreadable cells alone do not increase the cost of a unit.
     is_spoiled = part.frames == "free" and bool(judgement.wrong_as_read or judgement.empty)
+    most = _fewest(task) if is_spoiled else None
     if not judgement.roles:
         content = _of_reference(task)
-        return replace(content, most=_fewest(task)) if is_spoiled else content
+        return replace(content, most=most) if is_spoiled else content
     joints = [judged.joint for judged in judgement.rows]
     expected = np.array([judged.expected for judged in judgement.rows])
     known = _differs_from_lazy(expected, joints, grading)
-    return of_rows(known, _fewest(task) if is_spoiled else None, empty_is_wrong=True)
+    usual = _of_reference(replace(task, convention=exercise.robot.convention)).usual
+    return replace(of_rows(known), most=most, empty_is_wrong=True, usual=usual)
 
 
 def _differs_from_lazy(
@@ -73,7 +75,11 @@ def _of_reference(task: _Task) -> Content:
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)
-    return of_rows(_differs_from_lazy(table, joints, grading), empty_is_wrong=True)
+    content = of_rows(_differs_from_lazy(table, joints, grading))
+    usual: tuple[int, int] | None = (len(content.known), content.count)
+    if task.convention != task.exercise.robot.convention:
+        usual = _of_reference(replace(task, convention=task.exercise.robot.convention)).usual
+    return replace(content, empty_is_wrong=True, usual=usual)
 
 
 def _own_grading(exercise: Exercise) -> Grading:

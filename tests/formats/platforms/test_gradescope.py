@@ -23,7 +23,7 @@ def test_each_part_is_a_test_that_shows_its_rows() -> None:
     )  # fmt: skip
     lines = table["output"].splitlines()
     assert lines[0] == "| row | a | alpha | d | theta | points |"
-    assert lines[3].startswith("| 2 | ✓ | ✗ | ✓ | ✓ | 0.42 / 2.53 |")
+    assert lines[3].startswith("| 2 | ✓ | ✗ | ✓ | ✓ | 0.5 / 2.5 |")
     assert any(line.startswith("- ✗ **row 2 alpha:** ") for line in lines)
     # One wrong sign of four entries in the rotation, which is half of the 8 points.
     assert pose["score"] == 7.0
@@ -47,8 +47,8 @@ def test_exercises_of_an_assignment_are_weighted() -> None:
         ("Other arm: Table", 0.0, 1.0),
     ]
     assert result["score"] == 3.0
-    # The first row has 0.421053 of the exercise's 16 points, and these count 3.
-    assert "| 1 | ✓ | ✓ | ✓ | ✓ | 0.08 / 0.08 |" in result["tests"][0]["output"]
+    # The first row has 0.5 of the exercise's 16 points, and these count 3.
+    assert "| 1 | ✓ | ✓ | ✓ | ✓ | 0.09 / 0.09 |" in result["tests"][0]["output"]
 
 
 def test_the_visibility_is_written() -> None:

@@ -15,7 +15,7 @@ from tests.grading.support.submitting import (
     part,
     table,
 )
-from tests.grading.support.worth import about, points, worth_of_rows
+from tests.grading.support.worth import UNIT, about, points
 
 NOTHING: Row = ("0", "0", "0", "0")
 
@@ -46,7 +46,7 @@ def test_a_missing_row_costs_only_that_row(
     expected = [Verdict.CORRECT] * len(robot.rows)
     expected[missing] = Verdict.MISSING
     assert verdicts(report) == expected
-    kept = points(robot, report.max_points, [missing] * 4)
+    kept = points(robot, [missing] * 4)
     assert [row.points for row in report.rows] == about(kept)
     label = robot.labels[missing]
     assert codes(report) == ["missing_tool_row" if label == "e" else "missing_row"]
@@ -63,8 +63,7 @@ def test_an_extra_row_costs_as_much_as_a_wrong_cell(
     report = graded_table(given_frames[STANFORD.exercise], rows)
     assert verdicts(report) == [Verdict.CORRECT] * 6
     assert report.verdict is Verdict.PARTIAL
-    worth = sum(worth_of_rows(STANFORD))
-    assert report.points == pytest.approx(12 * (worth - 1) / worth, abs=1e-5)
+    assert report.points == 12 - UNIT[STANFORD.exercise]
     assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
     assert codes(report) == ["extra_row"]
     assert f"Row {place + 1} " in report.feedback[0].message
@@ -96,8 +95,7 @@ def test_twelve_rows_are_read_and_thirteen_are_not(given_frames: Mapping[str, Ex
     wrong: Row = ("1", "1", "1", "1")
     twelve = graded_table(exercise, [*EXACT.rows(STANFORD), *[wrong] * 6])
     assert verdicts(twelve) == [Verdict.CORRECT] * 6
-    worth = sum(worth_of_rows(STANFORD))
-    assert twelve.points == pytest.approx(12 * (worth - 6) / worth, abs=1e-5)
+    assert twelve.points == 12 - 6 * UNIT[STANFORD.exercise]
     assert codes(twelve).count("extra_row") == 6
     thirteen = graded_table(exercise, [*EXACT.rows(STANFORD), *[NOTHING] * 7])
     assert (thirteen.verdict, thirteen.rows) == (Verdict.UNREADABLE, ())

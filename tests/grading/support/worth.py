@@ -18,18 +18,34 @@ def is_known(robot: Robot, row: int, column: int) -> bool:
     return cell != "0" and not cell.endswith("*")
 
 
-def points(
-    robot: Robot, most: float, wrong: Iterable[int], unread: Iterable[int] = ()
-) -> list[float]:
-    """Return the points of each row of a table worth ``most``.
+# Computed by hand: the points of a content cell, of each row besides its cells, and of the unread
+# cells of a row that are not content cells. A cell is worth the part's points, divided by the sum
+# of `worth_of_rows`, as a whole number of quarters; the rows share what is left.
+UNIT = {"stanford-arm": 1.75, "scara": 1.75, "rrrp": 1.25, "planar-rrr": 2.0}
+BESIDES = {
+    "stanford-arm": [0.25] * 6,
+    "scara": [0.25] * 4,
+    "rrrp": [0.5, 0.5, 0.5, 0.25],
+    "planar-rrr": [0.5] * 4,
+}
+UNREAD = {"stanford-arm": 0.25, "scara": 0.25, "rrrp": 0.25, "planar-rrr": 0.5}
+
+
+def points(robot: Robot, wrong: Iterable[int], unread: Iterable[int] = ()) -> list[float]:
+    """Return the points of each row of a table.
 
     ``wrong`` is the row of each cell that costs a unit, ``unread`` the rows in which other cells
     were not read.
     """
-    wrong, unread = list(wrong), set(unread)
-    rows = worth_of_rows(robot)
-    kept = [max(0.0, worth - wrong.count(i) - 0.2 * (i in unread)) for i, worth in enumerate(rows)]
-    return [most * each / sum(rows) for each in kept]
+    wrong, unread, name = list(wrong), set(unread), robot.exercise
+    worth = [
+        BESIDES[name][i] + UNIT[name] * sum(is_known(robot, i, j) for j in range(4))
+        for i in range(len(robot.rows))
+    ]
+    return [
+        max(0.0, each - UNIT[name] * wrong.count(i) - UNREAD[name] * (i in unread))
+        for i, each in enumerate(worth)
+    ]
 
 
 def about(values: Sequence[float]) -> object:

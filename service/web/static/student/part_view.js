@@ -3,6 +3,7 @@
 import { h, points, visible } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
 import { html } from "../shared/markup.js";
+import { lostItems } from "./lost_points.js";
 import { cellName, item } from "./messages.js";
 import { PartGrids } from "./form/part_grids.js";
 import { pasteBox } from "./form/paste_box.js";
@@ -296,6 +297,7 @@ export class PartView {
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
     }
+    items.push(...lostItems(report));
     this.list.replaceChildren(...items);
     this.list.hidden = items.length === 0;
     this.setVerdict(report.verdict);

@@ -1,9 +1,9 @@
-"""Estimate the units of marks that wrong cells lose (``judging.marks`` computes the marks)."""
+"""Estimate the units of marks that wrong cells lose (``judging.marking`` computes the marks)."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.judging.marks import BESIDES
+from service.grading.judging.marking.worth import BESIDES
 from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import SAME_CONTENT
 from service.grading.reading.tables.table import IS_ANGLE

@@ -2,6 +2,7 @@
 
 import { h, points, visible } from "../../shared/dom.js";
 import { cellsOf } from "./answer_cells.js";
+import { lostItems } from "../../student/lost_points.js";
 import { item } from "../../student/messages.js";
 import { PartView } from "../../student/part_view.js";
 import { Previewer } from "../../student/previewer.js";
@@ -142,11 +143,13 @@ export class RecordedReport {
  *
  * @param {Api.PartReport} report
  */
-function bare({ part, verdict, points: earned, max_points: most, feedback, rows }) {
+function bare(report) {
+  const { part, verdict, points: earned, max_points: most, feedback, rows } = report;
   const messages = [
     ...feedback,
     ...rows.flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]),
   ];
+  const items = [...messages.map((each) => item(each, { verdict })), ...lostItems(report)];
   return h(
     "section",
     { class: "card part" },
@@ -158,7 +161,7 @@ function bare({ part, verdict, points: earned, max_points: most, feedback, rows 
       h("span", { class: "points" }, `${points(earned, most)} points`),
     ),
     h("p", { class: "quiet" }, "The exercise no longer has this part."),
-    h("ul", { class: "messages", hidden: !messages.length }, ...messages.map((each) => item(each, { verdict }))),
+    h("ul", { class: "messages", hidden: !items.length }, ...items),
   );
 }
 

@@ -1,0 +1,265 @@
+"""The points of a part, from the verdicts on its cells and the worth of the cells.
+
+``docs/marks.md`` explains the rules to students and tutors, with an example.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from service.catalogue import PartSpec
+from service.catalogue.files.fields import Marking
+from service.grading.judging.marking.worth import BESIDES, CellWorth, apportioned, worth_of
+from service.grading.lost_points import (
+    ALL_OR_NOTHING,
+    NO_ANSWER,
+    NO_MOTION,
+    NOT_READ,
+    OUTSIDE,
+    WHOLE,
+    little_worth,
+    lost_in_row,
+    lost_points,
+)
+from service.grading.part import Content, Judged
+from service.grading.report import (
+    Feedback,
+    LittleWorth,
+    LostPoints,
+    PartReport,
+    RowReport,
+    Verdict,
+    combined,
+    rounded_points,
+)
+
+# The verdicts on the cells of each row.
+_Verdicts = Sequence[Sequence[Verdict]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Loss:
+    """Steps that were lost, by a row's index or by a code for the whole answer."""
+
+    place: int | str
+    steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Marks:
+    """The steps that an answer has lost: in all, place by place, and by row."""
+
+    worth: CellWorth
+    lost: int
+    losses: tuple[_Loss, ...]
+    rows: tuple[int, ...]
+
+
+def part_report(part: PartSpec, judged: Judged) -> PartReport:
+    """Return the report on a judged part, with the points of its rows."""
+    marks = _marks(judged, part.marking, part.points)
+    worth = marks.worth
+    rows = tuple(
+        _with_points(row, worth.points(possible), worth.points(possible - lost))
+        for row, possible, lost in zip(judged.rows, worth.rows, marks.rows, strict=True)
+    )
+    points = rounded_points(worth.points(worth.total - marks.lost))
+    verdict = combined(row.verdict for row in rows)
+    if verdict is Verdict.CORRECT and judged.slips:
+        verdict = Verdict.PARTIAL
+    return PartReport(
+        part=part.id,
+        kind=part.kind,
+        verdict=verdict if points else _without_points(verdict, rows),
+        points=points,
+        max_points=part.points,
+        follow_through=False,
+        rows=rows,
+        feedback=judged.feedback,
+        lost=tuple(_told(loss, marks, rows) for loss in marks.losses),
+        little_worth=_little_worth(judged.content, part, rows) if marks.lost else None,
+    )
+
+
+def unjudged_report(
+    part: PartSpec, verdict: Verdict, feedback: tuple[Feedback, ...] = ()
+) -> PartReport:
+    """Return the report on a part without an answer, or with an unreadable one."""
+    code = NO_ANSWER if verdict is Verdict.MISSING else NOT_READ
+    lost = (lost_points(code, part.points),)
+    return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback, lost)
+
+
+def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
+    """True if an answer has earned at least ``share`` (0 to 1) of the points by content.
+
+    For a rotation with a position, it must be more than ``share``: later parts that follow from a
+    right rotation alone are easy.
+    """
+    marks = _marks(judged, "content", part.points)
+    earned, least = marks.worth.total - marks.lost, share * marks.worth.total
+    return earned > least if judged.content.equal else earned >= least
+
+
+def steps_lost(part: PartSpec, judged: Judged) -> int:
+    """Return the steps (quarters or hundredths of a point) that an answer loses."""
+    return _marks(judged, part.marking, part.points).lost
+
+
+def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
+    """Return the marks of an answer to a part of ``points`` points."""
+    if judged.is_right:
+        return _of_right(judged.content, marking, points)
+    worth = worth_of(judged.content, marking, points)
+    verdicts = [[cell.verdict for cell in row.cells] for row in judged.rows]
+    charges = _charges(worth, verdicts, marking)
+    losses = _losses(judged, marking, points, worth, charges)
+    lost = sum(loss.steps for loss in losses)
+    return _Marks(worth, lost, losses, tuple(_by_row(lost, charges, worth)))
+
+
+@lru_cache(maxsize=1024)
+def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
+    """Return the marks if everything is right; most answers to a part have these."""
+    worth = worth_of(content, marking, points)
+    return _Marks(worth, 0, (), (0,) * len(worth.rows))
+
+
+def _losses(
+    judged: Judged, marking: Marking, points: float, worth: CellWorth, charges: list[int]
+) -> tuple[_Loss, ...]:
+    """Return what a wrong answer has lost, place by place."""
+    if judged.stands_still:
+        return (_Loss(NO_MOTION, worth.total),)
+    if marking == "whole":
+        return (_Loss(ALL_OR_NOTHING, worth.total),)
+    losses = [_Loss(i, steps) for i, steps in enumerate(charges) if steps]
+    lost = sum(charges)
+    if marking == "content" and math.isfinite(judged.lost):
+        # Another valid table may lose less than the likeliest one, which the verdicts are from. Its
+        # ``lost`` counts BESIDES for each row that is wrong as a whole.
+        fifths = round(judged.lost / BESIDES)
+        units, rows = divmod(fifths, round(1 / BESIDES))
+        lost = min(lost, units * worth.unit + rows * worth.least_besides)
+    if judged.slips:
+        losses.append(_Loss(OUTSIDE, judged.slips * worth.slip))
+        lost += judged.slips * worth.slip
+    lost = min(lost, worth.total)
+    if judged.whole_cost is not None:
+        beside = () if judged.beside is None else _marks(judged.beside, marking, points).losses
+        whole = [_Loss(WHOLE, max(1, round(judged.whole_cost * worth.total))), *beside]
+        if (once := sum(loss.steps for loss in whole)) < lost:
+            losses, lost = whole, once
+    if judged.at_most is not None:
+        lost = max(lost, _marks(judged.at_most, marking, points).lost)
+    if not losses:
+        return (_Loss(OUTSIDE, lost),) if lost else ()
+    shares = apportioned(lost, [loss.steps for loss in losses])
+    pairs = zip(losses, shares, strict=True)
+    return tuple(_Loss(loss.place, steps) for loss, steps in pairs if steps)
+
+
+def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
+    """Return the cost of the cells of each row that are not right.
+
+    A group of cells cannot lose more than it is worth. An unread content cell costs a unit; all
+    other unread cells of a row cost a fifth together. An empty cell of a table costs as much as a
+    wrong one.
+    """
+    if marking == "rows":
+        pairs = zip(worth.rows, verdicts, strict=True)
+        return [0 if _is_right(row) else max(1, steps) for steps, row in pairs]
+    found: dict[int, dict[int, int]] = {}
+    content = worth.content
+    for i, row in enumerate(verdicts):
+        if _is_right(row):
+            continue
+        cells = zip(content.known[i], content.groups[i], worth.cells[i], row, strict=True)
+        unread = set()
+        for known, group, steps, verdict in cells:
+            if verdict is Verdict.CORRECT:
+                continue
+            is_wrong = verdict is Verdict.INCORRECT or (
+                content.empty_is_wrong and verdict is Verdict.MISSING
+            )
+            charged = found.setdefault(group, {})
+            if known or is_wrong:
+                cost = steps if known and not worth.is_fixed else worth.units[group]
+                charged[i] = charged.get(i, 0) + cost
+            else:
+                unread.add(group)
+        for group in unread:
+            found[group][i] = found[group].get(i, 0) + worth.fifth
+    charges = [0] * len(verdicts)
+    for group, rows in found.items():
+        costs = list(rows.values())
+        limited = apportioned(min(sum(costs), worth.groups[group]), costs)
+        for i, steps in zip(rows, limited, strict=True):
+            charges[i] += steps
+    return charges
+
+
+def _is_right(row: Sequence[Verdict]) -> bool:
+    return all(verdict is Verdict.CORRECT for verdict in row)
+
+
+def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
+    """Return the steps that each row loses; none loses more than it is worth.
+
+    A row loses what its cells cost. If it is worth less, the other rows of its group lose the rest,
+    then those that have lost something, then all.
+    """
+    rows = apportioned(min(lost, sum(charges)), charges)
+    groups = worth.content.groups
+    overdrawn = {
+        group for i, steps in enumerate(rows) if steps > worth.rows[i] for group in groups[i]
+    }
+    rows = [min(steps, most) for steps, most in zip(rows, worth.rows, strict=True)]
+    ways: tuple[Callable[[int], bool], ...] = (
+        lambda i: not overdrawn.isdisjoint(groups[i]),
+        lambda i: charges[i] > 0,
+        lambda _: True,
+    )
+    for loses in ways:
+        rest = lost - sum(rows)
+        if not rest:
+            break
+        room = [
+            most - steps if loses(i) else 0
+            for i, (steps, most) in enumerate(zip(rows, worth.rows, strict=True))
+        ]
+        more = apportioned(min(rest, sum(room)), room)
+        rows = [steps + each for steps, each in zip(rows, more, strict=True)]
+    return rows
+
+
+def _told(loss: _Loss, marks: _Marks, rows: Sequence[RowReport]) -> LostPoints:
+    points = marks.worth.points(loss.steps)
+    if isinstance(loss.place, str):
+        return lost_points(loss.place, points)
+    return lost_in_row(rows[loss.place], points)
+
+
+def _little_worth(
+    content: Content, part: PartSpec, rows: Sequence[RowReport]
+) -> LittleWorth | None:
+    if part.kind != "dh_table" or part.marking != "content":
+        return None
+    zeros = [row for row, known in zip(rows, content.known, strict=True) if not any(known)]
+    return little_worth(zeros, part.points)
+
+
+def _with_points(row: RowReport, possible: float, earned: float) -> RowReport:
+    """Return the row with its points."""
+    points = rounded_points(earned)
+    verdict = row.verdict if points else _without_points(row.verdict, [row])
+    return RowReport(row.label, verdict, points, rounded_points(possible), row.cells, row.feedback)
+
+
+def _without_points(verdict: Verdict, rows: Sequence[RowReport]) -> Verdict:
+    """Return the verdict on rows that earn nothing: never "partly right"."""
+    if verdict is not Verdict.PARTIAL:
+        return verdict
+    of_cells = {cell.verdict for row in rows for cell in row.cells}
+    return combined(of_cells - {Verdict.CORRECT})

@@ -1,0 +1,41 @@
+// The points that a part has lost, and where, as list items.
+
+import { h, number, visible } from "../shared/dom.js";
+
+// A message of the report says this already.
+const NOTHING_READ = new Set(["no_answer", "not_read"]);
+
+/**
+ * Return the items below the messages of a part: its lost points with their places, and why a row of zeros earned
+ * little. A report of an older version has none.
+ *
+ * @param {Api.PartReport} report
+ */
+export function lostItems({ lost = [], little_worth: little }) {
+  const told = lost.filter(({ code }) => !NOTHING_READ.has(code));
+  const places = told.length === 1 ? told[0].message : told.map(lostAt).join("; ");
+  return [
+    ...(told.length ? [note(`−${number(sum(told))}`, places)] : []),
+    ...(little ? [note("info", little.message)] : []),
+  ];
+}
+
+/** @param {Api.LostPoints} lost */
+function lostAt({ points, message }) {
+  return `−${number(points)}: ${message}`;
+}
+
+/** @param {Api.LostPoints[]} lost */
+function sum(lost) {
+  return lost.reduce((total, { points }) => total + points, 0);
+}
+
+/** @param {string} badge @param {string} text */
+function note(badge, text) {
+  return h(
+    "li",
+    { class: "lost" },
+    h("span", { class: "badge", "data-verdict": "note" }, badge),
+    h("p", {}, visible(text)),
+  );
+}

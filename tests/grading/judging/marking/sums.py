@@ -1,0 +1,113 @@
+"""``python -m tests.grading.judging.marking.sums --answers 1000``: points add up in every report.
+
+Hand in random wrong answers to every part of every shipped exercise. The rows sum to the part, the
+lost points to what is missing, and all of them are whole quarters or hundredths.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.grading import PartReport, Submission, Verdict, grade
+from service.solutions import solve
+
+WRONG = ("", "0", "1", "0.37", "(", "q1", "-({})", "{} + 0.371", "2*({})", "{} + pi")
+# The kinds whose points come in quarters in every shipped exercise.
+QUARTERS = "dh_table"
+
+
+def wrong_answers(exercise: Exercise, count: int, seed: int) -> Iterator[dict[str, Any]]:
+    """Yield model answers with some entries changed, exchanged or left out, or rows left out."""
+    rng = np.random.default_rng([seed, *exercise.id.encode()])
+    right = solve(exercise).answers
+    for _ in range(count):
+        answers: dict[str, Any] = json.loads(json.dumps(dict(right)))
+        for part in answers:
+            places = list(entries(answers[part]))
+            for _ in range(1 + int(rng.integers(4)) ** 2 if places else 0):
+                holder, key = places[int(rng.integers(len(places)))]
+                other, name = places[int(rng.integers(len(places)))]
+                if rng.random() < 0.3:
+                    holder[key] = other[name]
+                else:
+                    holder[key] = WRONG[int(rng.integers(len(WRONG)))].format(holder[key])
+            answer = answers[part]
+            rows = answer.get("rows") if isinstance(answer, dict) else None
+            if rows and rng.random() < 0.2:
+                rows.pop(int(rng.integers(len(rows))))
+            elif rows and rng.random() < 0.2:
+                rows.insert(int(rng.integers(len(rows))), dict(rows[0]))
+        yield answers
+
+
+def entries(answer: Any) -> Iterator[tuple[Any, Any]]:
+    """Yield the place of each text in an answer, as its container and key."""
+    keys = answer if isinstance(answer, dict) else range(len(answer))
+    for key in list(keys):
+        if isinstance(answer[key], str):
+            if key != "convention":
+                yield answer, key
+        elif isinstance(answer[key], dict | list):
+            yield from entries(answer[key])
+
+
+def faults(part: PartReport) -> Iterator[str]:
+    """Yield the sums that are wrong in a report on a part."""
+    rows, lost = part.rows, [each.points for each in part.lost]
+    if not in_steps(part.points, part.max_points, *lost):
+        yield "lost points are not the missing points"
+    if rows and not in_steps(0, part.max_points, *(row.max_points for row in rows)):
+        yield "the rows' maximum is not that of the part"
+    if rows and not in_steps(0, part.points, *(row.points for row in rows)):
+        yield "the rows' points are not those of the part"
+    if any(not 0 <= row.points <= row.max_points for row in rows):
+        yield "a row earns less than nothing, or more than it is worth"
+    amounts = [*lost, *(row.points for row in rows), *(row.max_points for row in rows)]
+    steps = 4 if part.kind == QUARTERS else 100
+    if any(abs(each * steps - round(each * steps)) > 1e-6 for each in amounts):
+        yield f"points are not in steps of 1/{steps}"
+    if any(each <= 0 for each in lost):
+        yield "nothing was lost at a place"
+    if (part.points == part.max_points) is not (part.verdict is Verdict.CORRECT):
+        yield "full points for a wrong answer, or less for a right one"
+
+
+def in_steps(start: float, end: float, *between: float) -> bool:
+    """True if amounts lead exactly from one to the other."""
+    return abs(start + sum(between) - end) < 1e-6
+
+
+def run(catalogue: Mapping[str, Exercise], count: int, seed: int) -> tuple[int, list[str]]:
+    """Return the number of parts that were graded, and what was wrong in them."""
+    graded, found = 0, []
+    for exercise in catalogue.values():
+        for answers in wrong_answers(exercise, count, seed):
+            for part in grade(exercise, Submission(answers)).parts:
+                graded += 1
+                told = f"{exercise.id} {part.part} {answers[part.part]} {part.lost}"
+                found += [f"{fault}: {told}" for fault in faults(part)]
+    return graded, found
+
+
+def main() -> int:
+    """Run the campaign; return 1 if points do not add up."""
+    parser = argparse.ArgumentParser(prog="python -m tests.grading.judging.marking.sums")
+    parser.add_argument("--answers", type=int, default=1000, help="for each exercise")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--exercise", default="")
+    options = parser.parse_args()
+    catalogue = load_catalogue(shipped_folder())
+    chosen = {name: each for name, each in catalogue.items() if options.exercise in name}
+    graded, found = run(chosen, options.answers, options.seed)
+    shown = "\n".join([*found[:10], f"{len(found)} wrong sums in {graded} parts"])
+    sys.stdout.write(f"{shown}\n")
+    return int(bool(found))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
