@@ -1,23 +1,19 @@
 """Fill the empty or unreadable cells of a table."""
 
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
 from service.grading.judging.content import KnownCells
 from service.grading.judging.own_frames.best_roles import roles_in
+from service.grading.judging.own_frames.nearest.spoiled_row import out_of_place
 from service.grading.judging.own_frames.row_roles import joint_variables
-from service.grading.judging.table import column_scales
 from service.grading.numerics.samples import SAMPLES
 from service.grading.part import Grading
 from service.grading.reading.tables.table import COMPUTED, StudentRow, StudentTable
 from service.grading.report import Verdict
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
-
-# The fractional parts of its multiples are not angles or lengths of any robot.
-OUT_OF_PLACE: Final = 0.3819660112501051
 
 
 def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
@@ -32,9 +28,8 @@ def with_wrong_cells(answer: StudentTable, grading: Grading) -> StudentTable | N
     empty = _empty_cells(answer)
     if not empty.any():
         return None
-    numbers = (OUT_OF_PLACE * np.arange(1, empty.size + 1)) % 1 + OUT_OF_PLACE
-    numbers = numbers.reshape(empty.shape) * column_scales(grading)
-    return _filled(answer, empty, np.repeat(numbers[..., None], SAMPLES, axis=-1))
+    numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
+    return _filled(answer, empty, np.repeat(numbers, SAMPLES, axis=-1))
 
 
 def with_zeros(answer: StudentTable) -> Table:

@@ -62,7 +62,9 @@ def candidate_rows(
     rows = _TO_LINE[relation](target, written)
     if kind is TargetKind.FIXED and not np.isnan(written).any():
         as_written = np.broadcast_to(written, (len(target), 1, *written.shape))
-        rows = np.concatenate([as_written, rows], axis=1)
+        unmoved = as_written.copy()
+        unmoved[:, :, D:] = 0.0
+        rows = np.concatenate([as_written, unmoved, rows], axis=1)
     return rows
 
 

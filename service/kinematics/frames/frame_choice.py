@@ -169,7 +169,7 @@ def _next_beam(
     if row.variable is not None and directions_given:
         wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[parents] < 0
     wrong |= row.wrong_regardless
-    of_x, of_z = _counts(wrong, expected, row, length_scale)
+    of_x, of_z = _counts(wrong, expected, row, length_scale, free_angle=freedom.turn)
     before = beam.begun.at(parents)
     if z_ends_rows:
         rows_done = [(before + of_z, 1), (before, -1), (of_x, 1)]
@@ -209,13 +209,21 @@ def _with_others(chosen: NDArray[np.int_], others: NDArray[np.int_]) -> NDArray[
 
 
 def _counts(
-    wrong: NDArray[np.bool_], expected: Numbers, row: RowConstants, length_scale: float
+    wrong: NDArray[np.bool_],
+    expected: Numbers,
+    row: RowConstants,
+    length_scale: float,
+    *,
+    free_angle: bool,
 ) -> tuple[_RowCounts, _RowCounts]:
     """Return the counts of the cells in X (a, α) and of those in Z (d, θ), for N rows."""
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
     of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
     # A constant beside a wrong joint variable does not count.
     known = (np.abs(of_first) > NOT_ZERO) & ~row.wrong_regardless
+    if free_angle:
+        # In a wrong row, the angle could as well be 0.
+        known[:, THETA] &= wrong[:, THETA]
     unread = np.broadcast_to(~(row.is_gradable | row.absent), wrong.shape)
     counts = [wrong & row.is_gradable, unread, known]
     halves = [each.reshape(-1, 2, 2).sum(axis=2) for each in counts]

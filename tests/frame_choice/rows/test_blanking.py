@@ -12,8 +12,18 @@ EACH = 22
 
 FREE = {policy.name: policy for policy in POLICIES}
 JOINTS = ("q1", "q2", "q3", "q4")
-# Tables in which an empty cell once earned more: a number in place of a joint variable, and a wrong
-# cell in a row of zeros.
+STANFORD = (
+    ("0", "-pi/2", "0", "q1"),
+    ("0", "pi/2", "d2", "q2"),
+    ("0", "0", "q3", "0"),
+    ("0", "-pi/2", "0", "q4"),
+    ("0", "pi/2", "0", "q5"),
+    ("0", "0", "d6", "q6"),
+)
+REVERSED = [*([*row[:3], f"-{row[3]}"] if row[3] != "0" else [*row] for row in STANFORD)]
+PLANAR = (("0", "0", "0", "q1"), ("l1", "0", "0", "q2"), ("l2", "0", "0", "q3"))
+# Tables in which an empty place once earned more: a number in place of a joint variable, a wrong
+# cell in a row of zeros, and wrong rows that hide the frames in which all others are right.
 ONCE_GAINED = [
     (
         Robot(
@@ -55,6 +65,45 @@ ONCE_GAINED = [
             ["0.2", "0", "0.14", "q3"],
             ["0.49", "0", "0", "q4"],
         ],
+    ),
+    (
+        Robot(
+            "RRR, drawn",
+            "RRR",
+            "modified",
+            JOINTS[:3],
+            (*PLANAR, ("l3", "0", "0", "0")),
+            ("l1", "l2", "l3"),
+        ),
+        FREE["free base, tool"],
+        [[*PLANAR[0]], [*PLANAR[1]], ["0.4", "180", "0.4", "q3"], ["-0.52", "0", "0", "0"]],
+        [[*PLANAR[0]], [*PLANAR[1]], ["", "", "", ""], ["-0.52", "0", "0", "0"]],
+    ),
+    (
+        Robot(
+            "RRPRRR, drawn",
+            "RRPRRR",
+            "standard",
+            ("q1", "q2", "q3", "q4", "q5", "q6"),
+            STANFORD,
+            ("d2", "d6"),
+        ),
+        FREE["free base, directions"],
+        [*REVERSED[:2], ["0.12", "pi", "d6", "0"], *REVERSED[3:]],
+        [*REVERSED[:2], ["", "", "", ""], *REVERSED[3:]],
+    ),
+    (
+        Robot(
+            "RPR",
+            "RPR",
+            "standard",
+            JOINTS[:3],
+            (("0", "pi", "0.33", "q1"), ("0", "-pi/2", "q2", "0"), ("0", "pi", "0", "q3")),
+            (),
+        ),
+        FREE["free base, tool"],
+        [["0", "pi", "0.33", "q1"], ["0.3", "0", "-(q2)", "pi"], ["0.36", "0", "0.12", "q3"]],
+        [["0", "pi", "0.33", "q1"], ["", "", "", ""], ["0.36", "0", "0.12", "q3"]],
     ),
 ]
 

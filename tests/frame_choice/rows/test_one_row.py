@@ -6,8 +6,17 @@ import pytest
 
 from service.catalogue import Exercise
 from tests.frame_choice.robots import GIVEN, Robot, exercise
-from tests.frame_choice.rows.one_row import Found, all_robots, lines, praises, run, total
+from tests.frame_choice.rows.one_row import (
+    Found,
+    WrongRow,
+    all_robots,
+    lines,
+    praises,
+    run,
+    total,
+)
 from tests.frame_choice.rows.shipped_robots import shipped_robots
+from tests.frame_choice.rows.true_numbers import is_valid_when_rounded
 from tests.frame_choice.trials import grade_rows
 from tests.grading.support.submitting import graded_table, not_correct
 
@@ -89,3 +98,47 @@ def test_a_wholly_wrong_row_does_not_make_other_rows_wrong(
     assert "own_frame_choice" not in [message.code for message in report.feedback]
     rows[number - 1] = ("", "", "", "")
     assert report.points >= graded_table(catalogue[exercise_id], rows).points > 0
+
+
+PLANAR = Robot(
+    "RR",
+    "RR",
+    "modified",
+    ("q1", "q2"),
+    (("0.267", "0", "0.184", "q1+pi/2"), ("0.4833", "0", "0.4995", "q2"), ("0", "-pi/2", "0", "0")),
+    (),
+)
+LETTERS = (("0", "0", "0", "q1"), ("l1", "0", "0", "q2"))
+# The offsets of parallel axes add up to 0.6835. A number of three figures may be rounded (0.1835 is
+# 0.184) or cut off (0.1849 is 0.184); one of two figures is exact.
+OFFSETS = [
+    ("0.184", "0.5", True),
+    ("0.184", "0.498", True),
+    ("0.184", "0.5001", False),
+    ("0.184", "0.49", False),
+    ("0.18", "0.5", False),
+    ("0.18", "0.50", False),
+    ("0.183", "0.500", True),
+    ("0.185", "0.500", False),
+]
+
+
+@pytest.mark.parametrize(("first", "second", "is_valid"), OFFSETS)
+def test_a_table_is_right_if_true_numbers_make_it_valid(
+    first: str, second: str, is_valid: bool
+) -> None:
+    texts = [["0.267", "0", first, "q1 + pi/2"], ["0.4833", "0", second, "q2"], [*PLANAR.rows[2]]]
+    assert is_valid_when_rounded(PLANAR, GIVEN, texts, "modified") == is_valid
+    report = grade_rows(exercise(PLANAR, GIVEN), texts, "modified")
+    assert (report.points == report.max_points) == is_valid
+
+
+def test_full_marks_are_a_fault_unless_rounding_explains_them() -> None:
+    rows = [list(row) for row in PLANAR.rows]
+    by_rounding = [rows[0], ["0.4833", "0", "0.5", "q2"], rows[2]]
+    letters = Robot("RR", "RR", "modified", ("q1", "q2"), LETTERS, ("l1",))
+    exact = [list(row) for row in letters.rows]
+    found = Found()
+    found.judge(WrongRow(PLANAR, GIVEN, "modified", rows, by_rounding, 1, 1, usual=True))
+    found.judge(WrongRow(letters, GIVEN, "modified", exact, exact, 1, 1, usual=True))
+    assert (total(found, "valid when rounded"), total(found, "accepted")) == (1, 1)

@@ -14,6 +14,7 @@ from service.grading.judging.own_frames.nearest.few_cells import (
     nearest_by_few_cells,
 )
 from service.grading.judging.own_frames.nearest.one_cell import one_cell_match
+from service.grading.judging.own_frames.nearest.spoiled_row import with_spoiled_row
 from service.grading.judging.own_frames.reference import (
     Mechanism,
     as_table,
@@ -46,7 +47,7 @@ from service.kinematics.frames.chain_match import (
     match_as_written,
     match_tables,
 )
-from service.kinematics.frames.frame_choice import WRONG_CELL
+from service.kinematics.frames.frame_choice import BESIDES, WRONG_CELL
 from service.kinematics.frames.frame_choice import nearest_table as search_nearest_table
 from service.kinematics.frames.reversed_chain import (
     reversed_cells,
@@ -55,8 +56,9 @@ from service.kinematics.frames.reversed_chain import (
 )
 from service.kinematics.tolerances import PARALLEL
 
-# If a table loses more than this in all frames, the intended frames are unknown.
-MOST_LOST = 2 * WRONG_CELL
+# If a table loses more than two cells, or a row of two content cells, in all frames, the intended
+# frames are unknown.
+MOST_LOST = 2 * WRONG_CELL + BESIDES
 
 
 def nearest_for_roles(
@@ -113,18 +115,16 @@ def _link_by_link(
     Try the table as written, then tables that differ in one cell, then a search.
     """
     exercise, samples = grading.exercise, grading.samples
+    scale = exercise.length_scale
     mechanism = mechanism_at(exercise, samples)
     targets = targets_of(roles, convention, mechanism, freedom)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
-    match = _as_written(rows, targets, roles, mechanism, freedom, exercise.length_scale)
+    match = _as_written(rows, targets, roles, mechanism, freedom, scale)
     if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
         match = one_cell_match(rows, targets, roles, convention, freedom, grading)
     # The cell may be the only wrong one in these frames, and its row may lose less in other frames.
     if match is None or match.cost > WRONG_CELL:
-        z_ends_rows = convention is Convention.MODIFIED
-        searched = _searched(
-            rows, targets, roles, mechanism, freedom, exercise.length_scale, z_ends_rows
-        )
+        searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
         lost = searched.lost if match is None else min(match.lost, searched.lost)
         match = replace(match or searched, lost=lost)
     # Each cell should be its constant plus its joint variable.
@@ -133,7 +133,14 @@ def _link_by_link(
         sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
         expected[i, column] += sign * samples.values[joint.variable]
     frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
-    lost = match.lost if match.lost <= MOST_LOST else np.inf
+    lost = match.lost
+    if lost > WRONG_CELL and freedom != FrameFreedom():
+        spoiled = with_spoiled_row(roles, expected, scale)
+        if spoiled is not None:
+            rows = row_constants(spoiled, exercise.robot.joints, convention, samples)
+            searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
+            lost = min(lost, searched.lost)
+    lost = lost if lost <= MOST_LOST else np.inf
     return NearestTable(roles, expected, frames, match.cost, lost)
 
 
@@ -161,10 +168,10 @@ def _searched(
     rows: list[RowConstants],
     targets: list[Target],
     roles: tuple[Role, ...],
+    convention: Convention,
     mechanism: Mechanism,
     freedom: FrameFreedom,
     scale: float,
-    z_ends_rows: bool,
 ) -> ChainMatch:
     """Search the nearest valid table, from the base, or from the tool if only that is given.
 
@@ -174,6 +181,7 @@ def _searched(
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions
     )
+    z_ends_rows = convention is Convention.MODIFIED
     # Seen from the tool, the two halves of a row are in the opposite order.
     search = partial(search, z_ends_rows=z_ends_rows != (freedom.base and not freedom.tool))
     if not freedom.base:

@@ -1,0 +1,43 @@
+"""Spoil the only wrong row of a table, so that no cell of it fits by chance.
+
+A search compares rows with what is written in them. So entries of a wrong row can hide the frames
+in which the other rows are right.
+"""
+
+from typing import Final
+
+import numpy as np
+
+from service.grading.judging.own_frames.row_roles import Role, handed_in_values
+from service.grading.numerics.comparison import nearly_equal
+from service.grading.reading.tables.table import IS_ANGLE, computed_row
+from service.kinematics.chain import Table
+
+# The fractional parts of its multiples are not angles or lengths of any robot.
+OUT_OF_PLACE: Final = 0.3819660112501051
+
+
+def out_of_place(rows: int, length_scale: float) -> Table:
+    """Return wrong numbers for all cells of a table, ``(rows, 4, 1)``."""
+    count = rows * len(IS_ANGLE)
+    numbers = (OUT_OF_PLACE * np.arange(1, count + 1)) % 1 + OUT_OF_PLACE
+    scales = np.where(IS_ANGLE, 1.0, length_scale)
+    return np.asarray(numbers.reshape(rows, -1, 1) * scales[:, None])
+
+
+def with_spoiled_row(
+    roles: tuple[Role, ...], expected: Table, length_scale: float
+) -> tuple[Role, ...] | None:
+    """Return the roles with wrong numbers in the only row that is not as ``expected``.
+
+    Return None if several rows differ: each would cost a search.
+    """
+    handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
+    right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)
+    wrong = np.flatnonzero(~right).tolist()
+    if len(wrong) != 1 or roles[wrong[0]].row is None:
+        return None
+    [i] = wrong
+    numbers = np.broadcast_to(out_of_place(len(roles), length_scale), handed_in.shape)
+    spoiled = Role(computed_row(numbers[i]), roles[i].joint)
+    return (*roles[:i], spoiled, *roles[i + 1 :])
