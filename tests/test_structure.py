@@ -20,7 +20,7 @@ TESTS = ROOT / "tests"
 PACKAGES = (
     "version", "time_slices", "expressions", "grids", "kinematics", "catalogue", "grading",
     "solutions", "figures", "authoring", "submissions", "contract", "statistics", "formats",
-    "local_grading", "bundles", "attempts", "access", "client", "settings",
+    "local_grading", "bundles", "attempts", "access", "courses", "client", "settings",
     "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 
