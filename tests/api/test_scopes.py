@@ -168,7 +168,7 @@ def guarded(
     revoked, revoked_id = key(*everything)
     course_key, course_key_id = key(*everything, course="robots")
     for each in (revoked_id, course_key_id):
-        in_transaction(store.engine, lambda it, each=each: revoke_key(it, each, NOW))
+        in_transaction(store.engine, partial(revoke_key, key_id=each, now=NOW))
     old_link = link("robots")
     new_link = link("robots", renew=True)
     ended, _ = key(*everything, course="robots", until=NOW)
