@@ -75,9 +75,14 @@ class Class:
         return course["assignments"][0]["exercises"][0]
 
 
-@pytest.fixture
-def class_(catalogue: Mapping[str, Exercise], tmp_path: Path) -> Iterator[Class]:
-    store = AttemptStore.open(str(tmp_path / "attempts.db"))
+@pytest.fixture(params=["sqlite"])
+def class_(
+    request: pytest.FixtureRequest, catalogue: Mapping[str, Exercise], tmp_path: Path
+) -> Iterator[Class]:
+    """The class, in the kind of database of the parameter."""
+    is_sqlite = request.param == "sqlite"
+    url = str(tmp_path / "attempts.db") if is_sqlite else request.getfixturevalue("postgresql_url")
+    store = AttemptStore.open(url)
 
     def set_up(connection: Connection) -> dict[str, str]:
         course = NewCourse(id="robots", title="Robots", zone="Europe/Berlin")

@@ -7,11 +7,14 @@ from typing import Any
 
 import pytest
 
+from service.attempts.tutoring import forget
 from service.contract.courses import AssignmentChange, Extension, LinksRequest
-from service.courses.assignments import change_assignment, extend
+from service.courses import roll
+from service.courses.assignments import assignments_of, change_assignment, extend
 from service.courses.errors import CourseError
 from service.courses.gradebook import gradebook, missing, written_gradebook
 from service.courses.links import issue_links, revoke_links
+from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, SECRET, Class, days
 
 
@@ -24,6 +27,10 @@ def near(value: float) -> list[Any]:
     return [pytest.approx(value, abs=1e-5)]
 
 
+BOTH = pytest.mark.parametrize("class_", KINDS, indirect=True)
+
+
+@BOTH
 def test_the_limit_holds_under_parallel_attempts_and_each_is_recorded_once(class_: Class) -> None:
     class_.assign(limit=3)
     path = "/v1/courses/robots/assignments/homework/attempts"
@@ -43,6 +50,7 @@ def test_the_limit_holds_under_parallel_attempts_and_each_is_recorded_once(class
     assert class_.own("grace")["attempts_left"] == 3
 
 
+@BOTH
 def test_a_later_due_date_and_an_extension_give_late_attempts_their_points_back(
     class_: Class,
 ) -> None:
@@ -97,6 +105,7 @@ def test_no_practice_while_an_exercise_counts(class_: Class) -> None:
     assert class_.ask("POST", "/v1/exercises/planar-rr/grade", answers={}).status_code == 200
 
 
+@BOTH
 def test_a_link_is_for_one_learner_of_one_course_and_can_be_ended(class_: Class) -> None:
     class_.assign()
     path = "/v1/courses/robots/assignments/homework/attempts"
@@ -122,6 +131,7 @@ def test_a_link_is_for_one_learner_of_one_course_and_can_be_ended(class_: Class)
         class_.do(lambda it: issue_links(it, "robots", nobody, SECRET, ADDRESS, NOW))
 
 
+@BOTH
 def test_the_gradebook_and_who_is_missing(class_: Class) -> None:
     class_.assign()
     class_.hand_in("a")
@@ -138,6 +148,18 @@ def test_the_gradebook_and_who_is_missing(class_: Class) -> None:
     assert canvas[1] == "    Points Possible,,,,,10"
     [attempt] = [each for each in class_.own()["attempts"] if each["counts"]]
     assert attempt["id"] == best["id"]
+
+
+def test_a_forgotten_learner_is_in_no_course_and_has_no_link(class_: Class) -> None:
+    class_.assign()
+    class_.hand_in("a")
+    class_.do(lambda it: extend(it, "robots", "homework", Extension(learner="ada", limit=2)))
+    class_.do(lambda it: forget(it, "ada"))
+    listed = class_.do(lambda it: roll.learners(it, "robots", NOW))
+    assert [each.learner for each in listed] == ["grace"]
+    [assignment] = class_.do(lambda it: assignments_of(it, "robots"))
+    assert assignment.extensions == []
+    assert class_.do(lambda it: revoke_links(it, "robots", ["ada"], NOW)) == 0
 
 
 @pytest.mark.parametrize(
