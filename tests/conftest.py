@@ -16,7 +16,7 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from tests.api.serving import Served, served
 from tests.shipped import shipped_exercises
 
-pytest_plugins = ["tests.browser.fixtures"]
+pytest_plugins = ["tests.browser.fixtures", "tests.attempts.databases"]
 
 # The suite starts this program a hundred times: without bytecode it would be compiled each time.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -20,8 +20,8 @@ TESTS = ROOT / "tests"
 PACKAGES = (
     "version", "time_slices", "expressions", "grids", "typeset", "kinematics", "catalogue",
     "grading", "solutions", "figures", "authoring", "importing", "submissions", "contract",
-    "statistics",
-    "formats", "local_grading", "bundles", "attempts", "access", "client", "settings",
+    "statistics", "formats", "local_grading", "bundles", "attempts", "access", "courses",
+    "client", "settings",
     "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 

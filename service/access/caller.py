@@ -18,13 +18,14 @@ class Scope(StrEnum):
 class Caller:
     """The caller of a request: the holder of a key or of a token, or an anonymous client.
 
-    ``exercises`` and ``learner`` restrict the caller; None means no restriction.
+    ``exercises``, ``learner`` and ``course`` restrict the caller; None means no restriction.
     """
 
     scopes: frozenset[Scope]
     exercises: frozenset[str] | None = None
     learner: str | None = None
     key_id: str = ""
+    course: str | None = None
 
     def reaches(self, exercise: str) -> bool:
         """True if the caller may use this exercise."""
@@ -35,10 +36,12 @@ class Caller:
         """The owner of the caller's requests and attempts, at most 32 characters.
 
         It is the id of the key, a hash for each learner with a token, or "" for anonymous clients.
+        A learner of a course stays the same owner after the link was renewed.
         """
         if self.learner is None:
             return self.key_id
-        return sha256(f"{self.key_id} {self.learner}".encode()).hexdigest()[:32]
+        by = self.key_id if self.course is None else f"course {self.course}"
+        return sha256(f"{by} {self.learner}".encode()).hexdigest()[:32]
 
 
 NOBODY: Final = Caller(frozenset())

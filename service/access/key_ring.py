@@ -51,7 +51,7 @@ class KeyRing:
     ) -> None:
         """Check whether there are keys. Raises KeysUnreachableError."""
         self._engine = engine
-        self._secret = secret
+        self.secret = secret
         self._seconds = seconds
         self._found: OrderedDict[KeyPlace, _Found] = OrderedDict()
         self._unknown: OrderedDict[KeyPlace, float] = OrderedDict()
@@ -79,27 +79,27 @@ class KeyRing:
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
-        if self._secret is None:
+        if self.secret is None:
             raise CredentialError("The service cannot check keys: DH_GRADER_SECRET is not set.")
         if not credential.startswith(PREFIX):
             # Import here: most installations have no tokens.
             from service.access.tokens import verified
 
-            token = verified(credential, self._secret.token_secret)
+            token = verified(credential, self.secret.token_secret)
             return token.caller(await self._holder("id", token.key_id))
         if not is_spelt_right(credential):
             raise CredentialError("The key is misspelt: its checksum is wrong.")
-        return await self._holder("digest", self._secret.key_digest(credential))
+        return await self._holder("digest", self.secret.key_digest(credential))
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
         """Return a token with the rights of ``caller``, who must be restricted to a learner."""
         from service.access.tokens import LearnerToken, signed
 
-        assert self._secret is not None
+        assert self.secret is not None
         assert caller.learner is not None
         scopes = caller.scopes - {Scope.TUTOR}
         token = LearnerToken(caller.key_id, caller.learner, scopes, caller.exercises)
-        return signed(token, expires_at, self._secret.token_secret)
+        return signed(token, expires_at, self.secret.token_secret)
 
     def close(self) -> None:
         """Write pending notes of use and stop the threads."""

@@ -3,11 +3,11 @@
 import json
 import secrets
 from collections.abc import Collection, Iterable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, delete, exists, or_, select
+from sqlalchemy import Connection, Row, and_, delete, exists, or_, select
 
 from service.access.caller import Scope
 from service.access.keys import Key, Secret
@@ -43,22 +43,35 @@ def add_key(
     exercises: Iterable[str] | None,
     created_at: datetime,
     expires_at: datetime,
+    course: str | None = None,
 ) -> Key:
     """Insert a new key. Only the ``digest`` of its text is stored."""
     bound = None if exercises is None else frozenset(exercises)
     key = Key(secrets.token_hex(4), name, frozenset(scopes), bound, created_at, expires_at)
-    values = asdict(key) | {
-        "digest": digest,
-        "scopes": " ".join(sorted(key.scopes)),
-        "exercises": None if bound is None else json.dumps(sorted(bound)),
-    }
-    connection.execute(keys.insert().values(values))
+    insert_key(connection, replace(key, course=course), digest)
     return key
 
 
+def insert_key(connection: Connection, key: Key, digest: str) -> None:
+    """Insert a key with the digest of its text."""
+    values = asdict(key) | {
+        "digest": digest,
+        "scopes": " ".join(sorted(key.scopes)),
+        "exercises": None if key.exercises is None else json.dumps(sorted(key.exercises)),
+    }
+    connection.execute(keys.insert().values(values))
+
+
 def all_keys(connection: Connection) -> list[Key]:
-    """Every key, the oldest first."""
-    return [_key(row) for row in connection.execute(select(keys).order_by(keys.c.created_at))]
+    """Every key but those of personal links, the oldest first."""
+    found = select(keys).where(keys.c.learner.is_(None)).order_by(keys.c.created_at)
+    return [_key(row) for row in connection.execute(found)]
+
+
+def link_keys(connection: Connection, course: str) -> list[Key]:
+    """The keys of a course's personal links that are not revoked."""
+    links = and_(keys.c.course == course, keys.c.learner.is_not(None), keys.c.revoked_at.is_(None))
+    return [_key(row) for row in connection.execute(select(keys).where(links))]
 
 
 def keys_at(

@@ -22,6 +22,17 @@ def new_key_text() -> str:
     return f"{PREFIX}{drawn}{_checksum(drawn)}"
 
 
+def key_text_of(seed: bytes) -> str:
+    """Return the text of a key made of 64 random bytes; equal bytes give equal texts."""
+    rest = int.from_bytes(seed)
+    digits = []
+    for _ in range(_RANDOM):
+        rest, digit = divmod(rest, len(_ALPHABET))
+        digits.append(_ALPHABET[digit])
+    drawn = "".join(digits)
+    return f"{PREFIX}{drawn}{_checksum(drawn)}"
+
+
 def is_spelt_right(text: str) -> bool:
     """True if a text has the form of a key and its checksum is right."""
     drawn, checksum = text[len(PREFIX) : -_CHECKSUM], text[-_CHECKSUM:]

@@ -6,6 +6,7 @@ from datetime import datetime
 from typing import Final, Protocol
 
 from service.access.caller import Caller, Scope
+from service.access.key_text import key_text_of
 
 # The least number of characters of a secret; 64 hexadecimal digits are usual.
 SHORTEST_SECRET: Final = 32
@@ -25,7 +26,10 @@ class CredentialError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key. ``exercises`` are those that it may use, None for all; times are in UTC."""
+    """A key. ``exercises`` are those that it may use, None for all; times are in UTC.
+
+    A key with a ``course`` is for this course only; one with a ``learner`` is a personal link.
+    """
 
     id: str
     name: str
@@ -35,6 +39,8 @@ class Key:
     expires_at: datetime
     revoked_at: datetime | None = None
     last_used_at: datetime | None = None
+    course: str | None = None
+    learner: str | None = None
 
     def caller(self, now: datetime) -> Caller:
         """Return the caller with this key. Raises CredentialError if it is revoked or expired."""
@@ -42,7 +48,8 @@ class Key:
             raise CredentialError("The key was revoked.")
         if self.expires_at <= now:
             raise CredentialError("The key has expired.")
-        return Caller(self.scopes | {Scope.GRADE}, self.exercises, key_id=self.id)
+        scopes = self.scopes | {Scope.GRADE}
+        return Caller(scopes, self.exercises, self.learner, self.id, self.course)
 
 
 WRONG_SECRET: Final = (
@@ -67,6 +74,10 @@ class Keys(Protocol):
     def token(self, caller: Caller, expires_at: datetime) -> str:
         """Return a token with the rights of ``caller``."""
 
+    @property
+    def secret(self) -> "Secret | None":
+        """The secret of the installation, if it is known."""
+
     def close(self) -> None:
         """Write pending notes of use and stop all threads."""
 
@@ -80,6 +91,10 @@ class Secret:
     def key_digest(self, key: str) -> str:
         """Return the keyed hash of a key's text, which is stored instead of the text."""
         return hmac.digest(self._derived("keys"), key.encode(), "sha256").hex()
+
+    def link_key(self, key_id: str) -> str:
+        """Return the text of the key of a personal link, which always follows from its id."""
+        return key_text_of(hmac.digest(self._derived("links"), key_id.encode(), "sha512"))
 
     @property
     def check(self) -> str:

@@ -51,6 +51,7 @@ class LearnerToken(NamedTuple):
             holder.exercises if exercises is None else exercises,
             self.learner,
             self.key_id,
+            holder.course,
         )
 
 

@@ -10,6 +10,8 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
+from service.api.courses import assignments, gradebook, handing_in, links, rolls
+from service.api.courses.practice import PracticeGate
 from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, fill_body_schemas
 from service.api.http import problems
 from service.api.http.boundary import (
@@ -177,7 +179,7 @@ def application(
     seen = catalogue if pages is None else CatalogueWithDrafts(catalogue, pages.drafts)
     for router in (
         exercises.routes(seen, feedback),
-        grading.routes(seen, feedback, access, monitor),
+        grading.routes(seen, feedback, access, monitor, PracticeGate(store)),
         attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
         # Before the next router, for which the "export" of /v1/attempts/export is an attempt's id.
         tutoring.routes(catalogue, feedback, store, access),
@@ -188,6 +190,11 @@ def application(
         health.routes(catalogue, store),
         model_solutions.routes(catalogue),
         tokens.routes(catalogue, access),
+        rolls.routes(store, access),
+        links.routes(store, access),
+        assignments.routes(catalogue, store),
+        gradebook.routes(catalogue, store),
+        handing_in.routes(catalogue, feedback, store, access, monitor, cors_origins),
     ):
         app.include_router(router, responses=OTHER_FAILURES, dependencies=permitted)
         app.interface += (route for route in router.routes if isinstance(route, APIRoute))

@@ -3,7 +3,7 @@
 This module loads no database driver.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 from typing import Final
@@ -30,7 +30,8 @@ class NewAttempt:
     """An attempt to be recorded; ``submission`` and ``report`` are JSON.
 
     ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent it;
-    idempotency keys are unique for each owner.
+    idempotency keys are unique for each owner. ``assignment`` is the number of an assignment of a
+    course, or None.
     """
 
     exercise: str
@@ -49,6 +50,7 @@ class NewAttempt:
     owner: str
     idempotency_key: str | None
     request_digest: str
+    assignment: int | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,23 +65,30 @@ class RecordedAttempt(NewAttempt):
 class Standing:
     """The state of a learner at an exercise before a new attempt.
 
-    ``counted`` is the number of counted attempts; ``earlier`` is the attempt that was already
-    recorded under the same idempotency key, if any.
+    ``counted`` is the number of counted attempts in the assignment, or outside of assignments;
+    ``earlier`` is the attempt that was already recorded under the same idempotency key, if any.
+    ``last`` is the ordinal of the last attempt in all assignments and none.
     """
 
     counted: int
     earlier: RecordedAttempt | None
+    last: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class AttemptFilter:
-    """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not."""
+    """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not.
+
+    ``assignment`` is the id of an assignment of ``course``.
+    """
 
     exercise: str | None = None
     learner: str | None = None
     since: datetime | None = None
     until: datetime | None = None
     counted: bool | None = None
+    course: str | None = None
+    assignment: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

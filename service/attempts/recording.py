@@ -4,7 +4,7 @@ import secrets
 from collections.abc import Callable, Iterable
 from typing import Any, Final
 
-from sqlalchemy import Connection, Table, bindparam, func, select
+from sqlalchemy import Connection, Table, and_, bindparam, func, select
 from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
@@ -19,8 +19,14 @@ _EARLIER: Final = select(
     attempts.c.owner == bindparam("owner"),
     attempts.c.idempotency_key == bindparam("idempotency_key"),
 )
-_COUNTED: Final = select(func.max(attempts.c.ordinal)).where(
+_OF_LEARNER: Final = and_(
     attempts.c.exercise == bindparam("exercise"), attempts.c.learner == bindparam("learner")
+)
+_LAST: Final = select(func.max(attempts.c.ordinal)).where(_OF_LEARNER)
+_ASSIGNED: Final = (
+    select(attempts.c.assignment, func.count(attempts.c.ordinal).label("tried"))
+    .where(_OF_LEARNER, attempts.c.assignment.is_not(None))
+    .group_by(attempts.c.assignment)
 )
 _OUTCOME: Final = select(outcomes.c.id).where(
     outcomes.c.exercise == bindparam("exercise"), outcomes.c.digest == bindparam("digest")
@@ -47,16 +53,28 @@ _NEW_ATTEMPT: Final = {
 
 
 def standing(
-    connection: Connection, exercise: str, learner: str, owner: str, idempotency_key: str | None
+    connection: Connection,
+    exercise: str,
+    learner: str,
+    owner: str,
+    idempotency_key: str | None,
+    assignment: int | None = None,
 ) -> Standing:
-    """Return how many attempts of a learner count, and the attempt with this idempotency key."""
+    """Return how many attempts of a learner count, and the attempt with this idempotency key.
+
+    Attempts count in the assignment, or, without one, outside of all assignments.
+    """
     earlier = None
     if idempotency_key is not None:
-        which = {"owner": owner, "idempotency_key": idempotency_key}
-        found = connection.execute(_EARLIER, which).one_or_none()
+        key = {"owner": owner, "idempotency_key": idempotency_key}
+        found = connection.execute(_EARLIER, key).one_or_none()
         earlier = RecordedAttempt(**found._mapping) if found else None
-    counted = connection.scalar(_COUNTED, {"exercise": exercise, "learner": learner})
-    return Standing(counted or 0, earlier)
+    which = {"exercise": exercise, "learner": learner}
+    last = connection.scalar(_LAST, which) or 0
+    assigned = {row.assignment: row.tried for row in connection.execute(_ASSIGNED, which)}
+    outside = last - sum(assigned.values())
+    counted = outside if assignment is None else assigned.get(assignment, 0)
+    return Standing(counted, earlier, last)
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
@@ -88,7 +106,9 @@ def record_next(
         if written is not None:
             return written
         # In each round an earlier job or another process has recorded an attempt.
-        now = standing(connection, new.exercise, new.learner, new.owner, new.idempotency_key)
+        now = standing(
+            connection, new.exercise, new.learner, new.owner, new.idempotency_key, new.assignment
+        )
     return now
 
 

@@ -92,12 +92,19 @@ class AttemptStore:
         self.engine.dispose()
 
     async def standing(
-        self, exercise: str, learner: str, owner: str, idempotency_key: str | None
+        self,
+        exercise: str,
+        learner: str,
+        owner: str,
+        idempotency_key: str | None,
+        assignment: int | None = None,
     ) -> Standing:
         """Return how many attempts of a learner count, and the attempt with this key."""
         with self.measure("standing"):
             return await self._running.run(
-                lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
+                lambda connection: standing(
+                    connection, exercise, learner, owner, idempotency_key, assignment
+                )
             )
 
     async def record(
@@ -124,15 +131,15 @@ class AttemptStore:
 
         Raises BadCursorError.
         """
-        return await self._read(lambda connection: page(connection, wanted, cursor, most))
+        return await self.read(lambda connection: page(connection, wanted, cursor, most))
 
     async def history(self, attempt_id: str) -> AttemptHistory | None:
         """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
-        return await self._read(lambda connection: history(connection, attempt_id))
+        return await self.read(lambda connection: history(connection, attempt_id))
 
     async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
         """Return the statistics of the wanted attempts at ``wanted.exercise``."""
-        return await self._read(lambda connection: exercise_statistics(connection, wanted))
+        return await self.read(lambda connection: exercise_statistics(connection, wanted))
 
     async def export(
         self,
@@ -142,7 +149,7 @@ class AttemptStore:
         counting: Callable[[str], Counting],
     ) -> IO[bytes]:
         """Return the attempts in a format, as a file that the caller closes; see ``written``."""
-        return await self._read(
+        return await self.read(
             lambda connection: _file_of(
                 written(graded_attempts(connection, wanted, counting), form, title)
             )
@@ -168,7 +175,7 @@ class AttemptStore:
 
     async def data_of(self, learner: str) -> LearnerData:
         """Count the records of a learner."""
-        return await self._read(lambda connection: data_of(connection, learner))
+        return await self.read(lambda connection: data_of(connection, learner))
 
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
         """Delete all records of a learner; return their counts and the state of erasure.
@@ -185,7 +192,12 @@ class AttemptStore:
                 erased = False
         return deleted, erased
 
-    async def _read(self, work: Callable[[Connection], R]) -> R:
+    async def write(self, work: Callable[[Connection], R]) -> R:
+        """Return the result of ``work`` after its commit; see ``AttemptWriter.run``."""
+        with self.measure("write"):
+            return await self._running.run(work)
+
+    async def read(self, work: Callable[[Connection], R]) -> R:
         """Run ``work``, which only reads, in a reader thread; return its result."""
         assert self._readers is not None, "the store has not been started"
         loop = asyncio.get_running_loop()

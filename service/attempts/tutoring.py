@@ -8,7 +8,15 @@ from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
-from service.attempts.storage.tables import attempts, earlier_reports, overrides, regrade_queue
+from service.attempts.storage.tables import (
+    attempts,
+    course_learners,
+    earlier_reports,
+    extensions,
+    keys,
+    overrides,
+    regrade_queue,
+)
 
 # How often PostgreSQL may report a concurrent write while a learner is being deleted.
 _TRIES: Final = 4
@@ -61,7 +69,7 @@ def data_of(connection: Connection, learner: str) -> LearnerData:
 
 
 def forget(connection: Connection, learner: str) -> LearnerData:
-    """Delete all records of a learner; return their counts.
+    """Delete all records of a learner, also in courses; return the counts of attempts.
 
     Outcomes stay: they contain verdicts and codes, but no learners and no answers.
     """
@@ -80,5 +88,6 @@ def _forget(connection: Connection, learner: str) -> LearnerData:
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     for table in (regrade_queue, earlier_reports, overrides):
         connection.execute(delete(table).where(table.c.attempt.in_(mine)))
-    connection.execute(delete(attempts).where(attempts.c.learner == learner))
+    for table in (attempts, extensions, course_learners, keys):
+        connection.execute(delete(table).where(table.c.learner == learner))
     return data

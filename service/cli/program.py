@@ -18,6 +18,7 @@ COMMANDS: Final = {
     "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
     "py, …).",
     "attempts": "Recorded attempts: read, export, regrade, forget.",
+    "courses": "Courses: learners, links, assignments, gradebook.",
     "keys": "API keys of the service: create, list, revoke.",
     "bundle": "Write a zip file for a grading platform.",
 }

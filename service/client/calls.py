@@ -57,7 +57,7 @@ class HttpCall(Generic[T]):
 
     def result(self, server: str, answer: HttpAnswer) -> T:
         """Parse the answer; return the result. Raises GraderClientError."""
-        if answer.status != 200:
+        if answer.status not in (200, 201):
             raise error_in(server, answer)
         try:
             return self.read(answer.content)

@@ -8,7 +8,7 @@ from typing import Any, Generic, ParamSpec, Self, TypeVar, overload
 
 import httpx
 
-from service.client import calls
+from service.client import calls, course_calls
 from service.client.address import checked_server, client_options
 from service.client.answers import AnswerPieces, HttpAnswer, unreachable
 from service.client.calls import HttpCall
@@ -50,6 +50,20 @@ class _Methods:
     exercise = _Method(calls.exercise)
     grade = _Method(calls.grade)
     preview = _Method(calls.preview)
+    courses = _Method(course_calls.courses)
+    create_course = _Method(course_calls.create_course)
+    learners = _Method(course_calls.learners)
+    add_learners = _Method(course_calls.add_learners)
+    links = _Method(course_calls.links)
+    revoke_links = _Method(course_calls.revoke_links)
+    assignments = _Method(course_calls.assignments)
+    create_assignment = _Method(course_calls.create_assignment)
+    change_assignment = _Method(course_calls.change_assignment)
+    extend = _Method(course_calls.extend)
+    missing = _Method(course_calls.missing)
+    gradebook = _Method(course_calls.gradebook)
+    hand_in = _Method(course_calls.hand_in)
+    own_courses = _Method(course_calls.own_courses)
 
 
 class GraderClient(_Methods):

@@ -8,6 +8,8 @@ from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any
 from urllib.parse import urljoin, urlsplit
@@ -35,6 +37,10 @@ from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.attempts.tutoring import override
 from service.catalogue import Exercise, shipped_folder
+from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from service.courses import roll
+from service.courses.assignments import add_assignment
+from service.courses.links import issue_links
 from service.web import Tutoring, web_routes
 
 STATUSES = Path(__file__).parent / "permissions" / "statuses.txt"
@@ -47,6 +53,9 @@ ANSWERS = {"answers": {"table": "a1 0 0 θ1\na2 0 0 θ2"}}
 ADA = {"learner": "ada", **ANSWERS}
 FILE = {"id": EXERCISE, "text": (shipped_folder() / f"{EXERCISE}.toml").read_text("utf-8")}
 CLASS = {"exercise": EXERCISE, "files": [{"path": "ada.json", "text": json.dumps(ANSWERS)}]}
+ASSIGNMENT = {"title": "Homework", "exercises": [{"exercise": EXERCISE, "points": 10}]}
+# The routes that make something with a new id.
+MAKING = ("POST /v1/courses", "POST /v1/courses/{course_id}/assignments")
 # The body of each route that has one.
 BODIES: Mapping[str, Any] = {
     "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
@@ -59,10 +68,26 @@ BODIES: Mapping[str, Any] = {
     "POST /v1/attempts/{attempt_id}/override": {"points": 1, "reason": "A misprint."},
     "POST /v1/learners/forget": {"learner": "nobody", "apply": True},
     "POST /v1/exercises/{exercise_id}/regrade": {"apply": True},
+    "POST /v1/courses": {"title": "Robots", "zone": "Europe/Berlin"},
+    "POST /v1/courses/{course_id}": {"title": "Robots"},
+    "POST /v1/courses/{course_id}/learners": {"learners": [{"learner": "ada", "name": "Ada"}]},
+    "POST /v1/courses/{course_id}/links": {},
+    "POST /v1/courses/{course_id}/links/revoke": {"learners": ["nobody"]},
+    "POST /v1/courses/{course_id}/assignments": ASSIGNMENT,
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}": {"title": "Homework"},
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}/extensions": {"learner": "ada"},
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}/attempts": {
+        "exercise": EXERCISE,
+        "learner": "ada",
+        **ANSWERS,
+    },
     "POST /tutor/check": FILE,
     "POST /tutor/files": {**FILE, "before": ""},
     "POST /tutor/class": CLASS,
 }
+
+
+_number = count()
 
 
 @dataclass(frozen=True)
@@ -112,20 +137,41 @@ def guarded(
     folder = tmp_path_factory.mktemp("guarded")
     store = AttemptStore.open(str(folder / "attempts.db"))
 
-    def key(*scopes: Scope, exercises: Any = None, until: datetime = NOW + YEAR) -> tuple[str, str]:
+    def key(
+        *scopes: Scope,
+        exercises: Any = None,
+        until: datetime = NOW + YEAR,
+        course: str | None = None,
+    ) -> tuple[str, str]:
         text = new_key_text()
         digest = SECRET.key_digest(text)
         made = in_transaction(
             store.engine,
-            lambda connection: add_key(connection, "", digest, scopes, exercises, NOW, until),
+            lambda it: add_key(it, "", digest, scopes, exercises, NOW, until, course),
         )
         return text, made.id
+
+    def link(course: str, *, renew: bool = False) -> str:
+        """Return the key in ada's link to a course."""
+        wanted = LinksRequest(learners=["ada"], renew=renew)
+        [made] = in_transaction(
+            store.engine, lambda it: issue_links(it, course, wanted, SECRET, HERE, NOW)
+        )
+        return made.link.partition("#")[2]
+
+    for course in ("robots", "others"):
+        in_transaction(store.engine, partial(_add_course, course))
 
     everything = tuple(Scope)
     record, record_id = key(Scope.RECORD)
     expired, expired_id = key(*everything, until=NOW)
     revoked, revoked_id = key(*everything)
-    in_transaction(store.engine, lambda connection: revoke_key(connection, revoked_id, NOW))
+    course_key, course_key_id = key(*everything, course="robots")
+    for each in (revoked_id, course_key_id):
+        in_transaction(store.engine, partial(revoke_key, key_id=each, now=NOW))
+    old_link = link("robots")
+    new_link = link("robots", renew=True)
+    ended, _ = key(*everything, course="robots", until=NOW)
     ring = KeyRing(store.engine, SECRET, seconds=0.2)
 
     def token(key_id: str, until: datetime = NOW + YEAR, by: KeyRing = ring) -> str:
@@ -142,11 +188,16 @@ def guarded(
         "tutor": [key(Scope.TUTOR)[0]],
         "token": [token(record_id)],
         "not valid": [
-            expired, revoked, misspelt, new_key_text(), "dhg_", "nonsense", "a.b.c",
+            expired, revoked, misspelt, course_key, old_link, ended,
+            new_key_text(), "dhg_", "nonsense", "a.b.c",
             token(record_id, NOW - YEAR), token(expired_id), token(revoked_id),
             token("00000000"), token(record_id, by=stranger),
         ],
         "other exercise": [elsewhere],
+        "course tutor": [key(Scope.TUTOR, course="robots")[0]],
+        "other tutor": [key(Scope.TUTOR, course="others")[0]],
+        "learner": [new_link],
+        "other learner": [link("others")],
     }  # fmt: skip
     stranger.close()
     access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
@@ -173,6 +224,9 @@ def guarded(
     service.names.update(
         {
             "exercise_id": EXERCISE,
+            "course_id": "robots",
+            "assignment_id": "homework",
+            "learner": "ada",
             "attempt_id": recorded.json()["attempt"]["id"],
             "GET /static/{name}": f"GET /static/{file}",
             "GET /docs/{name}": "GET /docs/start.js",
@@ -181,6 +235,15 @@ def guarded(
     yield service
     ring.close()
     store.close()
+
+
+def _add_course(course: str, connection: Connection) -> None:
+    """Add a course with the learner ada and an assignment."""
+    new = NewCourse(id=course, title="Robots", zone="Europe/Berlin")
+    roll.add_course(connection, new, NOW)
+    roll.add_learners(connection, course, [NewLearner(learner="ada", name="Ada")])
+    homework = NewAssignment.model_validate({"id": "homework", **ASSIGNMENT})
+    add_assignment(connection, course, homework, {EXERCISE})
 
 
 def routes_of(app: FastAPI) -> set[str]:
@@ -206,11 +269,13 @@ def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
     async def told(client: httpx.AsyncClient, route: str) -> int:
         for file in guarded.editor_dir.iterdir():
             file.unlink()
-        body = json.dumps(BODIES[route]).encode() if route in BODIES else b""
+        new = {"id": f"new-{next(_number)}"} if route in MAKING else {}
+        body = json.dumps(BODIES[route] | new).encode() if route in BODIES else b""
         if route == "POST /tutor/class":
             body = gzip.compress(body)
         method, path = guarded.filled(route).split()
-        return (await client.request(method, path, content=body)).status_code
+        headers = {"Idempotency-Key": f"{next(_number)}"}
+        return (await client.request(method, path, content=body, headers=headers)).status_code
 
     async def with_each() -> AsyncIterator[tuple[str, int, httpx.AsyncClient]]:
         for heading, credentials in guarded.credentials.items():

@@ -1,7 +1,6 @@
 import multiprocessing
 import shutil
 from collections.abc import Iterator
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -9,17 +8,7 @@ import pytest
 
 from service.attempts.storage.database import open_database
 from service.attempts.store import AttemptStore
-from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
-
-TEMPLATE = "with_tables"
-_number = count()
-
-
-@pytest.fixture(scope="session")
-def postgresql() -> Iterator[Any]:
-    with postgresql_server() as running:
-        open_database(new_database(running, TEMPLATE)).dispose()
-        yield running
+from tests.attempts.databases import KINDS, new_file
 
 
 @pytest.fixture(scope="session")
@@ -43,12 +32,6 @@ def file_with_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
 def sqlite_url(file_with_tables: str, tmp_path: Path) -> str:
     """The path of an SQLite database with migrated, empty tables."""
     return str(shutil.copy(file_with_tables, new_file(tmp_path)))
-
-
-@pytest.fixture
-def postgresql_url(postgresql: Any) -> str:
-    """The URL of a PostgreSQL database with migrated, empty tables."""
-    return new_database(postgresql, f"attempts{next(_number)}", TEMPLATE)
 
 
 @pytest.fixture(params=KINDS)

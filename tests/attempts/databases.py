@@ -5,11 +5,15 @@ import signal
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import quote
 
+import pytest
 from sqlalchemy import create_engine, make_url, text
+
+from service.attempts.storage.database import open_database
 
 KINDS = ("sqlite", "postgresql")
 # A guard against a server that does not stop (seconds).
@@ -78,3 +82,20 @@ def new_database(server: Any, name: str, like: str = "template1") -> str:
 def new_file(folder: Path) -> str:
     """The path of a new SQLite database."""
     return str(folder / "attempts.db")
+
+
+TEMPLATE = "with_tables"
+_number = count()
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[Any]:
+    with postgresql_server() as running:
+        open_database(new_database(running, TEMPLATE)).dispose()
+        yield running
+
+
+@pytest.fixture
+def postgresql_url(postgresql: Any) -> str:
+    """The URL of a PostgreSQL database with migrated, empty tables."""
+    return new_database(postgresql, f"attempts{next(_number)}", TEMPLATE)

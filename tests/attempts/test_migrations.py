@@ -27,7 +27,7 @@ from tests.attempts.recorded import RIGHT, recorded
 from tests.attempts.test_upgrade import FIXED, INSERT, REPORT, ROWS, make_old
 from tests.guards import ANSWER
 
-REVISIONS = ("0001", "0002", "0003")
+REVISIONS = ("0001", "0002", "0003", "0004")
 # The statements before which a migration from the oldest revision is killed, of more than 25.
 SOME = (2, 15, 25)
 EVERY = range(1, 40)

@@ -20,11 +20,14 @@ DOCS = Path(__file__).parents[2] / "docs"
         ("collect-homework.md", 2),
         ("ci/README.md", 3),
         ("figures.md", 2),
+        ("courses.md", 11),
     ],
 )
 def test_the_commands_of_a_page_print_the_shown_output(
     page: str, commands: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", "attempts.db")
+    monkeypatch.setenv("DH_GRADER_SECRET", "0123456789abcdef" * 2)
     reader = Reader(tmp_path, monkeypatch)
     reader.follow((DOCS / page).read_text(encoding="utf-8"))
     assert reader.commands >= commands

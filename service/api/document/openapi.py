@@ -20,7 +20,8 @@ _REFUSALS = {
     HTTPStatus.BAD_REQUEST: "The body is not JSON.",
     HTTPStatus.UNAUTHORIZED: "The key is missing or not valid.",
     HTTPStatus.FORBIDDEN: "It is not allowed: the detail says why.",
-    HTTPStatus.NOT_FOUND: "There is no such exercise.",
+    HTTPStatus.NOT_FOUND: "There is nothing with this id.",
+    HTTPStatus.CONFLICT: "There is one with this id already.",
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The body is larger than 256 KiB.",
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body does not match its schema, or a part is unknown.",
@@ -63,6 +64,11 @@ program does not know a code, show its message. Fields without a value are left 
             "before answering. Never an answer.",
         },
         {"name": "attempts", "description": "Recorded attempts, if the service has a database."},
+        {
+            "name": "courses",
+            "description": "Courses with learners, assignments and a gradebook, if the service has "
+            "a database.",
+        },
         {
             "name": "drawing",
             "description": "Coordinates to draw with, so that a page needs no kinematics.",
@@ -107,28 +113,32 @@ _BODY_SCHEMAS: Final[dict[type[BaseModel], dict[str, Any]]] = {}
 def posting(
     body: type[BaseModel],
     model: type,
-    name: str,
+    name: str | None,
     *further: HTTPStatus,
     success: HTTPStatus = HTTPStatus.OK,
 ) -> dict[str, Any]:
     """Return the options of a route that reads a body with ``read_body``.
 
-    ``name`` is the start of the names of its two example files. ``further`` are statuses of
-    refusals other than those of a body.
+    ``name`` is the start of the names of its two example files, if there are any. ``further`` are
+    statuses of refusals other than those of a body.
     """
     schema = _BODY_SCHEMAS.setdefault(body, {})
-    content = {"schema": schema, "example": example(f"{name}-request")}
+    content: dict[str, Any] = {"schema": schema}
+    if name is not None:
+        content["example"] = example(f"{name}-request")
     request = {"required": True, "content": {"application/json": content}}
     refused = sorted([*_REFUSED_BODIES, *further])
-    responses = answers(model, f"{name}-response", *refused, success=success)
+    responses = answers(model, name and f"{name}-response", *refused, success=success)
     return {"openapi_extra": {"requestBody": request, **MAY_NEED_KEY}, "responses": responses}
 
 
 def answers(
-    model: type, name: str, *statuses: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
+    model: type, name: str | None, *statuses: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
 ) -> dict[int | str, dict[str, Any]]:
     """Return the OpenAPI responses for success, with schema and example, and for the refusals."""
-    answer = {"model": model, "content": {"application/json": {"example": example(name)}}}
+    answer: dict[str, Any] = {"model": model}
+    if name is not None:
+        answer["content"] = {"application/json": {"example": example(name)}}
     return {int(success): answer, **refusals(*statuses)}
 
 

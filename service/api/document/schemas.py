@@ -40,6 +40,10 @@ _CHOICES: Final = {
     ("radians", "degrees"): "AngleUnit",
     ("space", "body"): "ScrewFrame",
     ("unread", "zero"): "EmptyCells",
+    ("open", "after", "none"): "Practice",
+    ("never", "after_full", "after_due"): "ShowSolution",
+    ("not_open", "open", "late", "closed"): "AssignmentState",
+    ("json", "csv", "moodle", "canvas"): "GradebookFormat",
 }
 
 

@@ -161,6 +161,11 @@ class Access:
         problem = identity.refusal or self._problem(request, identity, right, right.scope)
         if problem is not None:
             raise with_password_challenge(problem) if right.scope is Scope.TUTOR else problem
+        course = identity.caller.course
+        if course is not None and not right.in_course:
+            raise access_problem("other-course")
+        if right.reach is Reach.COURSE and course not in (None, request.path_params["course_id"]):
+            raise access_problem("other-course")
         exercises = identity.caller.exercises
         if exercises is None or right.reach is Reach.OWN:
             return

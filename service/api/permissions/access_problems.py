@@ -55,6 +55,16 @@ ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
         "This key or token is for certain exercises. Name one of them; others, and all at once, "
         "are not for it.",
     ),
+    "other-course": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        "The key is for one course",
+        "This key or link is for one course. Others, and all at once, are not for it.",
+    ),
+    "learner-needed": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        "This is for a learner",
+        "This needs the personal link or the token of a learner.",
+    ),
     "other-learner": AccessProblem(
         HTTPStatus.FORBIDDEN,
         "The token is for another learner",

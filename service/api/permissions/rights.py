@@ -18,6 +18,8 @@ class Reach(Enum):
     PATH = "the one in the path"
     QUERY = "the one in `?exercise=`, else all"
     ALL = "all"
+    # A key of a course must be for this one; a key restricted to some exercises is refused.
+    COURSE = "all; a key of a course: that in the path"
     # The route itself checks each exercise of its body, or answers for these exercises only.
     OWN = "those of the key"
 
@@ -44,21 +46,25 @@ class Right:
     """What a caller needs for a route.
 
     ``scope`` is the scope of the key; None if everybody may use the route, with or without keys.
-    ``tokens`` is True if learners may use it with a token, for what is their own.
+    ``tokens`` is True if learners may use it with a token, for what is their own. ``in_course`` is
+    True if the route answers a key of a course for this course only; other routes refuse it.
     """
 
     scope: Scope | None
     without_keys: WithoutKeys
     reach: Reach
     tokens: bool = False
+    in_course: bool = False
 
 
 _EVERYBODY: Final = Right(None, WithoutKeys.EVERYBODY, Reach.OWN, tokens=True)
-_grade = partial(Right, Scope.GRADE, WithoutKeys.OPEN, tokens=True)
+_grade = partial(Right, Scope.GRADE, WithoutKeys.OPEN, tokens=True, in_course=True)
 _record = partial(Right, Scope.RECORD, WithoutKeys.OPEN, tokens=True)
 _solutions = partial(Right, Scope.TUTOR, WithoutKeys.SOLUTIONS)
 _attempts = partial(Right, Scope.TUTOR, WithoutKeys.ATTEMPTS)
 _change = partial(Right, Scope.TUTOR, WithoutKeys.THIS_MACHINE)
+_read_course = partial(_attempts, Reach.COURSE, in_course=True)
+_change_course = partial(_change, Reach.COURSE, in_course=True)
 
 # The right of each route, by its method and the pattern of its path.
 RIGHTS: Final[Mapping[str, Right]] = {
@@ -80,20 +86,43 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "POST /v1/preview": _grade(Reach.OWN),
     "POST /v1/previews": _grade(Reach.OWN),
     "POST /v1/frames": _grade(Reach.OWN),
-    "POST /v1/tokens": Right(Scope.GRADE, WithoutKeys.NOBODY, Reach.OWN),
+    "POST /v1/tokens": Right(Scope.GRADE, WithoutKeys.NOBODY, Reach.OWN, in_course=True),
     "POST /v1/exercises/{exercise_id}/attempts": _record(Reach.PATH),
-    "GET /v1/attempts": _attempts(Reach.QUERY, tokens=True),
-    "GET /v1/attempts/{attempt_id}": _attempts(Reach.OWN, tokens=True),
-    "GET /v1/attempts/export": _attempts(Reach.QUERY),
-    "GET /v1/exercises/{exercise_id}/statistics": _attempts(Reach.PATH),
-    "POST /v1/attempts/{attempt_id}/override": _change(Reach.OWN),
+    "GET /v1/attempts": _attempts(Reach.QUERY, tokens=True, in_course=True),
+    "GET /v1/attempts/{attempt_id}": _attempts(Reach.OWN, tokens=True, in_course=True),
+    "GET /v1/attempts/export": _attempts(Reach.QUERY, in_course=True),
+    "GET /v1/exercises/{exercise_id}/statistics": _attempts(Reach.PATH, in_course=True),
+    "POST /v1/attempts/{attempt_id}/override": _change(Reach.OWN, in_course=True),
     "POST /v1/learners/forget": _change(Reach.ALL),
     "POST /v1/exercises/{exercise_id}/regrade": _change(Reach.PATH),
-    "GET /v1/exercises/{exercise_id}/solution": _solutions(Reach.PATH),
-    "GET /tutor": _solutions(Reach.OWN),
-    "GET /tutor/solutions/{exercise_id}": _solutions(Reach.PATH),
-    "GET /tutor/solutions/{exercise_id}/frames.svg": _solutions(Reach.PATH),
-    "GET /tutor/misconceptions/{exercise_id}": _solutions(Reach.PATH),
+    "GET /v1/courses": _attempts(Reach.ALL, in_course=True),
+    "POST /v1/courses": _change(Reach.ALL),
+    "GET /v1/courses/{course_id}": _read_course(),
+    "POST /v1/courses/{course_id}": _change_course(),
+    "GET /v1/courses/{course_id}/learners": _read_course(),
+    "POST /v1/courses/{course_id}/learners": _change_course(),
+    "POST /v1/courses/{course_id}/links": _change_course(),
+    "POST /v1/courses/{course_id}/links/revoke": _change_course(),
+    "GET /v1/courses/{course_id}/gradebook": _read_course(),
+    "GET /v1/courses/{course_id}/assignments": _read_course(),
+    "POST /v1/courses/{course_id}/assignments": _change_course(),
+    "GET /v1/courses/{course_id}/assignments/{assignment_id}": _read_course(),
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}": _change_course(),
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}/extensions": _change_course(),
+    "GET /v1/courses/{course_id}/assignments/{assignment_id}/missing": _read_course(),
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}/attempts": _record(
+        Reach.COURSE, in_course=True
+    ),
+    "GET /v1/courses/{course_id}/assignments/{assignment_id}/solutions/{exercise_id}": Right(
+        Scope.RECORD, WithoutKeys.NOBODY, Reach.COURSE, tokens=True, in_course=True
+    ),
+    "GET /v1/courses/{course_id}/learners/{learner}/view": _read_course(),
+    "GET /v1/me": Right(Scope.RECORD, WithoutKeys.NOBODY, Reach.OWN, tokens=True, in_course=True),
+    "GET /v1/exercises/{exercise_id}/solution": _solutions(Reach.PATH, in_course=True),
+    "GET /tutor": _solutions(Reach.OWN, in_course=True),
+    "GET /tutor/solutions/{exercise_id}": _solutions(Reach.PATH, in_course=True),
+    "GET /tutor/solutions/{exercise_id}/frames.svg": _solutions(Reach.PATH, in_course=True),
+    "GET /tutor/misconceptions/{exercise_id}": _solutions(Reach.PATH, in_course=True),
     "GET /tutor/editor": _solutions(Reach.ALL),
     "POST /tutor/check": _solutions(Reach.ALL),
     "POST /tutor/drafts": _solutions(Reach.ALL),

@@ -25,6 +25,7 @@ from service.contract.attempts import (
     AttemptSummary,
     Learner,
 )
+from service.contract.courses import CourseName
 from service.contract.statistics import ExerciseStatistics
 
 if TYPE_CHECKING:  # they load the drivers of databases
@@ -55,6 +56,10 @@ Since = Annotated[
     Query(description="Attempts from this moment on; with its time zone: 2026-10-01T08:00:00Z."),
 ]
 Until = Annotated[Moment | None, Query(description="Attempts before this moment.")]
+CourseFilter = Annotated[CourseName | None, Query(description="The id of a course.")]
+AssignmentFilter = Annotated[
+    CourseName | None, Query(description="The id of an assignment of the course.")
+]
 Name = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
 
 _REFUSED: Final = refusals(
@@ -91,6 +96,8 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         cursor: Annotated[
             str | None, Query(max_length=40, description="The `next` of the previous page.")
         ] = None,
+        course: CourseFilter = None,
+        assignment: AssignmentFilter = None,
         limit: Annotated[
             int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most attempts on a page.")
         ] = 50,
@@ -100,7 +107,10 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         Tutors see all attempts. A learner with a token sees the learner's own.
         """
         caller = access.caller(request)
-        wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
+        course = course_of(caller, course)
+        wanted = AttemptFilter(
+            exercise, _readable(caller, learner), since, until, counted, course, assignment
+        )
         try:
             shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
         except BadCursorError as error:
@@ -141,15 +151,42 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         openapi_extra=MAY_NEED_KEY,
     )
     async def show_statistics(
-        exercise_id: ExerciseId, since: Since = None, until: Until = None
+        request: Request,
+        exercise_id: ExerciseId,
+        since: Since = None,
+        until: Until = None,
+        course: CourseFilter = None,
+        assignment: AssignmentFilter = None,
     ) -> Response:
         """Count recorded attempts for tutors: right answers in each place, and common mistakes."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
+        wanted = AttemptFilter(
+            exercise=exercise.id,
+            since=since,
+            until=until,
+            course=course_of(access.caller(request), course),
+            assignment=assignment,
+        )
         figures = await ask(store, lambda it: it.statistics(wanted))
         return private(figures)
 
     return router
+
+
+def course_of(caller: Caller, course: str | None) -> str | None:
+    """Return the course whose attempts the caller asks for; None for all. Raises ProblemError."""
+    if caller.course is not None and course not in (None, caller.course):
+        raise access_problem("other-course")
+    return caller.course or course
+
+
+def may_reach(caller: Caller, found: "AttemptHistory | None") -> bool:
+    """True if the caller's key reaches this attempt."""
+    return (
+        found is not None
+        and caller.reaches(found.attempt.exercise)
+        and caller.course in (None, found.course)
+    )
 
 
 def _readable(caller: Caller, learner: str | None) -> str | None:
@@ -160,8 +197,7 @@ def _readable(caller: Caller, learner: str | None) -> str | None:
 
 
 def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
-    attempt = found.attempt
-    return caller.reaches(attempt.exercise) and caller.learner in (None, attempt.learner)
+    return may_reach(caller, found) and caller.learner in (None, found.attempt.learner)
 
 
 def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:

@@ -17,7 +17,15 @@ from service.api.http.bounded_work import BoundedWork
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import invalid
 from service.api.permissions.access import Access
-from service.api.recording.listing import Name, Since, Until
+from service.api.recording.listing import (
+    AssignmentFilter,
+    CourseFilter,
+    Name,
+    Since,
+    Until,
+    course_of,
+    may_reach,
+)
 from service.api.recording.store import ask, private, unknown_attempt
 from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.errors import (
@@ -68,10 +76,13 @@ def routes(
         openapi_extra=MAY_NEED_KEY,
     )
     async def export_attempts(
+        request: Request,
         exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
         learner: Annotated[Learner | None, Query(description="The learner.")] = None,
         since: Since = None,
         until: Until = None,
+        course: CourseFilter = None,
+        assignment: AssignmentFilter = None,
         form: Annotated[
             GradesFormat,
             Query(
@@ -91,7 +102,10 @@ def routes(
         # Imported here, because it loads the drivers of databases.
         from service.attempts.results.grades import counting_rules
 
-        wanted = AttemptFilter(exercise, learner, since, until)
+        course = course_of(access.caller(request), course)
+        wanted = AttemptFilter(
+            exercise, learner, since, until, course=course, assignment=assignment
+        )
         rules = counting_rules(catalogue)
         file = await ask(store, lambda it: it.export(wanted, form, exercise or "", rules))
         ending, kind = _KINDS.get(form, _CSV)
@@ -119,7 +133,7 @@ def routes(
         caller = access.caller(request)
         body = await read_body(OverrideRequest, request)
         found = await ask(store, lambda it: it.history(attempt_id))
-        if found is None or not caller.reaches(found.attempt.exercise):
+        if not may_reach(caller, found):
             raise unknown_attempt()
         author = _author(caller, body.author)
         try:

@@ -7,6 +7,7 @@ from http import HTTPStatus
 from fastapi import APIRouter, Request, Response
 
 from service.access.caller import Caller
+from service.api.courses.practice import PracticeGate
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body, validated
 from service.api.http.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
@@ -25,7 +26,11 @@ _log = logging.getLogger(__name__)
 
 
 def routes(
-    catalogue: Catalogue, feedback: FeedbackLevel, access: Access, monitor: Monitor | None = None
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    access: Access,
+    monitor: Monitor | None,
+    practice: PracticeGate,
 ) -> APIRouter:
     """Return the routes that grade; reports have at most the level ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["grading"])
@@ -49,6 +54,7 @@ def routes(
         """
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await read_body(GradeRequest, request)
+        await practice.check(access.caller(request), exercise.id)
         report = await run_in_turns(request, lambda: _report(exercise, body, ()))
         return Response(report, media_type="application/json")
 
@@ -73,7 +79,12 @@ def routes(
             if i:
                 await give_way(request)
             graded = partial(_result, submission, i, request.url.path, caller)
-            results.append(await run_in_turns(request, graded))
+            refused = await practice.refusal(caller, _named(submission))
+            results.append(
+                _problem(refused, request.url.path, i)
+                if refused
+                else await run_in_turns(request, graded)
+            )
         content = b'{"results":[%b]}' % b",".join(results)
         return Response(content, media_type="application/json")
 
@@ -89,7 +100,7 @@ def routes(
         except Exception:  # noqa: BLE001 -- the other submissions are graded all the same
             _log.exception("submission %d of a request could not be graded", i)
             problem = failed()
-        return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")
+        return _problem(problem, path, i)
 
     def _report(exercise: Exercise, body: GradeRequest, at: Location) -> bytes:
         """Return the report as JSON. Raises ProblemError if the submission has an unknown part."""
@@ -102,3 +113,13 @@ def routes(
         return rendered(report)
 
     return router
+
+
+def _named(submission: object) -> str:
+    """Return the exercise that a submission names, which may be malformed."""
+    exercise = submission.get("exercise") if isinstance(submission, dict) else None
+    return exercise if isinstance(exercise, str) else ""
+
+
+def _problem(problem: ProblemError, path: str, i: int) -> bytes:
+    return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")

@@ -16,6 +16,19 @@ from service.solutions import ModelSolution, solve
 _SOLUTION: Final = TypeAdapter(ModelSolution)
 
 
+class SolvedExercises:
+    """The solutions of exercises, memoized."""
+
+    def __init__(self) -> None:
+        self._memoized = MemoizedResults()
+
+    async def answer(self, exercise: Exercise) -> Response:
+        """Return the model solution of an exercise as JSON."""
+        key = (exercise.id, exercise.version)
+        content = await self._memoized.of(key, partial(_solved, exercise))
+        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
+
+
 def _solved(exercise: Exercise) -> bytes:
     return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
 
@@ -23,7 +36,7 @@ def _solved(exercise: Exercise) -> bytes:
 def routes(catalogue: Catalogue) -> APIRouter:
     """Return the route that shows model solutions."""
     router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
-    solutions = MemoizedResults()
+    solutions = SolvedExercises()
 
     @router.get(
         "/{exercise_id}/solution",
@@ -37,9 +50,6 @@ def routes(catalogue: Catalogue) -> APIRouter:
     )
     async def show_solution(exercise_id: ExerciseId) -> Response:
         """Show the right answer to each part, each link transform and the pose, for tutors."""
-        exercise = exercise_or_404(catalogue, exercise_id)
-        key = (exercise.id, exercise.version)
-        content = await solutions.of(key, partial(_solved, exercise))
-        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
+        return await solutions.answer(exercise_or_404(catalogue, exercise_id))
 
     return router

@@ -10,7 +10,13 @@ from sqlalchemy import ColumnElement, Connection, Row, Tuple, and_, literal, sel
 
 from service.attempts.attempt import AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
-from service.attempts.storage.tables import UtcTime, attempts, earlier_reports, overrides
+from service.attempts.storage.tables import (
+    UtcTime,
+    assignments,
+    attempts,
+    earlier_reports,
+    overrides,
+)
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _TICK: Final = timedelta(microseconds=1)
@@ -33,6 +39,11 @@ def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
         yield attempts.c.at >= wanted.since
     if wanted.until is not None:
         yield attempts.c.at < wanted.until
+    if wanted.course is not None:
+        mine = select(assignments.c.number).where(assignments.c.course == wanted.course)
+        if wanted.assignment is not None:
+            mine = mine.where(assignments.c.id == wanted.assignment)
+        yield attempts.c.assignment.in_(mine)
     if wanted.counted is not None:
         has_ordinal = attempts.c.ordinal.is_not(None)
         yield has_ordinal if wanted.counted else ~has_ordinal
@@ -40,13 +51,17 @@ def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
 
 @dataclass(frozen=True, slots=True)
 class AttemptHistory:
-    """All records of an attempt; ``submission`` and ``report`` are JSON."""
+    """All records of an attempt; ``submission`` and ``report`` are JSON.
+
+    ``course`` is that of the attempt's assignment, or None.
+    """
 
     attempt: ListedAttempt
     submission: str
     report: str
     overrides: Sequence[Row[Any]]
     earlier: Sequence[Row[Any]]
+    course: str | None
 
 
 LISTED: Final = [attempts.c[name] for name in ListedAttempt.__dataclass_fields__]
@@ -76,11 +91,13 @@ def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
     if not attempt_id.isalnum():
         return None
     found = connection.execute(
-        select(*LISTED, attempts.c.submission, attempts.c.report).where(attempts.c.id == attempt_id)
+        select(*LISTED, attempts.c.submission, attempts.c.report, assignments.c.course)
+        .join_from(attempts, assignments, isouter=True)
+        .where(attempts.c.id == attempt_id)
     ).one_or_none()
     if found is None:
         return None
-    *listed, submission, report = found
+    *listed, submission, report, course = found
     attempt = ListedAttempt(*listed)
     changed, replaced = (
         connection.execute(
@@ -88,7 +105,7 @@ def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
         ).all()
         for table in (overrides, earlier_reports)
     )
-    return AttemptHistory(attempt, submission, report, changed, replaced)
+    return AttemptHistory(attempt, submission, report, changed, replaced, course)
 
 
 # The place of an attempt in time: its moment, and its number among attempts of the same moment.

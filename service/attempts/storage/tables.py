@@ -66,11 +66,66 @@ outcomes = Table(
     UniqueConstraint("exercise", "digest"),
 )
 
+# ``id`` is chosen by the tutor; ``zone`` is the IANA name of the time zone.
+courses = Table(
+    "courses",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    Column("title", String(200), nullable=False),
+    Column("zone", String(64), nullable=False),
+    Column("created_at", UtcTime, nullable=False),
+)
+
+# ``learner`` is the name in attempts. Tutors see ``name`` and ``email``; attempts have neither.
+course_learners = Table(
+    "course_learners",
+    metadata,
+    Column("course", String(64), ForeignKey(courses.c.id), primary_key=True),
+    Column("learner", String(200), primary_key=True, index=True),
+    Column("name", String(200), nullable=False),
+    Column("email", String(254)),
+)
+
+# ``exercises`` is a JSON list of exercises with their points; ``feedback`` a list of levels, one
+# for each attempt, or NULL for that of each exercise.
+assignments = Table(
+    "assignments",
+    metadata,
+    Column("number", RowNumber, primary_key=True),
+    Column("course", String(64), ForeignKey(courses.c.id), nullable=False),
+    Column("id", String(64), nullable=False),
+    Column("title", String(200), nullable=False),
+    Column("exercises", Text, nullable=False),
+    Column("opens", UtcTime),
+    Column("due", UtcTime),
+    Column("closes", UtcTime),
+    Column("max_attempts", Integer),
+    Column("late_worth", Float, nullable=False),
+    Column("feedback", Text),
+    Column("practice", String(10), nullable=False),
+    Column("solution", String(10), nullable=False),
+    UniqueConstraint("course", "id"),
+)
+
+# Other dates or another limit of one learner; NULL means that of the assignment.
+extensions = Table(
+    "extensions",
+    metadata,
+    Column("assignment", RowNumber, ForeignKey(assignments.c.number), primary_key=True),
+    Column("learner", String(200), primary_key=True, index=True),
+    Column("due", UtcTime),
+    Column("closes", UtcTime),
+    Column("max_attempts", Integer),
+)
+
 # The condition of an index of uncounted attempts, in which nothing could be read. They are few.
 _UNCOUNTED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("ordinal IS NULL"))
+# The condition of an index of attempts in assignments.
+_ASSIGNED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("assignment IS NOT NULL"))
 
 # ``number`` is the order of arrival. ``ordinal`` counts the learner's counted attempts at the
-# exercise; it is unique, so that two requests at once cannot both take the last allowed attempt.
+# exercise, in all assignments and none; it is unique, so that two requests at once cannot both take
+# the last allowed attempt. ``assignment`` is NULL if the attempt belongs to none.
 # ``awarded`` are points of a tutor instead of the report's. The indexes cover all columns by which
 # lists are filtered and statistics counted, because the rows with their reports are far larger.
 attempts = Table(
@@ -98,6 +153,21 @@ attempts = Table(
     UniqueConstraint("exercise", "learner", "ordinal"),
     UniqueConstraint("owner", "idempotency_key"),
     Column("awarded", Float),
+    Column("assignment", RowNumber, ForeignKey(assignments.c.number)),
+    Index("ix_attempts_assigned", "exercise", "learner", "assignment", "ordinal", **_ASSIGNED),
+    # It has all columns of a gradebook.
+    Index(
+        "ix_attempts_assignment",
+        "assignment",
+        "learner",
+        "exercise",
+        "ordinal",
+        "points",
+        "max_points",
+        "awarded",
+        "is_late",
+        **_ASSIGNED,
+    ),
     Index("ix_attempts_uncounted", "at", "number", **_UNCOUNTED),
     Index("ix_attempts_exercise_uncounted", "exercise", "at", "number", **_UNCOUNTED),
     Index("ix_attempts_at", "at", "number", "ordinal"),
@@ -142,7 +212,8 @@ regrade_queue = Table(
 )
 
 # ``digest`` is a keyed hash of the key's text; ``scopes`` are words separated by spaces,
-# ``exercises`` a JSON list, or NULL for all.
+# ``exercises`` a JSON list, or NULL for all. ``course`` and ``learner`` restrict the key; that of a
+# personal link has a learner.
 keys = Table(
     "keys",
     metadata,
@@ -155,6 +226,9 @@ keys = Table(
     Column("expires_at", UtcTime, nullable=False),
     Column("revoked_at", UtcTime),
     Column("last_used_at", UtcTime),
+    Column("course", String(64)),
+    Column("learner", String(200)),
+    Index(None, "course", "learner"),
 )
 
 # The keyed hash of a constant with the service's secret, in one row, since the first key was added.

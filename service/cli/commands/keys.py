@@ -13,6 +13,8 @@ from service.access.keys import WRONG_SECRET, Key
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
 from service.cli.terminal import give_up, installed_exercise, stdout
+from service.courses import roll
+from service.courses.errors import CourseError
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
 
@@ -39,6 +41,9 @@ def create(
     exercise: Annotated[
         list[str] | None, typer.Option(help="Only this exercise. Repeatable. [all]")
     ] = None,
+    course: Annotated[
+        str | None, typer.Option(help="Only this course. [all]", callback=encodable)
+    ] = None,
     days: Annotated[int, typer.Option(min=1, max=3650, help="The key's lifetime in days.")] = 365,
 ) -> None:
     """Create a key and show it, once."""
@@ -48,6 +53,8 @@ def create(
             "Keys need a secret, which the service must know as well. Make one with "
             "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
         )
+    if course is not None and exercise:
+        give_up("A key is for a course or for exercises: leave out --course or --exercise.")
     bound = [installed_exercise(each).id for each in exercise] if exercise else None
     text = new_key_text()
     digest = secret.key_digest(text)
@@ -58,10 +65,15 @@ def create(
     def added(connection: Connection) -> Key | None:
         if not settle(connection, secret, now):
             return None
-        return add_key(connection, name[:200], digest, scopes, bound, now, until)
+        if course is not None:
+            roll.course(connection, course)
+        return add_key(connection, name[:200], digest, scopes, bound, now, until, course)
 
     with database(create=True) as engine:
-        key = in_transaction(engine, added)
+        try:
+            key = in_transaction(engine, added)
+        except CourseError as error:
+            give_up(str(error))
     if key is None:
         give_up(WRONG_SECRET)
     # Only the key goes to standard output, for scripts.
@@ -84,6 +96,7 @@ def list_keys() -> None:
     for key in found:
         bound = "all exercises" if key.exercises is None else ", ".join(sorted(key.exercises))
         used = f"used {key.last_used_at:%Y-%m-%d %H:%M}" if key.last_used_at else "never used"
+        bound = f"course {key.course}" if key.course else bound
         told = (key.id, visible(key.name), " ".join(sorted(key.scopes)), bound, _state(key, now))
         screen.print("  ".join((*told, used)), soft_wrap=True)
     # After the list: if the secret is lost, the list shows which keys to revoke.

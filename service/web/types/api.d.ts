@@ -1,6 +1,20 @@
 // Written by `python -m tests.front.api_types`. Do not edit.
 declare namespace Api {
   type AngleUnit = "radians" | "degrees";
+  type AssignedPoints = { exercise: string; points: number; };
+  type AssignmentChange = {
+    title?: string;
+    exercises?: AssignedPoints[];
+    opens?: string;
+    due?: string;
+    closes?: string;
+    limit?: number;
+    late_worth?: number;
+    feedback?: FeedbackLevel[];
+    practice?: Practice;
+    solution?: ShowSolution;
+  };
+  type AssignmentState = "not_open" | "open" | "late" | "closed";
   type Attempt = {
     id: string;
     exercise: string;
@@ -56,6 +70,25 @@ declare namespace Api {
   type Convention = "standard" | "modified";
   type ConvertedRow = { label: string; cells: PrintedFormula[]; };
   type Correction = { text: string; latex?: string; };
+  type Course = { id: string; title: string; zone: string; learners: number; assignments: string[]; };
+  type CourseAssignment = {
+    id: string;
+    title: string;
+    exercises: AssignedPoints[];
+    opens?: string;
+    due?: string;
+    closes?: string;
+    limit?: number;
+    late_worth: number;
+    feedback?: FeedbackLevel[];
+    practice: Practice;
+    solution: ShowSolution;
+    extensions: Extension[];
+  };
+  type CourseAssignmentList = { assignments: CourseAssignment[]; };
+  type CourseChange = { title?: string; zone?: string; };
+  type CourseLearner = { learner: string; name: string; email?: string; link_until?: string; };
+  type CourseList = { courses: Course[]; };
   type DhRowShape = { form: "dh_row"; columns: string[]; convention: Convention; };
   type DhTableShape = {
     form: "dh_table";
@@ -146,6 +179,7 @@ declare namespace Api {
     parts: PartSummary[];
   };
   type ExerciseSymbol = { name: string; kind: Quantity; unit: string; description: string; joint?: number; };
+  type Extension = { learner: string; due?: string; closes?: string; limit?: number; };
   type Feedback = {
     code: string;
     severity: Severity;
@@ -196,9 +230,24 @@ declare namespace Api {
   type GradeManyResponse = { results: GradeResult[]; };
   type GradeRequest = { answers: Record<string, unknown>; angle_unit?: AngleUnit; feedback?: FeedbackLevel; echo?: boolean; };
   type GradeResult = { report?: Report; problem?: Problem; };
+  type Gradebook = { course: string; columns: GradebookColumn[]; rows: GradebookRow[]; };
+  type GradebookColumn = { assignment: string; exercise: string; points: number; };
+  type GradebookFormat = "json" | "csv" | "moodle" | "canvas";
+  type GradebookRow = { learner: string; name: string; email?: string; points: (number | null)[]; total: number; };
   type GradesFormat = "csv" | "jsonl" | "canvas" | "moodle";
+  type HandInRequest = {
+    answers: Record<string, unknown>;
+    angle_unit?: AngleUnit;
+    feedback?: FeedbackLevel;
+    echo?: boolean;
+    exercise: string;
+    learner?: string;
+  };
   type IdenticalAnswers = { learners: number; attempts: number; wrong: string[]; among: string[]; };
   type JointKind = "R" | "P";
+  type LearnerList = { learners: CourseLearner[]; };
+  type LearnersRequest = { learners?: NewLearner[]; csv?: string; };
+  type LinkList = { links: PersonalLink[]; };
   type LinkTransform = { text: string; latex: string; label: string; };
   type LinkTransformsShape = {
     form: "link_transforms";
@@ -208,6 +257,7 @@ declare namespace Api {
     convention: Convention;
     frames: FrameFreedom;
   };
+  type LinksRequest = { learners?: string[]; renew?: boolean; days?: number; };
   type ListComponent = { name: string; quantity: Quantity; };
   type ListShape = { form: "list"; rows: string[]; components: ListComponent[]; sequence?: string; axes?: RotationAxes; };
   type LittleWorth = { rows: string[]; points: number; message: string; };
@@ -217,6 +267,8 @@ declare namespace Api {
   type Marking = "content" | "cells" | "rows" | "whole";
   type MatrixShape = { form: "matrix"; columns: string[]; rows: string[]; };
   type MisconceptionFigures = { part: string; code: string; sentence?: string; attempts: number; by_day: Record<string, number>; };
+  type MissingLearner = { learner: string; name: string; email?: string; exercises: string[]; due?: string; };
+  type MissingList = { missing: MissingLearner[]; };
   type ModelSolution = {
     exercise: string;
     version: string;
@@ -226,7 +278,58 @@ declare namespace Api {
     pose?: PrintedMatrix;
   };
   type MovingJoint = { joint: number; variable: string; kind: JointKind; low: number; high: number; home: number; };
+  type NewAssignment = {
+    title: string;
+    exercises: AssignedPoints[];
+    opens?: string;
+    due?: string;
+    closes?: string;
+    limit?: number;
+    late_worth?: number;
+    feedback?: FeedbackLevel[];
+    practice?: Practice;
+    solution?: ShowSolution;
+    id: string;
+  };
+  type NewCourse = { id: string; title: string; zone: string; };
+  type NewLearner = { learner?: string; name: string; email?: string; };
   type OverrideRequest = { points?: number; reason: string; author?: string; };
+  type OwnAssignment = {
+    id: string;
+    title: string;
+    state: AssignmentState;
+    opens?: string;
+    due?: string;
+    closes?: string;
+    late_worth: number;
+    limit?: number;
+    is_extended: boolean;
+    exercises: OwnExercise[];
+  };
+  type OwnAttempt = {
+    id: string;
+    exercise: string;
+    learner: string;
+    ordinal?: number;
+    at: string;
+    is_late: boolean;
+    points: number;
+    max_points: number;
+    counts: boolean;
+  };
+  type OwnCourse = { id: string; title: string; zone: string; name: string; assignments: OwnAssignment[]; };
+  type OwnCourses = { learner: string; now: string; courses: OwnCourse[]; };
+  type OwnExercise = {
+    exercise: string;
+    title: string;
+    points: number;
+    earned?: number;
+    best?: number;
+    attempts_left?: number;
+    may_practise: boolean;
+    shows_solution: boolean;
+    attempts: OwnAttempt[];
+  };
   type Part = {
     id: string;
     title: string;
@@ -253,7 +356,9 @@ declare namespace Api {
   };
   type PartSolution = { text: string; latex: string; part: string; kind: string; title: string; answer: unknown; };
   type PartSummary = { id: string; kind: string; points: number; };
+  type PersonalLink = { learner: string; name: string; email?: string; link: string; expires_at: string; };
   type Place = { row: string; cell?: string; correction?: Correction; };
+  type Practice = "open" | "after" | "none";
   type Preview = {
     ok: boolean;
     rows?: PreviewCell[][];
@@ -310,6 +415,8 @@ declare namespace Api {
     score: number;
     parts: PartReport[];
   };
+  type RevokeLinksRequest = { learners?: string[]; };
+  type RevokedLinks = { revoked: number; };
   type RotationAxes = "moving" | "fixed";
   type RowFigures = { answered: number; correct: number; share?: number; label: string; cells: CellFigures[]; };
   type RowReport = {
@@ -323,6 +430,7 @@ declare namespace Api {
   type ScrewAxesShape = { form: "screw_axes"; columns: string[]; rows: string[]; frame: ScrewFrame; directions: FrameFreedom; };
   type ScrewFrame = "space" | "body";
   type Severity = "error" | "warning" | "hint" | "info";
+  type ShowSolution = "never" | "after_full" | "after_due";
   type TableInFormulas = { cells: PrintedFormula[][]; converted?: ConvertedRow[]; pose?: PrintedFormula[][]; };
   type TableToDraw = { rows: unknown; convention?: Convention; structure?: string; formulas?: boolean; };
   type Theme = "auto" | "light" | "dark";

@@ -33,7 +33,10 @@ OPERATIONS = {
     "listExercises", "getExercise", "getFigure", "getFrames", "getSolution", "grade",
     "gradeMany", "createToken", "recordAttempt", "listAttempts", "getAttempt", "getStatistics",
     "preview", "previewMany", "getLiveness", "getReadiness", "exportAttempts", "overrideAttempt",
-    "forgetLearner", "regradeAttempts",
+    "forgetLearner", "regradeAttempts", "listCourses", "createCourse", "getCourse", "changeCourse",
+    "listLearners", "addLearners", "getLearnerView", "createLinks", "revokeLinks", "getGradebook",
+    "listAssignments", "createAssignment", "getAssignment", "changeAssignment",
+    "extendAssignment", "listMissing", "handIn", "getAssignedSolution", "getOwnView",
 }  # fmt: skip
 NAMES = {
     "Exercise", "ExerciseList", "Part", "GradeRequest", "GradeManyRequest", "GradeManyResponse",
@@ -242,14 +245,14 @@ def test_models_and_choices_are_never_written_out_in_place(document: Schema) -> 
     assert inside == []
 
 
-def test_only_the_structure_in_the_list_may_be_null(document: Schema) -> None:
+def test_only_two_fields_may_be_null(document: Schema) -> None:
     nullable = [
         (name, field)
         for name, schema in document["components"]["schemas"].items()
         for field, each in schema.get("properties", {}).items()
         if "null" in json.dumps(each)
     ]
-    assert nullable == [("ExerciseSummary", "structure")]
+    assert nullable == [("ExerciseSummary", "structure"), ("GradebookRow", "points")]
 
 
 def test_there_are_no_titles_and_no_defaults(document: Schema) -> None:

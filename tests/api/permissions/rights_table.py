@@ -9,7 +9,14 @@ from typing import Final
 from service.api.permissions.rights import RIGHTS, Right
 
 PAGE: Final = Path(__file__).parents[3] / "docs" / "keys.md"
-_HEADINGS: Final = ("Route", "Scope", "Exercises", "Token of a learner", "Without keys")
+_HEADINGS: Final = (
+    "Route",
+    "Scope",
+    "Exercises",
+    "Token of a learner",
+    "Key of a course",
+    "Without keys",
+)
 _START: Final = f"| {' | '.join(_HEADINGS)} |\n"
 
 
@@ -21,7 +28,9 @@ def table() -> str:
 
 def _row(route: str, right: Right) -> str:
     tokens = "yes" if right.tokens else "no"
-    cells = (f"`{route}`", f"`{right.scope}`", right.reach.value, tokens, right.without_keys.value)
+    in_course = "yes" if right.in_course else "no"
+    without = right.without_keys.value
+    cells = (f"`{route}`", f"`{right.scope}`", right.reach.value, tokens, in_course, without)
     return f"| {' | '.join(cells)} |\n"
 
 

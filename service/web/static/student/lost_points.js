@@ -1,6 +1,7 @@
 // The points that a part has lost, and where, as list items.
 
-import { h, number, visible } from "../shared/dom.js";
+import { h, number } from "../shared/dom.js";
+import { typesetMessage } from "../typeset/names.js";
 
 // A message of the report says this already.
 const NOTHING_READ = new Set(["no_answer", "not_read"]);
@@ -10,13 +11,14 @@ const NOTHING_READ = new Set(["no_answer", "not_read"]);
  * little. A report of an older version has none.
  *
  * @param {Api.PartReport} report
+ * @param {Set<string>} [symbols] that the exercise declares
  */
-export function lostItems({ lost = [], little_worth: little }) {
+export function lostItems({ lost = [], little_worth: little }, symbols) {
   const told = lost.filter(({ code }) => !NOTHING_READ.has(code));
   const places = told.length === 1 ? told[0].message : told.map(lostAt).join("; ");
   return [
-    ...(told.length ? [note(`−${number(sum(told))}`, places)] : []),
-    ...(little ? [note("info", little.message)] : []),
+    ...(told.length ? [note(`−${number(sum(told))}`, places, symbols)] : []),
+    ...(little ? [note("info", little.message, symbols)] : []),
   ];
 }
 
@@ -30,12 +32,12 @@ function sum(lost) {
   return lost.reduce((total, { points }) => total + points, 0);
 }
 
-/** @param {string} badge @param {string} text */
-function note(badge, text) {
+/** @param {string} badge @param {string} text @param {Set<string>} [symbols] */
+function note(badge, text, symbols) {
   return h(
     "li",
     { class: "lost" },
     h("span", { class: "badge", "data-verdict": "note" }, badge),
-    h("p", {}, visible(text)),
+    h("p", {}, ...typesetMessage(text, symbols)),
   );
 }

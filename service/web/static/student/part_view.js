@@ -297,7 +297,7 @@ export class PartView {
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
     }
-    items.push(...lostItems(report));
+    items.push(...lostItems(report, this.symbols));
     this.list.replaceChildren(...items);
     this.list.hidden = items.length === 0;
     this.setVerdict(report.verdict);

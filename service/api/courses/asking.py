@@ -1,0 +1,72 @@
+"""What the routes of courses share: questions to the store, and parameters."""
+
+from collections.abc import Callable
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
+
+from fastapi import Path
+
+from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
+from service.api.http.problems import ProblemError
+from service.api.recording.store import ask
+from service.contract.courses import CourseName
+from service.courses.errors import CourseError, CourseFault
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Connection
+
+    from service.attempts.store import AttemptStore
+
+R = TypeVar("R")
+
+CourseId = Annotated[CourseName, Path(description="The id of a course.")]
+AssignmentId = Annotated[CourseName, Path(description="The id of an assignment.")]
+
+_TITLES: Final[dict[CourseFault, tuple[HTTPStatus, str]]] = {
+    "unknown-course": (HTTPStatus.NOT_FOUND, "There is no such course"),
+    "unknown-assignment": (HTTPStatus.NOT_FOUND, "There is no such assignment"),
+    "unknown-learner": (HTTPStatus.NOT_FOUND, "The course has no such learner"),
+    "not-assigned": (HTTPStatus.NOT_FOUND, "The exercise is not part of the assignment"),
+    "already-there": (HTTPStatus.CONFLICT, "There is one with this id already"),
+    "unusable": (HTTPStatus.UNPROCESSABLE_ENTITY, "The request cannot be used"),
+}
+_REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
+
+
+def reading(model: type) -> dict[str, Any]:
+    """Return the options of a route that reads something of a course."""
+    refused = refusals(*_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)
+    return {"response_model": model, "responses": refused, "openapi_extra": MAY_NEED_KEY}
+
+
+def changing(
+    body: type, model: type, *further: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
+) -> dict[str, Any]:
+    """Return the options of a route that changes something of a course."""
+    options = posting(body, model, None, *_REFUSED, *further, success=success)
+    return {"status_code": success, **options}
+
+
+async def read(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
+    """Return the result of ``work``, which only reads. Raises ProblemError."""
+    return await _done(store, work, writes=False)
+
+
+async def write(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
+    """Return the result of ``work``, done in one transaction. Raises ProblemError."""
+    return await _done(store, work, writes=True)
+
+
+async def _done(
+    store: "AttemptStore | None", work: "Callable[[Connection], R]", *, writes: bool
+) -> R:
+    try:
+        return await ask(store, lambda it: it.write(work) if writes else it.read(work))
+    except CourseError as error:
+        raise course_problem(error) from error
+
+
+def course_problem(error: CourseError) -> ProblemError:
+    """Return the problem of an error of courses."""
+    status, title = _TITLES[error.name]
+    return ProblemError(status, str(error), error.name, title)

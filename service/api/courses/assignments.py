@@ -1,0 +1,127 @@
+"""The routes of assignments and extensions; for tutors."""
+
+from http import HTTPStatus
+from typing import TYPE_CHECKING
+
+from fastapi import APIRouter, Request, Response
+
+from service.api.courses.asking import (
+    AssignmentId,
+    CourseId,
+    changing,
+    read,
+    reading,
+    write,
+)
+from service.api.http.bodies import read_body
+from service.api.http.lookup import Catalogue
+from service.api.recording.store import private
+from service.contract.courses import (
+    AssignmentChange,
+    CourseAssignment,
+    CourseAssignmentList,
+    Extension,
+    NewAssignment,
+)
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+
+def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
+    """Return the routes with which tutors set assignments."""
+    router = APIRouter(prefix="/v1/courses/{course_id}", tags=["courses"])
+
+    @router.get(
+        "/assignments",
+        operation_id="listAssignments",
+        summary="List the assignments of a course",
+        response_description="The assignments, in the order in which they were added.",
+        **reading(CourseAssignmentList),
+    )
+    async def list_assignments(course_id: CourseId) -> Response:
+        """List the assignments of a course; for its tutors."""
+        from service.courses.assignments import assignments_of
+
+        found = await read(store, lambda it: assignments_of(it, course_id))
+        return private(CourseAssignmentList(assignments=found))
+
+    @router.post(
+        "/assignments",
+        operation_id="createAssignment",
+        summary="Add an assignment to a course",
+        response_description="The assignment.",
+        **changing(
+            NewAssignment, CourseAssignment, HTTPStatus.CONFLICT, success=HTTPStatus.CREATED
+        ),
+    )
+    async def create_assignment(request: Request, course_id: CourseId) -> Response:
+        """Add an assignment; for tutors of the course."""
+        from service.courses.assignments import add_assignment
+
+        body = await read_body(NewAssignment, request)
+        created = private(
+            await write(store, lambda it: add_assignment(it, course_id, body, catalogue.keys()))
+        )
+        created.status_code = HTTPStatus.CREATED
+        return created
+
+    @router.get(
+        "/assignments/{assignment_id}",
+        operation_id="getAssignment",
+        summary="Show an assignment",
+        response_description="The assignment.",
+        **reading(CourseAssignment),
+    )
+    async def show_assignment(course_id: CourseId, assignment_id: AssignmentId) -> Response:
+        """Show an assignment with its extensions; for tutors of the course."""
+        from service.courses.assignments import assignment_of
+
+        return private(await read(store, lambda it: assignment_of(it, course_id, assignment_id)))
+
+    @router.post(
+        "/assignments/{assignment_id}",
+        operation_id="changeAssignment",
+        summary="Change an assignment",
+        response_description="The assignment.",
+        **changing(AssignmentChange, CourseAssignment),
+    )
+    async def change_assignment(
+        request: Request, course_id: CourseId, assignment_id: AssignmentId
+    ) -> Response:
+        """Change the given fields of an assignment; for tutors of the course.
+
+        With a later due date, attempts that are not late any more get all their points. An
+        earlier due date makes no recorded attempt late.
+        """
+        from service.courses import assignments
+
+        body = await read_body(AssignmentChange, request)
+        changed = await write(
+            store,
+            lambda it: assignments.change_assignment(
+                it, course_id, assignment_id, body, catalogue.keys()
+            ),
+        )
+        return private(changed)
+
+    @router.post(
+        "/assignments/{assignment_id}/extensions",
+        operation_id="extendAssignment",
+        summary="Give a learner other dates or another limit",
+        response_description="The assignment with its extensions.",
+        **changing(Extension, CourseAssignment),
+    )
+    async def extend_assignment(
+        request: Request, course_id: CourseId, assignment_id: AssignmentId
+    ) -> Response:
+        """Give one learner other dates or another limit; for tutors of the course.
+
+        It replaces an earlier extension of the learner. Without dates and limit, it removes it.
+        """
+        from service.courses.assignments import extend
+
+        body = await read_body(Extension, request)
+        return private(await write(store, lambda it: extend(it, course_id, assignment_id, body)))
+
+    return router

@@ -1,0 +1,98 @@
+"""The routes of the gradebook, of missing hand-ins, and of one learner's view; for tutors."""
+
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from fastapi import APIRouter, Path, Query, Response
+
+from service.api.courses.asking import AssignmentId, CourseId, course_problem, read, reading
+from service.api.http.lookup import Catalogue
+from service.api.recording.store import private, private_json
+from service.contract.attempts import Learner
+from service.contract.courses import Gradebook, GradebookFormat, MissingList, OwnCourses
+from service.courses.errors import CourseError
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+_CSV: Final[dict[str, Any]] = {"schema": {"type": "string"}}
+
+
+def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
+    """Return the routes with which tutors see the work of a class."""
+    router = APIRouter(prefix="/v1/courses/{course_id}", tags=["courses"])
+
+    @router.get(
+        "/assignments/{assignment_id}/missing",
+        operation_id="listMissing",
+        summary="List learners who have not handed in",
+        response_description="The learners, by name.",
+        **reading(MissingList),
+    )
+    async def list_missing(course_id: CourseId, assignment_id: AssignmentId) -> Response:
+        """List who has not handed in which exercises; for tutors of the course."""
+        from service.courses.gradebook import missing
+
+        found = await read(store, lambda it: missing(it, course_id, assignment_id))
+        return private(MissingList(missing=found))
+
+    gradebook_options = reading(Gradebook)
+    gradebook_options["responses"][200] = {"content": {"text/csv": _CSV}}
+
+    @router.get(
+        "/gradebook",
+        operation_id="getGradebook",
+        summary="Show the gradebook of a course",
+        response_description="The gradebook, as JSON or CSV.",
+        **gradebook_options,
+    )
+    async def show_gradebook(
+        course_id: CourseId,
+        assignment: Annotated[
+            str | None, Query(max_length=64, description="Only this assignment.")
+        ] = None,
+        form: Annotated[
+            GradebookFormat,
+            Query(
+                alias="format",
+                description="`json`, `csv`, or CSV with the headings that `moodle` or `canvas` "
+                "imports.",
+            ),
+        ] = "json",
+    ) -> Response:
+        """Show the points that count, of each learner at each exercise; for tutors."""
+        from service.courses.gradebook import gradebook, written_gradebook
+
+        book = await read(store, lambda it: gradebook(it, course_id, assignment))
+        if form == "json":
+            # Null means that nothing was handed in.
+            return private_json(book.model_dump_json().encode())
+        headers = {
+            "Cache-Control": "no-store",
+            "Content-Disposition": f'attachment; filename="gradebook-{course_id}.csv"',
+        }
+        content = b"".join(written_gradebook(book, form))
+        return Response(content, HTTPStatus.OK, headers, "text/csv; charset=utf-8")
+
+    @router.get(
+        "/learners/{learner}/view",
+        operation_id="getLearnerView",
+        summary="Show what a learner sees",
+        response_description="The course as the learner sees it.",
+        **reading(OwnCourses),
+    )
+    async def show_learner_view(
+        course_id: CourseId, learner: Annotated[Learner, Path(description="The id of a learner.")]
+    ) -> Response:
+        """Show a course as one of its learners sees it; for tutors of the course."""
+        from service.courses.learner_view import own_view
+
+        now = datetime.now(UTC)
+        view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))
+        if not view.courses:
+            message = f"The course has no learner {learner}."
+            raise course_problem(CourseError("unknown-learner", message))
+        return private(view)
+
+    return router

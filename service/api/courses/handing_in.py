@@ -1,0 +1,172 @@
+"""The routes of learners: their assignments, handing in, and solutions."""
+
+from collections.abc import Collection
+from datetime import UTC, datetime
+from functools import partial
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated
+
+from fastapi import APIRouter, Header, Request, Response
+
+from service.access.caller import Caller
+from service.api.courses.asking import (
+    AssignmentId,
+    CourseId,
+    changing,
+    course_problem,
+    read,
+    reading,
+)
+from service.api.http.bodies import read_body
+from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
+from service.api.http.problems import ProblemError
+from service.api.monitor import Monitor
+from service.api.permissions.access import Access
+from service.api.permissions.access_problems import access_problem
+from service.api.recording.attempting import AttemptTerms, Recorder
+from service.api.recording.new_attempts import not_recorded
+from service.api.recording.store import private
+from service.api.routes.solutions import SolvedExercises
+from service.catalogue import FeedbackLevel
+from service.contract.attempts import AttemptRequest, AttemptResponse
+from service.contract.courses import HandInRequest, OwnCourses
+from service.courses.errors import CourseError
+from service.solutions import ModelSolution
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+_Key = Annotated[
+    str,
+    Header(
+        alias="Idempotency-Key",
+        min_length=1,
+        max_length=255,
+        description="Any text that you choose for this attempt. If the request is sent again with "
+        "the same key, the answer is the same, and nothing is recorded twice.",
+    ),
+]
+
+
+def routes(
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    store: "AttemptStore | None",
+    access: Access,
+    monitor: Monitor | None = None,
+    origins: Collection[str] = (),
+) -> APIRouter:
+    """Return the routes of learners; reports have at most the level ``feedback``.
+
+    Pages of the service and of ``origins`` may hand in.
+    """
+    router = APIRouter(prefix="/v1", tags=["courses"])
+    solutions = SolvedExercises()
+
+    @router.get(
+        "/me",
+        operation_id="getOwnView",
+        summary="Show a learner's own courses",
+        response_description="The assignments, the attempts that are left, and the points.",
+        **reading(OwnCourses),
+    )
+    async def show_own_view(request: Request) -> Response:
+        """Show the assignments and attempts of the learner with this link or token."""
+        from service.courses.learner_view import own_view
+
+        caller = access.caller(request)
+        learner, now = _learner(caller, None), datetime.now(UTC)
+        view = await read(store, lambda it: own_view(it, learner, caller.course, catalogue, now))
+        return private(view)
+
+    @router.post(
+        "/courses/{course_id}/assignments/{assignment_id}/attempts",
+        operation_id="handIn",
+        summary="Hand in an exercise of an assignment",
+        response_description="The recorded attempt and its report.",
+        **changing(HandInRequest, AttemptResponse, success=HTTPStatus.CREATED),
+    )
+    async def hand_in(
+        request: Request, course_id: CourseId, assignment_id: AssignmentId, idempotency_key: _Key
+    ) -> Response:
+        """Grade answers and record them in an assignment, once for each idempotency key.
+
+        The assignment says how attempts are limited and how much their reports say. An attempt
+        that is answered with 201 is not lost, whatever happens to the service.
+        """
+        from service.courses.terms import terms_of
+
+        access.require_allowed_origin(request, origins)
+        if store is None:
+            raise not_recorded()
+        body = await read_body(HandInRequest, request)
+        caller = access.caller(request)
+        learner = _learner(caller, body.learner)
+        exercise = exercise_or_404(catalogue, body.exercise)
+        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
+        terms = await read(store, lambda it: terms_of(it, course_id, assignment_id, learner))
+        if exercise.id not in terms.exercises:
+            raise _not_assigned(assignment_id, exercise.id)
+        given = body.model_dump(exclude={"exercise", "learner"}, exclude_unset=True)
+        attempt = AttemptRequest.model_validate({**given, "learner": learner})
+        level = partial(terms.feedback_at, exercise)
+        return await Recorder(store, feedback, monitor).answer(
+            request,
+            exercise,
+            attempt,
+            AttemptTerms(terms.rules, level, terms.number),
+            caller.owner,
+            idempotency_key,
+        )
+
+    @router.get(
+        "/courses/{course_id}/assignments/{assignment_id}/solutions/{exercise_id}",
+        operation_id="getAssignedSolution",
+        summary="Show a learner the solution of an exercise",
+        response_description="The model solution.",
+        **reading(ModelSolution),
+    )
+    async def show_assigned_solution(
+        request: Request,
+        course_id: CourseId,
+        assignment_id: AssignmentId,
+        exercise_id: ExerciseId,
+    ) -> Response:
+        """Show a learner the model solution, once the assignment allows it."""
+        from service.courses.learner_view import has_full_marks
+        from service.courses.terms import terms_of
+
+        learner = _learner(access.caller(request), None)
+        terms = await read(store, lambda it: terms_of(it, course_id, assignment_id, learner))
+        exercise = exercise_or_404(catalogue, exercise_id)
+        if exercise.id not in terms.exercises:
+            raise _not_assigned(assignment_id, exercise.id)
+        is_full = await read(
+            store, lambda it: has_full_marks(it, learner, terms.number, exercise.id)
+        )
+        if not terms.shows_solution(datetime.now(UTC), is_full=is_full):
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN,
+                "The assignment does not show you this solution now.",
+                "solution-not-shown",
+                "The solution is not shown",
+            )
+        return await solutions.answer(exercise)
+
+    return router
+
+
+def _learner(caller: Caller, named: str | None) -> str:
+    """Return the learner for whom the caller acts. Raises ProblemError."""
+    if caller.learner is not None:
+        if named not in (None, caller.learner):
+            raise access_problem("other-learner")
+        return caller.learner
+    if named is None:
+        raise access_problem("learner-needed")
+    return named
+
+
+def _not_assigned(assignment: str, exercise: str) -> ProblemError:
+    message = f"The exercise {exercise} is not part of the assignment {assignment}."
+    return course_problem(CourseError("not-assigned", message))

@@ -1,0 +1,192 @@
+"""One request to record an attempt, at an exercise alone or in an assignment of a course."""
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+from http import HTTPStatus
+from typing import TYPE_CHECKING
+
+from fastapi import Request, Response
+
+from service.api.http.problems import ProblemError, store_down
+from service.api.monitor import Monitor
+from service.api.turns import run_in_turns
+from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
+from service.attempts.errors import StoreDownError
+from service.attempts.graded import AttemptGrading, AttemptReport
+from service.attempts.outcome import Outcome
+from service.attempts.policy import AttemptRefusedError, Ruling, ruling
+from service.catalogue import Exercise, FeedbackLevel, least
+from service.catalogue.attempts import AttemptsSpec
+from service.contract.attempts import Attempt, AttemptRequest
+from service.time_slices import working_time
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+
+@dataclass(frozen=True, slots=True)
+class AttemptTerms:
+    """The rules of an attempt, its feedback by ordinal, and the number of its assignment."""
+
+    rules: AttemptsSpec
+    feedback_at: Callable[[int], FeedbackLevel]
+    assignment: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Recorder:
+    """Records attempts in a store; reports have at most the level ``ceiling``."""
+
+    store: "AttemptStore"
+    ceiling: FeedbackLevel
+    monitor: Monitor | None
+
+    async def answer(
+        self,
+        request: Request,
+        exercise: Exercise,
+        body: AttemptRequest,
+        terms: AttemptTerms,
+        owner: str,
+        idempotency_key: str | None,
+    ) -> Response:
+        """Grade answers, record them, and answer with the attempt and its report.
+
+        Raises ProblemError.
+        """
+        attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key)
+        try:
+            recorded = await attempting.recorded(request)
+        except StoreDownError as error:
+            detail = (
+                "The database did not confirm the attempt. Send it again, with the same "
+                "Idempotency-Key."
+            )
+            raise store_down(detail) from error
+        except AttemptRefusedError as error:
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN, str(error), error.name, "The attempt is not taken"
+            ) from error
+        return Response(_answer(recorded), HTTPStatus.CREATED, media_type="application/json")
+
+
+class _Attempting:
+    """One request to record an attempt."""
+
+    def __init__(
+        self,
+        exercise: Exercise,
+        body: AttemptRequest,
+        terms: AttemptTerms,
+        recorder: Recorder,
+        owner: str,
+        idempotency_key: str | None,
+    ) -> None:
+        self._exercise = exercise
+        self._body = body
+        self._terms = terms
+        self._recorder = recorder
+        self._owner = owner
+        self._key = idempotency_key
+        self._grading = AttemptGrading(exercise, body)
+        self._now = datetime.now(UTC)
+        answers = body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
+        self._submission = json.dumps(answers)
+        self._answers_digest = _digest(body.answers)
+        content = {"exercise": exercise.id, "learner": body.learner, **answers}
+        if terms.assignment is not None:
+            content["assignment"] = terms.assignment
+        self._request_digest = _digest(content)
+
+    async def recorded(self, request: Request) -> RecordedAttempt:
+        """Grade and record it. Raises StoreDownError, AttemptRefusedError, ProblemError."""
+        store, assignment = self._recorder.store, self._terms.assignment
+        standing = await store.standing(
+            self._exercise.id, self._body.learner, self._owner, self._key, assignment
+        )
+        while True:
+            if standing.earlier is not None:
+                return self._same(standing.earlier)
+            most = self._most(self._ruling(standing))
+            if not self._grading.has(most):
+                await run_in_turns(request, partial(self._grade, most))
+            written = await store.record(standing, self._after)
+            if isinstance(written, RecordedAttempt):
+                return written
+            standing = written
+
+    def _ruling(self, standing: Standing) -> Ruling:
+        return ruling(self._terms.rules, standing.counted, self._now)
+
+    def _most(self, taken: Ruling) -> FeedbackLevel:
+        """Return the highest feedback level for the learner at this attempt."""
+        return least(self._terms.feedback_at(taken.ordinal), self._recorder.ceiling)
+
+    def _grade(self, most: FeedbackLevel) -> None:
+        began = working_time()
+        report = self._grading.at(most).report
+        monitor = self._recorder.monitor
+        if monitor is not None:
+            monitor.graded(report, working_time() - began)
+
+    def _same(self, earlier: RecordedAttempt) -> RecordedAttempt:
+        if earlier.request_digest != self._request_digest:
+            raise ProblemError(
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+                "Another attempt was recorded under this Idempotency-Key. Take a new key for each "
+                "attempt.",
+                "idempotency-key-reused",
+                "The idempotency key belongs to another attempt",
+            )
+        return earlier
+
+    def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
+        """Return the attempt to record; None if it is not allowed or must be graded first."""
+        if standing.earlier is not None:
+            return None
+        try:
+            taken = self._ruling(standing)
+        except AttemptRefusedError:
+            return None
+        most = self._most(taken)
+        if not self._grading.has(most):
+            return None
+        graded = self._grading.at(most)
+        return self._new(taken, graded, standing.last + 1), graded.outcome
+
+    def _new(self, taken: Ruling, graded: AttemptReport, ordinal: int) -> NewAttempt:
+        report = graded.report
+        return NewAttempt(
+            exercise=self._exercise.id,
+            learner=self._body.learner,
+            ordinal=ordinal if report.gradable else None,
+            at=self._now,
+            is_late=taken.is_late,
+            worth=taken.worth,
+            submission=self._submission,
+            answers_digest=self._answers_digest,
+            report=graded.text,
+            version=report.version,
+            grader=report.grader,
+            points=round(report.points * taken.worth, 6),
+            max_points=report.max_points,
+            owner=self._owner,
+            idempotency_key=self._key,
+            request_digest=self._request_digest,
+            assignment=self._terms.assignment,
+        )
+
+
+def _answer(recorded: RecordedAttempt) -> bytes:
+    """Return the attempt and its report as JSON; the report is the recorded text, byte by byte."""
+    attempt = Attempt.model_validate(recorded, from_attributes=True)
+    told = attempt.model_dump_json(exclude_none=True)
+    return f'{{"attempt":{told},"report":{recorded.report}}}'.encode()
+
+
+def _digest(content: object) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

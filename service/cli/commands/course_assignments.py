@@ -1,0 +1,253 @@
+"""`dh-grader courses assignments`: the assignments of a course, and extensions."""
+
+from collections.abc import Callable, Iterator, Mapping
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+from pydantic import BaseModel, ValidationError
+from sqlalchemy import Connection
+
+from service.attempts.storage.database import in_transaction
+from service.catalogue import FeedbackLevel
+from service.cli.commands.attempts import database, encodable
+from service.cli.terminal import give_up, installed, installed_exercise, stdout
+from service.contract.courses import (
+    AssignedPoints,
+    AssignmentChange,
+    CourseAssignment,
+    Extension,
+    NewAssignment,
+    Practice,
+    ShowSolution,
+)
+from service.courses import assignments
+from service.courses.errors import CourseError
+from service.formats.shared.plain_text import number, visible
+from service.submissions.assignment import Assignment, load_assignment
+
+M = TypeVar("M", bound=BaseModel)
+R = TypeVar("R")
+
+commands = typer.Typer(help="The assignments of a course.", no_args_is_help=True)
+
+# What these options are to remove what was set before.
+_NONE = "none"
+_REMOVABLE = ("opens", "due", "closes", "limit", "feedback")
+
+CourseOption = Annotated[str, typer.Argument(help="The id of a course.", callback=encodable)]
+AssignmentName = Annotated[str, typer.Argument(help="The id of the assignment.")]
+TitleOption = Annotated[str | None, typer.Option(help="The title.", callback=encodable)]
+ExercisesOption = Annotated[
+    list[str] | None,
+    typer.Option("--exercise", help="An exercise and its points: scara=10. Repeatable."),
+]
+FileOption = Annotated[
+    Path | None, typer.Option(help="An assignment file: its title, exercises and feedback.")
+]
+OpensOption = Annotated[str | None, typer.Option(help="From when on attempts are accepted.")]
+DueOption = Annotated[
+    str | None,
+    typer.Option(help='Such as "2026-10-15 23:59", in the time zone of the course; none removes.'),
+]
+ClosesOption = Annotated[str | None, typer.Option(help="Until when late attempts are accepted.")]
+LimitOption = Annotated[str | None, typer.Option(help="The most attempts at each exercise.")]
+LateWorthOption = Annotated[
+    float | None, typer.Option(min=0, max=1, help="The share that a late attempt earns. [0.5]")
+]
+FeedbackOption = Annotated[
+    str | None, typer.Option(help="One level for each attempt: score,verdicts,hints.")
+]
+PracticeOption = Annotated[
+    Practice | None, typer.Option(help="Whether answers are graded without being recorded.")
+]
+SolutionOption = Annotated[ShowSolution | None, typer.Option(help="When the solution is shown.")]
+
+
+def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
+    """Return the result of ``work`` in a transaction; end the program with the reason of an error.
+
+    A missing database file is created only with ``create``.
+    """
+    with database(create=create) as engine:
+        try:
+            return in_transaction(engine, work)
+        except CourseError as error:
+            give_up(str(error))
+
+
+def checked(model: type[M], **fields: Any) -> M:
+    """Return a body of these fields; end the program if it cannot be used."""
+    try:
+        given = {name: value for name, value in fields.items() if value is not None}
+        return model.model_validate(given)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        give_up(f"{place}: {first['msg']}.")
+
+
+@commands.command("add")
+def add(
+    course: CourseOption,
+    assignment: AssignmentName,
+    title: TitleOption = None,
+    exercise: ExercisesOption = None,
+    file: FileOption = None,
+    opens: OpensOption = None,
+    due: DueOption = None,
+    closes: ClosesOption = None,
+    limit: LimitOption = None,
+    late_worth: LateWorthOption = None,
+    feedback: FeedbackOption = None,
+    practice: PracticeOption = None,
+    solution: SolutionOption = None,
+) -> None:
+    """Add an assignment to a course."""
+    fields = _fields(
+        title, exercise, file, opens, due, closes, limit, late_worth, feedback, practice, solution
+    )
+    fields.setdefault("title", assignment)
+    body = checked(NewAssignment, id=assignment, **fields)
+    known = installed().keys()
+    added = changed(lambda it: assignments.add_assignment(it, course, body, known))
+    _print(added)
+
+
+@commands.command("change")
+def change(
+    course: CourseOption,
+    assignment: AssignmentName,
+    title: TitleOption = None,
+    exercise: ExercisesOption = None,
+    file: FileOption = None,
+    opens: OpensOption = None,
+    due: DueOption = None,
+    closes: ClosesOption = None,
+    limit: LimitOption = None,
+    late_worth: LateWorthOption = None,
+    feedback: FeedbackOption = None,
+    practice: PracticeOption = None,
+    solution: SolutionOption = None,
+) -> None:
+    """Change an assignment. With a later due date, late attempts get their points back."""
+    fields = _fields(
+        title, exercise, file, opens, due, closes, limit, late_worth, feedback, practice, solution
+    )
+    removed = dict.fromkeys(name for name in _REMOVABLE if fields.get(name) == _NONE)
+    body = checked(AssignmentChange, **(fields | removed))
+    # A field that is None on purpose removes what was set.
+    body = body.model_copy(update=removed)
+    known = installed().keys()
+    _print(changed(lambda it: assignments.change_assignment(it, course, assignment, body, known)))
+
+
+@commands.command("list")
+def list_assignments(course: CourseOption) -> None:
+    """List the assignments of a course, with the extensions."""
+    for each in changed(lambda it: assignments.assignments_of(it, course)):
+        _print(each)
+
+
+@commands.command("extend")
+def extend(
+    course: CourseOption,
+    assignment: AssignmentName,
+    learner: Annotated[str, typer.Argument(help="The learner's id.", callback=encodable)],
+    due: DueOption = None,
+    closes: ClosesOption = None,
+    limit: LimitOption = None,
+) -> None:
+    """Give a learner other dates or another limit; without options, the usual ones again."""
+    given = {"due": _date(due), "closes": _date(closes), "limit": limit}
+    body = checked(Extension, learner=learner, **given)
+    _print(changed(lambda it: assignments.extend(it, course, assignment, body)))
+
+
+def _fields(
+    title: str | None,
+    exercise: list[str] | None,
+    file: Path | None,
+    opens: str | None,
+    due: str | None,
+    closes: str | None,
+    limit: str | None,
+    late_worth: float | None,
+    feedback: str | None,
+    practice: Practice | None,
+    solution: ShowSolution | None,
+) -> dict[str, Any]:
+    """Return the fields that the options set."""
+    fields = {} if file is None else dict(_of_file(load_assignment(file, installed_exercise)))
+    given = {
+        "title": title,
+        "exercises": [_points(each) for each in exercise or ()] or None,
+        "opens": _date(opens),
+        "due": _date(due),
+        "closes": _date(closes),
+        "limit": limit,
+        "late_worth": late_worth,
+        "feedback": feedback if feedback in (None, _NONE) else feedback.split(","),
+        "practice": practice,
+        "solution": solution,
+    }
+    return fields | {name: value for name, value in given.items() if value is not None}
+
+
+def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
+    """Yield the fields that an assignment file sets."""
+    exercises = []
+    for each in assignment.exercises:
+        if each.path is not None or each.left_out:
+            give_up(
+                f"{each.exercise.id}: an assignment of a course has whole exercises of the "
+                "catalogue: leave out path and parts."
+            )
+        exercises.append(AssignedPoints(exercise=each.exercise.id, points=each.worth))
+    yield "title", assignment.title
+    yield "exercises", exercises
+    if assignment.feedback is not None:
+        yield "feedback", [assignment.feedback]
+
+
+def _points(option: str) -> Mapping[str, Any]:
+    """Return the exercise and the points of an option such as scara=10."""
+    name, sign, points = option.partition("=")
+    if not sign:
+        exercise = installed_exercise(name)
+        return {"exercise": exercise.id, "points": sum(part.points for part in exercise.parts)}
+    return {"exercise": name, "points": points}
+
+
+def _date(option: str | None) -> datetime | str | None:
+    if option in (None, _NONE):
+        return option
+    try:
+        return datetime.fromisoformat(option)
+    except ValueError:
+        give_up(f'{option}: write a date such as "2026-10-15 23:59".')
+
+
+def _print(assignment: CourseAssignment) -> None:
+    screen = stdout()
+    total = number(sum(each.points for each in assignment.exercises))
+    screen.print(f"{assignment.id}: {visible(assignment.title)}, {total} points", soft_wrap=True)
+    for each in assignment.exercises:
+        screen.print(f"  {each.exercise}, {number(each.points)} points", soft_wrap=True)
+    for name in ("opens", "due", "closes"):
+        when = getattr(assignment, name)
+        if when is not None:
+            screen.print(f"  {name} {when:%Y-%m-%d %H:%M %Z}", soft_wrap=True)
+    limit = "not limited" if assignment.limit is None else f"at most {assignment.limit}"
+    levels = [FeedbackLevel(each).value for each in assignment.feedback or ()]
+    told = ", ".join(levels) or "that of each exercise"
+    screen.print(f"  attempts {limit}; late attempts earn {assignment.late_worth:.0%}")
+    screen.print(f"  feedback {told}", soft_wrap=True)
+    screen.print(f"  practice {assignment.practice}; solution {assignment.solution}")
+    for extension in assignment.extensions:
+        due = f"due {extension.due:%Y-%m-%d %H:%M %Z}" if extension.due else ""
+        own = f"at most {extension.limit} attempts" if extension.limit else ""
+        closes = f"closes {extension.closes:%Y-%m-%d %H:%M %Z}" if extension.closes else ""
+        told = "; ".join(filter(None, (due, closes, own)))
+        screen.print(f"  {visible(extension.learner)}: {told}", soft_wrap=True)

@@ -1,0 +1,184 @@
+"""`dh-grader courses`: courses with learners, links, assignments and a gradebook."""
+
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.commands import course_assignments
+from service.cli.commands.attempts import encodable
+from service.cli.commands.course_assignments import changed, checked
+from service.cli.files.output import write
+from service.cli.terminal import give_up, stdout
+from service.contract.courses import (
+    LONGEST_LINK_DAYS,
+    Course,
+    CourseChange,
+    GradebookFormat,
+    LinksRequest,
+    NewCourse,
+)
+from service.courses import roll
+from service.courses.class_list import read_class_list
+from service.courses.errors import CourseError
+from service.courses.gradebook import gradebook, missing, written_gradebook
+from service.courses.links import issue_links, revoke_links
+from service.formats.shared import spreadsheet
+from service.formats.shared.plain_text import number, visible
+from service.settings import load_settings
+
+commands = typer.Typer(
+    help="Courses: learners, links, assignments, gradebook.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+_learners = typer.Typer(help="The learners of a course.", no_args_is_help=True)
+commands.add_typer(_learners, name="learners")
+commands.add_typer(course_assignments.commands, name="assignments")
+
+CourseIdArgument = Annotated[
+    str, typer.Argument(help="The id of a course.", show_default=False, callback=encodable)
+]
+Output = Annotated[Path | None, typer.Option(help="The file to write.")]
+LearnerOption = Annotated[
+    list[str] | None, typer.Option("--learner", help="Only this learner. Repeatable. [all]")
+]
+
+
+@commands.command("new")
+def new(
+    course: CourseIdArgument,
+    title: Annotated[str, typer.Option(help="The title.", callback=encodable)],
+    zone: Annotated[str, typer.Option(help="The time zone, such as Europe/Berlin.")],
+) -> None:
+    """Create a course. Its id has small letters, digits and hyphens."""
+    body = checked(NewCourse, id=course, title=title, zone=zone)
+    changed(lambda it: roll.add_course(it, body, datetime.now(UTC)), create=True)
+    typer.echo(f"The course {course} is there.")
+
+
+@commands.command("list")
+def list_courses() -> None:
+    """List the courses."""
+    for each in changed(roll.all_courses):
+        stdout().print(f"{each.id}  {visible(each.title)}  {_counts(each)}", soft_wrap=True)
+
+
+@commands.command("show")
+def show(course: CourseIdArgument) -> None:
+    """Show a course, its assignments and its learners."""
+    found = changed(lambda it: roll.course(it, course))
+    learners = changed(lambda it: roll.learners(it, course, datetime.now(UTC)))
+    screen = stdout()
+    screen.print(f"{visible(found.title)}, {found.zone}: {_counts(found)}", soft_wrap=True)
+    for assignment in found.assignments:
+        screen.print(f"  {assignment}", soft_wrap=True)
+    for each in learners:
+        link = f"link until {each.link_until:%Y-%m-%d}" if each.link_until else "no link"
+        told = (each.learner, each.name, each.email or "", link)
+        screen.print("  ".join(visible(text) for text in told if text), soft_wrap=True)
+
+
+def _counts(course: Course) -> str:
+    return f"{course.learners} learners, {len(course.assignments)} assignments"
+
+
+@commands.command("change")
+def change(
+    course: CourseIdArgument,
+    title: Annotated[str | None, typer.Option(help="The title.", callback=encodable)] = None,
+    zone: Annotated[str | None, typer.Option(help="The time zone.")] = None,
+) -> None:
+    """Change the title or the time zone of a course."""
+    body = checked(CourseChange, title=title, zone=zone)
+    changed(lambda it: roll.change_course(it, course, body))
+    typer.echo("Changed.")
+
+
+@_learners.command("import")
+def import_learners(
+    course: CourseIdArgument,
+    file: Annotated[Path, typer.Argument(help="A CSV file, or - for standard input.")],
+) -> None:
+    """Add the learners of a class list, as Moodle or Canvas export it, or written by hand.
+
+    The first line has the headings: name, and email or id. Nobody is removed.
+    """
+    try:
+        text = sys.stdin.read() if str(file) == "-" else file.read_text(encoding="utf-8-sig")
+        listed = read_class_list(text)
+    except (OSError, UnicodeDecodeError) as error:
+        give_up(f"{file}: cannot be read: {error}")
+    except CourseError as error:
+        give_up(f"{file}: {error}")
+    count = changed(lambda it: roll.add_learners(it, course, listed))
+    typer.echo(f"{len(listed)} learners, {count} of them new.")
+
+
+@commands.command("links")
+def links(
+    course: CourseIdArgument,
+    address: Annotated[
+        str, typer.Option(help="The address of the service, such as https://grader.example.edu.")
+    ] = "http://127.0.0.1:8000",
+    learner: LearnerOption = None,
+    renew: Annotated[
+        bool, typer.Option("--renew", help="Make new links, and end the old ones.")
+    ] = False,
+    revoke: Annotated[bool, typer.Option("--revoke", help="End the links; write none.")] = False,
+    days: Annotated[
+        int, typer.Option(min=1, max=LONGEST_LINK_DAYS, help="How long new links are valid.")
+    ] = 200,
+    output: Output = None,
+) -> None:
+    """Write a CSV file with the personal link of each learner, for a mail merge."""
+    now = datetime.now(UTC)
+    if revoke:
+        count = changed(lambda it: revoke_links(it, course, learner, now))
+        typer.echo(f"{count} links ended. Each running service knows it within seconds.")
+        return
+    secret = load_settings().known_secret()
+    if secret is None:
+        give_up("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE.")
+    wanted = LinksRequest(learners=learner, renew=renew, days=days)
+    found = changed(lambda it: issue_links(it, course, wanted, secret, address, now))
+    lines = [spreadsheet.line(("learner", "name", "email", "link", "expires"))]
+    for each in found:
+        until = f"{each.expires_at:%Y-%m-%d}"
+        lines.append(spreadsheet.line((each.learner, each.name, each.email, each.link, until)))
+    write(lines, output, at_once=True)
+
+
+@commands.command("gradebook")
+def show_gradebook(
+    course: CourseIdArgument,
+    assignment: Annotated[str | None, typer.Option(help="Only this assignment.")] = None,
+    form: Annotated[
+        GradebookFormat,
+        typer.Option("--format", help="csv, json, or CSV that moodle or canvas imports."),
+    ] = "csv",
+    output: Output = None,
+) -> None:
+    """Write the points that count, of each learner at each exercise."""
+    book = changed(lambda it: gradebook(it, course, assignment))
+    if form == "json":
+        write([book.model_dump_json(indent=2).encode() + b"\n"], output, at_once=True)
+    else:
+        write(written_gradebook(book, form), output, at_once=True)
+
+
+@commands.command("missing")
+def show_missing(
+    course: CourseIdArgument,
+    assignment: Annotated[str, typer.Argument(help="The id of an assignment.")],
+) -> None:
+    """List who has not handed in which exercises."""
+    found = changed(lambda it: missing(it, course, assignment))
+    screen = stdout()
+    for each in found:
+        due = f", due {each.due:%Y-%m-%d %H:%M %Z}" if each.due else ""
+        absent = ", ".join(each.exercises)
+        screen.print(f"{visible(each.name)}: {absent}{due}", soft_wrap=True)
+    screen.print(f"Not complete: {number(len(found))} learners.")

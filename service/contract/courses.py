@@ -1,0 +1,356 @@
+"""The bodies of courses: learners, assignments, links and the gradebook."""
+
+from datetime import datetime
+from typing import Annotated, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from service.catalogue import FeedbackLevel
+from service.contract.attempts import Attempt, Learner
+from service.submissions.body import GradeRequest
+
+MOST_LEARNERS: Final = 5000
+MOST_EXERCISES: Final = 100
+LONGEST_LINK_DAYS: Final = 730
+
+Practice = Literal["open", "after", "none"]
+ShowSolution = Literal["never", "after_full", "after_due"]
+AssignmentState = Literal["not_open", "open", "late", "closed"]
+GradebookFormat = Literal["json", "csv", "moodle", "canvas"]
+
+CourseName = Annotated[
+    str,
+    StringConstraints(max_length=64, pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$"),
+    Field(description="Small letters, digits and hyphens, such as `robotics-2026`."),
+]
+_Line = Annotated[str, StringConstraints(min_length=1, max_length=200, strip_whitespace=True)]
+_Email = Annotated[str, StringConstraints(max_length=254, pattern=r"^[^@\s,;]+@[^@\s,;]+$")]
+_Zone = Annotated[
+    str,
+    StringConstraints(min_length=1, max_length=64),
+    Field(description="The IANA name of the time zone, such as `Europe/Berlin`."),
+]
+CourseMoment = Annotated[
+    datetime,
+    Field(
+        description="With its time zone, or, without one, in the time zone of the course.",
+        strict=False,
+    ),
+]
+
+
+class _Request(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class NewCourse(_Request):
+    """A new course."""
+
+    id: CourseName
+    title: _Line
+    zone: _Zone
+
+
+class CourseChange(_Request):
+    """The fields of a course that change."""
+
+    title: _Line | None = Field(None, description="The new title.")
+    zone: _Zone | None = Field(None, description="The new time zone. Dates stay the same moments.")
+
+
+class Course(BaseModel):
+    """A course."""
+
+    id: str
+    title: str
+    zone: str
+    learners: int = Field(description="The number of learners.")
+    assignments: list[str] = Field(description="The ids of the assignments, in order.")
+
+
+class CourseList(BaseModel):
+    """The courses that the caller may see."""
+
+    courses: list[Course]
+
+
+class NewLearner(_Request):
+    """A learner to add to a course, or to change."""
+
+    learner: Learner | None = Field(
+        None,
+        description="The learner's id in attempts. By default that of the learner with this "
+        "e-mail address, or else a new random one.",
+    )
+    name: _Line
+    email: _Email | None = Field(None, description="The e-mail address.")
+
+
+class LearnersRequest(_Request):
+    """Learners to add: one by one, or a class list."""
+
+    learners: Annotated[list[NewLearner], Field(max_length=MOST_LEARNERS)] | None = Field(
+        None, description="The learners."
+    )
+    csv: str | None = Field(
+        None, description="A class list, as Moodle or Canvas export it, or written by hand."
+    )
+
+
+class CourseLearner(BaseModel):
+    """A learner of a course."""
+
+    learner: str
+    name: str
+    email: str | None = Field(None, description="The e-mail address, if it is known.")
+    link_until: datetime | None = Field(
+        None, description="When the personal link expires; absent if there is no valid link."
+    )
+
+
+class LearnerList(BaseModel):
+    """The learners of a course, by name."""
+
+    learners: list[CourseLearner]
+
+
+class LinksRequest(_Request):
+    """A request for personal links."""
+
+    learners: Annotated[list[Learner], Field(min_length=1, max_length=MOST_LEARNERS)] | None = (
+        Field(None, description="The learners. By default all learners of the course.")
+    )
+    renew: bool = Field(
+        False, description="If true, make new links, and end the old ones, also lost ones."
+    )
+    days: int = Field(
+        200, ge=1, le=LONGEST_LINK_DAYS, description="How long new links are valid, in days."
+    )
+
+
+class RevokeLinksRequest(_Request):
+    """A request to end personal links."""
+
+    learners: Annotated[list[Learner], Field(min_length=1, max_length=MOST_LEARNERS)] | None = (
+        Field(None, description="The learners. By default all learners of the course.")
+    )
+
+
+class RevokedLinks(BaseModel):
+    """The number of links that were ended."""
+
+    revoked: int
+
+
+class PersonalLink(BaseModel):
+    """The personal link of a learner. Whoever has it acts as this learner."""
+
+    learner: str
+    name: str
+    email: str | None = Field(None, description="The e-mail address, if it is known.")
+    link: str
+    expires_at: datetime
+
+
+class LinkList(BaseModel):
+    """Personal links."""
+
+    links: list[PersonalLink]
+
+
+class AssignedPoints(_Request):
+    """An exercise of an assignment, and its points there."""
+
+    exercise: Annotated[str, StringConstraints(min_length=1, max_length=100)]
+    points: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
+
+
+_Exercises = Annotated[list[AssignedPoints], Field(min_length=1, max_length=MOST_EXERCISES)]
+_Limit = Annotated[int, Field(ge=1, le=10_000)]
+_Feedback = Annotated[list[FeedbackLevel], Field(min_length=1, max_length=100)]
+
+
+class AssignmentChange(_Request):
+    """The fields of an assignment that change; null removes a date, the limit or the feedback."""
+
+    title: _Line | None = Field(None, description="The title.")
+    exercises: _Exercises | None = Field(None, description="The exercises and their points.")
+    opens: CourseMoment | None = Field(None, description="From when on attempts are accepted.")
+    due: CourseMoment | None = Field(
+        None, description="Until when an attempt earns all its points."
+    )
+    closes: CourseMoment | None = Field(
+        None, description="Until when late attempts are accepted. Default: none after `due`."
+    )
+    limit: _Limit | None = Field(
+        None, description="The most attempts of each learner at each exercise."
+    )
+    late_worth: Annotated[float, Field(ge=0, le=1)] | None = Field(
+        None, description="The share of its points that a late attempt earns. Default: 0.5."
+    )
+    feedback: _Feedback | None = Field(
+        None,
+        description="The most that the reports say, one level for each attempt. Default: that of "
+        "each exercise.",
+    )
+    practice: Practice | None = Field(
+        None,
+        description="Whether learners may have answers graded that are not recorded: always, "
+        "after full marks or the due date, or never. Default: `none` if attempts are limited or "
+        "`feedback` has several levels, else `open`.",
+    )
+    solution: ShowSolution | None = Field(
+        None,
+        description="When a learner sees the solution: never, after full marks, or when no more "
+        "attempts are accepted. Default: `never`.",
+    )
+
+
+class NewAssignment(AssignmentChange):
+    """A new assignment."""
+
+    id: CourseName
+    title: _Line = Field(description="The title.")
+    exercises: _Exercises = Field(description="The exercises and their points.")
+
+
+class Extension(_Request):
+    """Other dates or another limit for one learner; without any of them, the usual ones again."""
+
+    learner: Learner
+    due: CourseMoment | None = Field(None, description="The learner's due date.")
+    closes: CourseMoment | None = Field(None, description="Until when late attempts are accepted.")
+    limit: _Limit | None = Field(None, description="The most attempts at each exercise.")
+
+
+class CourseAssignment(BaseModel):
+    """An assignment. Dates are in the time zone of the course."""
+
+    id: str
+    title: str
+    exercises: list[AssignedPoints]
+    opens: datetime | None = Field(None, description="From when on attempts are accepted.")
+    due: datetime | None = Field(None, description="Until when an attempt earns all its points.")
+    closes: datetime | None = Field(None, description="Until when late attempts are accepted.")
+    limit: int | None = Field(None, description="The most attempts at each exercise.")
+    late_worth: float
+    feedback: list[FeedbackLevel] | None = Field(
+        None, description="The level of each attempt; absent for that of each exercise."
+    )
+    practice: Practice
+    solution: ShowSolution
+    extensions: list[Extension] = Field(description="The learners with other dates or limits.")
+
+
+class CourseAssignmentList(BaseModel):
+    """The assignments of a course, in the order in which they were added."""
+
+    assignments: list[CourseAssignment]
+
+
+class GradebookColumn(BaseModel):
+    """An exercise of an assignment, and its points."""
+
+    assignment: str
+    exercise: str
+    points: float
+
+
+class GradebookRow(BaseModel):
+    """A learner's points, one entry for each column; null if nothing was handed in."""
+
+    learner: str
+    name: str
+    email: str | None = Field(None, description="The e-mail address, if it is known.")
+    points: list[float | None]
+    total: float
+
+
+class Gradebook(BaseModel):
+    """The points that count: of each learner and exercise the best attempt, late ones reduced."""
+
+    course: str
+    columns: list[GradebookColumn]
+    rows: list[GradebookRow]
+
+
+class MissingLearner(BaseModel):
+    """A learner who has not handed in some exercises."""
+
+    learner: str
+    name: str
+    email: str | None = Field(None, description="The e-mail address, if it is known.")
+    exercises: list[str]
+    due: datetime | None = Field(None, description="The due date of this learner.")
+
+
+class MissingList(BaseModel):
+    """The learners who have not handed in all exercises of an assignment."""
+
+    missing: list[MissingLearner]
+
+
+class HandInRequest(GradeRequest):
+    """Answers to an exercise of an assignment, to be recorded."""
+
+    exercise: Annotated[str, StringConstraints(min_length=1, max_length=100)]
+    learner: Learner | None = Field(
+        None, description="The learner. With a token or link of a learner, it may be left out."
+    )
+
+
+class OwnAttempt(Attempt):
+    """One of the learner's attempts in an assignment."""
+
+    counts: bool = Field(description="True if this attempt counts.")
+
+
+class OwnExercise(BaseModel):
+    """The learner's state at one exercise of an assignment."""
+
+    exercise: str
+    title: str
+    points: float = Field(description="The points of the exercise in the assignment.")
+    earned: float | None = Field(
+        None, description="The points of the attempt that counts, of these points."
+    )
+    best: float | None = Field(
+        None, description="The points of the best attempt before any deduction for lateness."
+    )
+    attempts_left: int | None = Field(None, description="Absent if attempts are not limited.")
+    may_practise: bool = Field(description="True if answers may be graded without being recorded.")
+    shows_solution: bool = Field(description="True if the learner may see the solution now.")
+    attempts: list[OwnAttempt] = Field(description="The learner's attempts, oldest first.")
+
+
+class OwnAssignment(BaseModel):
+    """An assignment as one learner sees it. Dates are in the time zone of the course."""
+
+    id: str
+    title: str
+    state: AssignmentState
+    opens: datetime | None = Field(None, description="From when on attempts are accepted.")
+    due: datetime | None = Field(None, description="The learner's due date.")
+    closes: datetime | None = Field(None, description="Until when late attempts are accepted.")
+    late_worth: float
+    limit: int | None = Field(None, description="The learner's most attempts at each exercise.")
+    is_extended: bool = Field(description="True if this learner has other dates or limits.")
+    exercises: list[OwnExercise]
+
+
+class OwnCourse(BaseModel):
+    """A course as one learner sees it."""
+
+    id: str
+    title: str
+    zone: str
+    name: str = Field(description="The name of the learner.")
+    assignments: list[OwnAssignment]
+
+
+class OwnCourses(BaseModel):
+    """The courses of one learner."""
+
+    learner: str
+    now: datetime = Field(description="The time of the service.")
+    courses: list[OwnCourse]

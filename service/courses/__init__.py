@@ -1,0 +1,1 @@
+"""Courses: learners, assignments, extensions, personal links and the gradebook."""

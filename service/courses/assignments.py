@@ -1,0 +1,206 @@
+"""The assignments of a course and the extensions of learners: functions on a connection."""
+
+import json
+from collections.abc import Collection, Mapping
+from datetime import datetime
+from typing import Any
+from zoneinfo import ZoneInfo
+
+from sqlalchemy import Connection, Row, delete, insert, select, update
+
+from service.attempts.recording import insert_or_ignore
+from service.attempts.storage.tables import assignments, attempts, course_learners, extensions
+from service.contract.courses import (
+    AssignmentChange,
+    CourseAssignment,
+    Extension,
+    NewAssignment,
+)
+from service.courses import roll
+from service.courses.errors import CourseError
+from service.courses.terms import extended
+from service.courses.times import local, moment
+
+
+def add_assignment(
+    connection: Connection, course: str, new: NewAssignment, known: Collection[str]
+) -> CourseAssignment:
+    """Add an assignment of ``known`` exercises. Raises CourseError."""
+    zone = _zone(connection, course)
+    values = {"late_worth": 0.5, "solution": "never", "course": course, "id": new.id}
+    values |= _values(new, zone, known)
+    is_graded = len(new.feedback or ()) > 1
+    values.setdefault("practice", "none" if new.limit or is_graded else "open")
+    statement = insert_or_ignore(assignments)[connection.dialect.name].values(values)
+    if not connection.execute(statement).rowcount:
+        raise CourseError("already-there", f"The course has an assignment {new.id} already.")
+    return _checked(connection, course, new.id)
+
+
+def change_assignment(
+    connection: Connection,
+    course: str,
+    assignment: str,
+    change: AssignmentChange,
+    known: Collection[str],
+) -> CourseAssignment:
+    """Change an assignment; return it as it is then.
+
+    A later due date also counts for attempts that were late before; an earlier one makes no attempt
+    late. Raises CourseError.
+    """
+    zone = _zone(connection, course)
+    row = _row(connection, course, assignment)
+    if values := _values(change, zone, known):
+        mine = assignments.c.number == row.number
+        connection.execute(update(assignments).where(mine).values(values))
+    changed = _checked(connection, course, assignment)
+    _excuse(connection, _row(connection, course, assignment), zone)
+    return changed
+
+
+def extend(
+    connection: Connection, course: str, assignment: str, extension: Extension
+) -> CourseAssignment:
+    """Give a learner other dates or another limit, or, without any, the usual ones again.
+
+    Attempts that were late before and are not with the new due date get their points back. Raises
+    CourseError.
+    """
+    zone = _zone(connection, course)
+    row = _row(connection, course, assignment)
+    enrolled = (course_learners.c.course == course) & (
+        course_learners.c.learner == extension.learner
+    )
+    if connection.scalar(select(course_learners.c.learner).where(enrolled)) is None:
+        raise CourseError("unknown-learner", f"The course has no learner {extension.learner}.")
+    values = {
+        "due": _moment(extension.due, zone),
+        "closes": _moment(extension.closes, zone),
+        "max_attempts": extension.limit,
+    }
+    if extension.closes is not None and extension.due is None and row.due is None:
+        raise CourseError("unusable", "closes says how long late attempts are taken: it needs due")
+    own = (extensions.c.assignment == row.number) & (extensions.c.learner == extension.learner)
+    connection.execute(delete(extensions).where(own))
+    if any(each is not None for each in values.values()):
+        new = {"assignment": row.number, "learner": extension.learner}
+        connection.execute(insert(extensions).values(new | values))
+    _excuse(connection, row, zone)
+    return assignment_of(connection, course, assignment)
+
+
+def assignment_of(connection: Connection, course: str, assignment: str) -> CourseAssignment:
+    """Return an assignment. Raises CourseError."""
+    for each in assignments_of(connection, course):
+        if each.id == assignment:
+            return each
+    raise CourseError("unknown-assignment", f"The course has no assignment {assignment}.")
+
+
+def assignments_of(connection: Connection, course: str) -> list[CourseAssignment]:
+    """Return the assignments of a course in their order. Raises CourseError."""
+    zone = _zone(connection, course)
+    mine = assignments.c.course == course
+    extensions_of: dict[int, list[Extension]] = {}
+    given = select(extensions).join_from(extensions, assignments).where(mine)
+    for row in connection.execute(given.order_by(extensions.c.learner)):
+        extension = Extension(
+            learner=row.learner,
+            due=local(row.due, zone),
+            closes=local(row.closes, zone),
+            limit=row.max_attempts,
+        )
+        extensions_of.setdefault(row.assignment, []).append(extension)
+    rows = connection.execute(select(assignments).where(mine).order_by(assignments.c.number))
+    return [
+        CourseAssignment(
+            id=row.id,
+            title=row.title,
+            opens=local(row.opens, zone),
+            due=local(row.due, zone),
+            closes=local(row.closes, zone),
+            late_worth=row.late_worth,
+            exercises=json.loads(row.exercises),
+            limit=row.max_attempts,
+            feedback=None if row.feedback is None else json.loads(row.feedback),
+            practice=row.practice,
+            solution=row.solution,
+            extensions=extensions_of.get(row.number, []),
+        )
+        for row in rows
+    ]
+
+
+def _zone(connection: Connection, course: str) -> ZoneInfo:
+    return ZoneInfo(roll.course(connection, course).zone)
+
+
+def _row(connection: Connection, course: str, assignment: str) -> Row[Any]:
+    mine = (assignments.c.course == course) & (assignments.c.id == assignment)
+    found = connection.execute(select(assignments).where(mine)).one_or_none()
+    if found is None:
+        raise CourseError("unknown-assignment", f"The course has no assignment {assignment}.")
+    return found
+
+
+def _moment(written: datetime | None, zone: ZoneInfo) -> datetime | None:
+    return None if written is None else moment(written, zone)
+
+
+def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) -> Mapping[str, Any]:
+    """Return the columns that a change sets. Raises CourseError."""
+    given = change.model_dump(mode="python", exclude_unset=True, exclude={"id"})
+    values: dict[str, Any] = {}
+    for name, value in given.items():
+        match name:
+            case "opens" | "due" | "closes":
+                values[name] = _moment(value, zone)
+            case "limit":
+                values["max_attempts"] = value
+            case "feedback":
+                values[name] = None if value is None else json.dumps(value)
+            case "exercises" if value is not None:
+                _check_exercises([each["exercise"] for each in value], known)
+                values[name] = json.dumps(value)
+            case _ if value is not None:
+                values[name] = value
+    return values
+
+
+def _check_exercises(chosen: list[str], known: Collection[str]) -> None:
+    for i, exercise in enumerate(chosen):
+        if exercise not in known:
+            raise CourseError("unusable", f"There is no exercise {exercise}.")
+        if exercise in chosen[:i]:
+            raise CourseError("unusable", f"The exercise {exercise} is there twice.")
+
+
+def _checked(connection: Connection, course: str, assignment: str) -> CourseAssignment:
+    """Return an assignment after a change. Raises CourseError if its dates have no order."""
+    found = assignment_of(connection, course, assignment)
+    if found.closes is not None and found.due is None:
+        raise CourseError("unusable", "closes says how long late attempts are taken: it needs due")
+    moments = [each for each in (found.opens, found.due, found.closes) if each is not None]
+    if moments != sorted(moments):
+        raise CourseError("unusable", "opens, due and closes must follow each other in this order")
+    return found
+
+
+def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
+    """Give late attempts that are not late any more all points of their reports."""
+    late = select(attempts.c.number, attempts.c.learner, attempts.c.at, attempts.c.report).where(
+        attempts.c.assignment == row.number, attempts.c.is_late
+    )
+    given = select(extensions).where(extensions.c.assignment == row.number)
+    own = {each.learner: each for each in connection.execute(given)}
+    for attempt in connection.execute(late).all():
+        mine = own.get(attempt.learner)
+        due = extended(row, zone, None if mine is None else mine.due).due
+        if due is None or attempt.at <= due:
+            points = round(json.loads(attempt.report)["points"], 6)
+            connection.execute(
+                update(attempts)
+                .where(attempts.c.number == attempt.number)
+                .values(is_late=False, worth=1.0, points=points)
+            )

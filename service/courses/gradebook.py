@@ -1,0 +1,112 @@
+"""The gradebook of a course, and the learners who have not handed in."""
+
+from collections.abc import Iterator
+
+from sqlalchemy import Connection, func, or_, select
+
+from service.attempts.storage.tables import assignments, attempts
+from service.contract.courses import (
+    CourseAssignment,
+    Gradebook,
+    GradebookColumn,
+    GradebookFormat,
+    GradebookRow,
+    MissingLearner,
+)
+from service.courses.assignments import assignment_of, assignments_of
+from service.courses.links import people
+from service.formats.shared import spreadsheet
+
+# The points of an attempt that count, as a share of 1.
+SHARE = func.coalesce(attempts.c.awarded, attempts.c.points) / func.nullif(attempts.c.max_points, 0)
+
+# A learner, an assignment and an exercise.
+_Place = tuple[str, str, str]
+
+
+def gradebook(connection: Connection, course: str, assignment: str | None = None) -> Gradebook:
+    """Return the gradebook of a course, or of one assignment. Raises CourseError."""
+    chosen = _chosen(connection, course, assignment)
+    columns = [
+        GradebookColumn(assignment=each.id, exercise=one.exercise, points=one.points)
+        for each in chosen
+        for one in each.exercises
+    ]
+    shares = _shares(connection, course)
+    rows = []
+    for person in people(connection, course):
+        found = [shares.get((person.learner, each.assignment, each.exercise)) for each in columns]
+        points = [
+            None if share is None else round(share * each.points, 6)
+            for share, each in zip(found, columns, strict=True)
+        ]
+        total = round(sum(each or 0.0 for each in points), 6)
+        rows.append(GradebookRow.model_construct(**person._mapping, points=points, total=total))
+    return Gradebook.model_construct(course=course, columns=columns, rows=rows)
+
+
+def missing(connection: Connection, course: str, assignment: str) -> list[MissingLearner]:
+    """Return who has not handed in which exercises of an assignment. Raises CourseError."""
+    [chosen] = _chosen(connection, course, assignment)
+    shares = _shares(connection, course)
+    dues = {each.learner: each.due for each in chosen.extensions}
+    found = []
+    for person in people(connection, course):
+        absent = [
+            each.exercise
+            for each in chosen.exercises
+            if (person.learner, assignment, each.exercise) not in shares
+        ]
+        if absent:
+            due = dues.get(person.learner) or chosen.due
+            found.append(MissingLearner(**person._mapping, exercises=absent, due=due))
+    return found
+
+
+def written_gradebook(book: Gradebook, form: GradebookFormat) -> Iterator[bytes]:
+    """Yield a gradebook as CSV, line by line, with the headings that a platform imports.
+
+    Canvas finds learners by the SIS Login ID. Moodle finds them by the ID number or the e-mail
+    address. Source: Canvas, "How do I import grades in the Gradebook?"; Moodle, "Grade import".
+    """
+    titles = [f"{each.assignment} {each.exercise}" for each in book.columns]
+    match form:
+        case "canvas":
+            head = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
+            yield spreadsheet.line((*head, *titles))
+            possible = (each.points for each in book.columns)
+            yield spreadsheet.line(("    Points Possible", "", "", "", "", *possible))
+        case "moodle":
+            yield spreadsheet.line(("ID number", "Full name", "Email address", *titles))
+        case _:
+            yield spreadsheet.line(("learner", "name", "email", *titles, "total"))
+    for row in book.rows:
+        match form:
+            case "canvas":
+                yield spreadsheet.line((row.name, "", "", row.learner, "", *row.points))
+            case "moodle":
+                yield spreadsheet.line((row.learner, row.name, row.email, *row.points))
+            case _:
+                yield spreadsheet.line((row.learner, row.name, row.email, *row.points, row.total))
+
+
+def _chosen(connection: Connection, course: str, assignment: str | None) -> list[CourseAssignment]:
+    if assignment is not None:
+        return [assignment_of(connection, course, assignment)]
+    return assignments_of(connection, course)
+
+
+def _shares(connection: Connection, course: str) -> dict[_Place, float]:
+    """Return the share of the points that counts, at each place with an attempt that counts."""
+    of = attempts.c
+    rows = connection.execute(
+        select(of.learner, assignments.c.id, of.exercise, func.max(SHARE))
+        .join_from(attempts, assignments)
+        .where(
+            assignments.c.course == course,
+            of.assignment.is_not(None),
+            or_(of.ordinal.is_not(None), of.awarded.is_not(None)),
+        )
+        .group_by(of.learner, assignments.c.id, of.exercise)
+    )
+    return {(learner, number, exercise): share or 0.0 for learner, number, exercise, share in rows}

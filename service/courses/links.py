@@ -1,0 +1,100 @@
+"""Personal links: keys of single learners, whose texts follow from the installation's secret.
+
+Only a hash of a key is stored. Its text can be computed again, so a tutor can print the links of a
+class twice.
+"""
+
+import secrets
+from collections.abc import Collection, Sequence
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import Connection, Row, select, update
+
+from service.access.caller import Scope
+from service.access.key_table import insert_key, link_keys, settle
+from service.access.keys import WRONG_SECRET, Key, Secret
+from service.attempts.storage.tables import course_learners, courses, keys
+from service.contract.courses import LinksRequest, PersonalLink
+from service.courses.errors import CourseError
+
+# The page of a learner, relative to the service. The key is in the fragment, which browsers neither
+# send to a server nor name as referrer.
+_PAGE = "learn#"
+
+
+def issue_links(
+    connection: Connection,
+    course: str,
+    wanted: LinksRequest,
+    secret: Secret,
+    address: str,
+    now: datetime,
+) -> list[PersonalLink]:
+    """Return the links of learners; make those that are absent, expired or to be renewed.
+
+    ``address`` is that of the service. Raises CourseError.
+    """
+    if not settle(connection, secret, now):
+        raise CourseError("unusable", WRONG_SECRET)
+    valid = {} if wanted.renew else _valid(connection, course, now)
+    chosen = _chosen(connection, course, wanted.learners)
+    absent = [row.learner for row in chosen if row.learner not in valid]
+    if absent:
+        revoke_links(connection, course, absent, now)
+    until = now.replace(microsecond=0) + timedelta(days=wanted.days)
+    links = []
+    for row in chosen:
+        key = valid.get(row.learner)
+        if key is None:
+            scopes = frozenset({Scope.GRADE, Scope.RECORD})
+            key_id = secrets.token_hex(4)
+            key = Key(key_id, "", scopes, None, now, until, course=course, learner=row.learner)
+            insert_key(connection, key, secret.key_digest(secret.link_key(key_id)))
+        link = f"{address.rstrip('/')}/{_PAGE}{secret.link_key(key.id)}"
+        links.append(PersonalLink(**row._mapping, link=link, expires_at=key.expires_at))
+    return links
+
+
+def revoke_links(
+    connection: Connection, course: str, learners: Collection[str] | None, now: datetime
+) -> int:
+    """End the links of these learners, or of all; return how many there were."""
+    mine = (keys.c.course == course) & keys.c.learner.is_not(None) & keys.c.revoked_at.is_(None)
+    if learners is not None:
+        mine &= keys.c.learner.in_(learners)
+    return connection.execute(update(keys).where(mine).values(revoked_at=now)).rowcount
+
+
+def links_until(connection: Connection, course: str, now: datetime) -> dict[str, datetime]:
+    """Return when the valid link of each learner expires."""
+    return {learner: key.expires_at for learner, key in _valid(connection, course, now).items()}
+
+
+def _valid(connection: Connection, course: str, now: datetime) -> dict[str, Key]:
+    found = link_keys(connection, course)
+    return {each.learner: each for each in found if each.learner and each.expires_at > now}
+
+
+def people(connection: Connection, course: str) -> Sequence[Row[Any]]:
+    """Return ``learner``, ``name`` and ``email`` of the learners of a course, by name.
+
+    Raises CourseError.
+    """
+    if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
+        raise CourseError("unknown-course", f"There is no course {course}.")
+    of_course = course_learners.c
+    named = select(of_course.learner, of_course.name, of_course.email)
+    mine = named.where(of_course.course == course)
+    return list(connection.execute(mine.order_by(of_course.name, of_course.learner)))
+
+
+def _chosen(
+    connection: Connection, course: str, only: Collection[str] | None
+) -> Sequence[Row[Any]]:
+    rows = people(connection, course)
+    if only is None:
+        return rows
+    if unknown := sorted(set(only) - {row.learner for row in rows}):
+        raise CourseError("unknown-learner", f"The course has no learner {unknown[0]}.")
+    return [row for row in rows if row.learner in set(only)]

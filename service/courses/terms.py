@@ -1,0 +1,160 @@
+"""The terms of an assignment for one learner: dates, limit, feedback, practice and solution."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+from zoneinfo import ZoneInfo
+
+from sqlalchemy import Connection, Row, and_, select
+
+from service.attempts.storage.tables import assignments, course_learners, courses, extensions
+from service.catalogue import Exercise, FeedbackLevel, least
+from service.catalogue.attempts import AttemptsSpec
+from service.contract.courses import AssignmentState, Practice, ShowSolution
+from service.courses.errors import CourseError
+from service.courses.times import local
+
+
+@dataclass(frozen=True, slots=True)
+class LearnerTerms:
+    """The terms of an assignment for one learner, with an extension if there is one.
+
+    ``number`` is that of the row of the assignment; ``exercises`` are the points of each exercise.
+    """
+
+    number: int
+    id: str
+    title: str
+    zone: ZoneInfo
+    exercises: Mapping[str, float]
+    rules: AttemptsSpec
+    feedback: tuple[FeedbackLevel, ...] | None
+    practice: Practice
+    solution: ShowSolution
+    is_extended: bool
+
+    def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
+        """The highest level of the learner's attempt; never more than the exercise allows."""
+        if self.feedback is None:
+            return exercise.feedback_at(ordinal)
+        most = min(exercise.feedback_by_attempt, key=list(FeedbackLevel).index)
+        return least(self.feedback[min(ordinal, len(self.feedback)) - 1], most)
+
+    def state(self, now: datetime) -> AssignmentState:
+        """Whether the learner can hand in."""
+        if self.rules.opens is not None and now < self.rules.opens:
+            return "not_open"
+        if self._is_over(now):
+            return "closed"
+        return "late" if self._is_past_due(now) else "open"
+
+    def may_practise(self, now: datetime, *, is_full: bool) -> bool:
+        """True if answers may be graded that are not recorded; ``is_full`` is for full marks."""
+        if self.practice == "after":
+            return is_full or self._is_past_due(now)
+        return self.practice == "open"
+
+    def shows_solution(self, now: datetime, *, is_full: bool) -> bool:
+        """True if the learner may see the solution."""
+        match self.solution:
+            case "after_full":
+                return is_full
+            case "after_due":
+                return self._is_over(now)
+        return False
+
+    def _is_past_due(self, now: datetime) -> bool:
+        return self.rules.due is not None and now > self.rules.due
+
+    def _is_over(self, now: datetime) -> bool:
+        end = self.rules.closes or self.rules.due
+        return end is not None and now > end
+
+
+def terms_of(connection: Connection, course: str, assignment: str, learner: str) -> LearnerTerms:
+    """Return the terms of an assignment for a learner of the course. Raises CourseError."""
+    for _, each in learner_terms(connection, learner, course):
+        if each.id == assignment:
+            return each
+    enrolled = and_(course_learners.c.course == course, course_learners.c.learner == learner)
+    if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
+        raise CourseError("unknown-course", f"There is no course {course}.")
+    if connection.scalar(select(course_learners.c.course).where(enrolled)) is None:
+        raise CourseError("unknown-learner", f"The course has no learner {learner}.")
+    raise CourseError("unknown-assignment", f"The course has no assignment {assignment}.")
+
+
+def learner_terms(
+    connection: Connection, learner: str, only: str | None = None
+) -> Iterator[tuple[str, LearnerTerms]]:
+    """Yield the learner's courses and the terms of their assignments; with ``only``, this course's.
+
+    The assignments of a course are in the order in which they were added.
+    """
+    mine = course_learners.c.learner == learner
+    if only is not None:
+        mine &= course_learners.c.course == only
+    own = and_(extensions.c.assignment == assignments.c.number, extensions.c.learner == learner)
+    rows = connection.execute(
+        select(
+            assignments,
+            courses.c.zone,
+            extensions.c.learner.label("extended"),
+            *(extensions.c[name].label(f"own_{name}") for name in _EXTENDED),
+        )
+        .join_from(course_learners, courses)
+        .join(assignments)
+        .join(extensions, own, isouter=True)
+        .where(mine)
+        .order_by(assignments.c.course, assignments.c.number)
+    )
+    for row in rows:
+        yield row.course, _terms(row)
+
+
+_EXTENDED = ("due", "closes", "max_attempts")
+
+
+def _terms(row: Row[Any]) -> LearnerTerms:
+    zone = ZoneInfo(row.zone)
+    return LearnerTerms(
+        number=row.number,
+        id=row.id,
+        title=row.title,
+        zone=zone,
+        exercises={each["exercise"]: each["points"] for each in json.loads(row.exercises)},
+        rules=extended(row, zone, *(getattr(row, f"own_{name}") for name in _EXTENDED)),
+        feedback=None
+        if row.feedback is None
+        else tuple(FeedbackLevel(each) for each in json.loads(row.feedback)),
+        practice=row.practice,
+        solution=row.solution,
+        is_extended=row.extended is not None,
+    )
+
+
+def extended(
+    row: Row[Any],
+    zone: ZoneInfo,
+    due: datetime | None = None,
+    closes: datetime | None = None,
+    limit: int | None = None,
+) -> AttemptsSpec:
+    """Return the rules of an assignment with these dates and this limit of an extension.
+
+    Late attempts are accepted until the latest of the dates.
+    """
+    new_due = due or row.due
+    if new_due is not None and row.opens is not None:
+        new_due = max(new_due, row.opens)
+    ends = [each for each in (row.closes, closes, new_due) if each is not None]
+    new_closes = max(ends) if (row.closes or closes) and new_due is not None else None
+    return AttemptsSpec(
+        limit=limit or row.max_attempts,
+        opens=local(row.opens, zone),
+        due=local(new_due, zone),
+        closes=local(new_closes, zone),
+        late_worth=row.late_worth,
+    )

@@ -1,0 +1,39 @@
+"""Dates in the time zone of a course."""
+
+from datetime import UTC, datetime
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+from service.courses.errors import CourseError
+
+
+def zone_named(name: str) -> ZoneInfo:
+    """Return the time zone with this IANA name. Raises CourseError."""
+    try:
+        return ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
+        message = f"There is no time zone {name}. Write one such as Europe/Berlin."
+        raise CourseError("unusable", message) from error
+
+
+def moment(written: datetime, zone: ZoneInfo) -> datetime:
+    """Return a date in UTC. If it names no zone, it is a time on the clocks of ``zone``.
+
+    If the clocks show a time twice, the second one is meant. Raises CourseError for a time that the
+    clocks never show, because they are put forward.
+    """
+    try:
+        if written.tzinfo is not None:
+            return written.astimezone(UTC)
+        first, second = (written.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
+        if first.astimezone(UTC).astimezone(zone).replace(tzinfo=None) != written:
+            raise CourseError(
+                "unusable", f"The clocks of {zone} never show {written}: they are put forward."
+            )
+        return second.astimezone(UTC)
+    except OverflowError as error:
+        raise CourseError("unusable", f"{written} is no usable date.") from error
+
+
+def local(when: datetime | None, zone: ZoneInfo) -> datetime | None:
+    """Return a moment as the clocks of a zone show it."""
+    return None if when is None else when.astimezone(zone)

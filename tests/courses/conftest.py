@@ -1,0 +1,108 @@
+"""A course with the learners ada and grace, in a service with keys."""
+
+import asyncio
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from sqlalchemy import Connection
+
+from service.access.key_ring import KeyRing
+from service.access.keys import Secret
+from service.access.open_access import OPEN_HERE
+from service.api.application import application
+from service.api.permissions.access import Access
+from service.attempts.storage.database import in_transaction
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise
+from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from service.courses import roll
+from service.courses.assignments import add_assignment
+from service.courses.links import issue_links
+
+SECRET = Secret("0123456789abcdef" * 4)
+NOW = datetime.now(UTC)
+ADDRESS = "http://127.0.0.1:8000"
+RIGHT = {"table": "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
+NO_TWIST = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
+
+
+@dataclass
+class Class:
+    """A course ``robots`` of a running store; ``keys`` are those in the links of the learners."""
+
+    store: AttemptStore
+    keys: Mapping[str, str]
+    app: Any
+
+    def do(self, work: Callable[[Connection], Any]) -> Any:
+        """Return the result of ``work`` in a transaction."""
+        return in_transaction(self.store.engine, work)
+
+    def assign(self, **more: Any) -> None:
+        """Add the assignment ``homework``: the exercise scara for ten points."""
+        exercises = [{"exercise": "scara", "points": 10}]
+        fields = {"id": "homework", "title": "Homework", "exercises": exercises, **more}
+        new = NewAssignment.model_validate(fields)
+        self.do(lambda it: add_assignment(it, "robots", new, {"scara"}))
+
+    async def send(
+        self, method: str, path: str, by: str = "ada", key: str = "", **body: Any
+    ) -> httpx.Response:
+        headers = {"authorization": f"Bearer {self.keys[by]}"}
+        if key:
+            headers["Idempotency-Key"] = key
+        transport = httpx.ASGITransport(self.app)
+        async with httpx.AsyncClient(transport=transport, base_url=ADDRESS) as client:
+            return await client.request(method, path, json=body or None, headers=headers)
+
+    def ask(self, *words: str, **body: Any) -> httpx.Response:
+        return asyncio.run(self.send(*words, **body))
+
+    def hand_in(self, key: str, answers: Any = None, learner: str = "ada") -> httpx.Response:
+        """Hand scara in."""
+        path = "/v1/courses/robots/assignments/homework/attempts"
+        body = {"exercise": "scara", "answers": answers or NO_TWIST}
+        return self.ask("POST", path, learner, key, **body)
+
+    def own(self, learner: str = "ada") -> Any:
+        """Return the learner's state at scara."""
+        [course] = self.ask("GET", "/v1/me", learner).json()["courses"]
+        return course["assignments"][0]["exercises"][0]
+
+
+@pytest.fixture(params=["sqlite"])
+def class_(
+    request: pytest.FixtureRequest, catalogue: Mapping[str, Exercise], tmp_path: Path
+) -> Iterator[Class]:
+    """The class, in the kind of database of the parameter."""
+    is_sqlite = request.param == "sqlite"
+    url = str(tmp_path / "attempts.db") if is_sqlite else request.getfixturevalue("postgresql_url")
+    store = AttemptStore.open(url)
+
+    def set_up(connection: Connection) -> dict[str, str]:
+        course = NewCourse(id="robots", title="Robots", zone="Europe/Berlin")
+        roll.add_course(connection, course, NOW)
+        people = [NewLearner(learner=each, name=each.title()) for each in ("ada", "grace")]
+        roll.add_learners(connection, "robots", people)
+        links = issue_links(connection, "robots", LinksRequest(), SECRET, ADDRESS, NOW)
+        return {each.learner: each.link.partition("#")[2] for each in links}
+
+    keys = in_transaction(store.engine, set_up)
+    ring = KeyRing(store.engine, SECRET, seconds=0.01)
+    app = application(
+        catalogue, access=Access(OPEN_HERE, read_attempts=None, keys=ring), store=store
+    )
+    store.start()
+    yield Class(store, keys, app)
+    ring.close()
+    store.close()
+
+
+def days(count: float) -> str:
+    """Return the moment in ``count`` days."""
+    return (NOW + timedelta(days=count)).isoformat()

@@ -1,0 +1,186 @@
+"""A class hands in: limits, lateness, extensions, practice, solutions and the gradebook."""
+
+import asyncio
+import json
+from functools import partial
+from typing import Any
+
+import pytest
+
+from service.attempts.tutoring import forget
+from service.contract.courses import AssignmentChange, Extension, LinksRequest
+from service.courses import roll
+from service.courses.assignments import assignments_of, change_assignment, extend
+from service.courses.errors import CourseError
+from service.courses.gradebook import gradebook, missing, written_gradebook
+from service.courses.links import issue_links, revoke_links
+from tests.attempts.databases import KINDS
+from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, SECRET, Class, days
+
+
+def points(class_: Class) -> list[list[float | None]]:
+    return [row.points for row in class_.do(lambda it: gradebook(it, "robots")).rows]
+
+
+def near(value: float) -> list[Any]:
+    """Return one value as it is within rounding."""
+    return [pytest.approx(value, abs=1e-5)]
+
+
+BOTH = pytest.mark.parametrize("class_", KINDS, indirect=True)
+
+
+@BOTH
+def test_the_limit_holds_under_parallel_attempts_and_each_is_recorded_once(class_: Class) -> None:
+    class_.assign(limit=3)
+    path = "/v1/courses/robots/assignments/homework/attempts"
+
+    async def together() -> list[int]:
+        sent = [
+            class_.send("POST", path, "ada", f"{i // 2}", exercise="scara", answers=NO_TWIST)
+            for i in range(50)
+        ]
+        return [answer.status_code for answer in await asyncio.gather(*sent)]
+
+    codes = asyncio.run(together())
+    own = class_.own()
+    # Every attempt was sent twice with the same key.
+    assert sorted(codes) == [201] * 6 + [403] * 44
+    assert (len(own["attempts"]), own["attempts_left"]) == (3, 0)
+    assert class_.own("grace")["attempts_left"] == 3
+
+
+@BOTH
+def test_a_later_due_date_and_an_extension_give_late_attempts_their_points_back(
+    class_: Class,
+) -> None:
+    class_.assign(due=days(-2), closes=days(2))
+    for learner in ("ada", "grace"):
+        assert class_.hand_in("a", learner=learner).json()["attempt"]["is_late"]
+    whole = class_.own()["best"]
+    assert points(class_) == [near(whole / 2)] * 2
+    # An extension that ends before the attempt changes nothing.
+    for due, ada in ((-1, whole / 2), (1, whole)):
+        given = Extension.model_validate({"learner": "ada", "due": days(due)})
+        class_.do(partial(extend, course="robots", assignment="homework", extension=given))
+        assert points(class_) == [near(ada), near(whole / 2)]
+    later = AssignmentChange.model_validate({"due": days(1)})
+    class_.do(lambda it: change_assignment(it, "robots", "homework", later, {"scara"}))
+    assert points(class_) == [near(whole)] * 2
+    # An earlier due date makes no recorded attempt late.
+    earlier = AssignmentChange.model_validate({"due": days(-3)})
+    class_.do(lambda it: change_assignment(it, "robots", "homework", earlier, {"scara"}))
+    assert points(class_) == [near(whole)] * 2
+
+
+def test_an_extension_may_give_more_attempts(class_: Class) -> None:
+    class_.assign(limit=1)
+    assert [class_.hand_in(key).status_code for key in "ab"] == [201, 403]
+    class_.do(lambda it: extend(it, "robots", "homework", Extension(learner="ada", limit=2)))
+    assert [class_.hand_in(key).status_code for key in "bc"] == [201, 403]
+
+
+def test_no_practice_while_an_exercise_counts(class_: Class) -> None:
+    class_.assign(limit=3, practice="after", solution="after_full", feedback=["score", "verdicts"])
+    grade = "/v1/exercises/scara/grade"
+    solution = "/v1/courses/robots/assignments/homework/solutions/scara"
+    submissions = [{"exercise": "scara", "answers": RIGHT}]
+
+    def practised() -> list[object]:
+        many = class_.ask("POST", "/v1/grade", submissions=submissions).json()["results"][0]
+        one = class_.ask("POST", grade, answers=RIGHT)
+        return [one.status_code, next(iter(many)), class_.ask("GET", solution).status_code]
+
+    assert practised() == [403, "problem", 403]
+    assert class_.hand_in("a").json()["report"]["feedback"] == "score"
+    assert class_.hand_in("b").json()["report"]["feedback"] == "verdicts"
+    assert practised() == [403, "problem", 403]
+    parts = class_.ask("GET", "/v1/exercises/scara").json()["parts"]
+    assert {each["id"] for each in parts} == {"table", "links", "pose"}
+    # Points of a tutor are full marks, too.
+    attempt = class_.own()["attempts"][0]["id"]
+    asyncio.run(class_.store.override(attempt, 24.0, "A misprint.", "Prof. X"))
+    assert practised() == [200, "report", 200]
+    # Another exercise may be practised all the time.
+    assert class_.ask("POST", "/v1/exercises/planar-rr/grade", answers={}).status_code == 200
+
+
+@BOTH
+def test_a_link_is_for_one_learner_of_one_course_and_can_be_ended(class_: Class) -> None:
+    class_.assign()
+    path = "/v1/courses/robots/assignments/homework/attempts"
+    other = class_.ask("POST", path, "ada", "a", exercise="scara", answers={}, learner="grace")
+    assert other.json()["type"].endswith("other-learner")
+    alone = class_.ask("POST", "/v1/exercises/scara/attempts", answers={}, learner="ada")
+    assert alone.json()["type"].endswith("other-course")
+    first = class_.hand_in("a").json()["attempt"]["id"]
+    assert class_.ask("GET", f"/v1/attempts/{first}", "grace").status_code == 404
+    again = LinksRequest(learners=["ada"])
+    [same] = class_.do(lambda it: issue_links(it, "robots", again, SECRET, ADDRESS, NOW))
+    assert same.link == f"{ADDRESS}/learn#{class_.keys['ada']}"
+    renewed = LinksRequest(learners=["ada"], renew=True)
+    [new] = class_.do(lambda it: issue_links(it, "robots", renewed, SECRET, ADDRESS, NOW))
+    old, keys = class_.keys["ada"], {**class_.keys, "ada": new.link.partition("#")[2]}
+    assert old not in new.link
+    class_.keys = keys
+    # The same attempt, sent again with the new link, is recorded once.
+    assert class_.hand_in("a").json()["attempt"]["id"] == first
+    assert class_.do(lambda it: revoke_links(it, "robots", ["ada"], NOW)) == 1
+    nobody = LinksRequest(learners=["nobody"])
+    with pytest.raises(CourseError, match="no learner nobody"):
+        class_.do(lambda it: issue_links(it, "robots", nobody, SECRET, ADDRESS, NOW))
+
+
+@BOTH
+def test_the_gradebook_and_who_is_missing(class_: Class) -> None:
+    class_.assign()
+    class_.hand_in("a")
+    best = class_.hand_in("b", RIGHT).json()["attempt"]
+    share = round(10 * best["points"] / best["max_points"], 6)
+    assert points(class_) == [[share], [None]]
+    absent = class_.do(lambda it: missing(it, "robots", "homework"))
+    assert [(each.learner, each.exercises) for each in absent] == [("grace", ["scara"])]
+    book = class_.do(lambda it: gradebook(it, "robots"))
+    moodle = b"".join(written_gradebook(book, "moodle")).decode().splitlines()
+    assert moodle[0] == "ID number,Full name,Email address,homework scara"
+    assert moodle[2] == "grace,Grace,,"
+    canvas = b"".join(written_gradebook(book, "canvas")).decode().splitlines()
+    assert canvas[1] == "    Points Possible,,,,,10"
+    [attempt] = [each for each in class_.own()["attempts"] if each["counts"]]
+    assert attempt["id"] == best["id"]
+
+
+def test_a_forgotten_learner_is_in_no_course_and_has_no_link(class_: Class) -> None:
+    class_.assign()
+    class_.hand_in("a")
+    class_.do(lambda it: extend(it, "robots", "homework", Extension(learner="ada", limit=2)))
+    class_.do(lambda it: forget(it, "ada"))
+    listed = class_.do(lambda it: roll.learners(it, "robots", NOW))
+    assert [each.learner for each in listed] == ["grace"]
+    [assignment] = class_.do(lambda it: assignments_of(it, "robots"))
+    assert assignment.extensions == []
+    assert class_.do(lambda it: revoke_links(it, "robots", ["ada"], NOW)) == 0
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"due": "2026-03-29T02:30"}, "never show"),
+        ({"due": days(2), "closes": days(1)}, "in this order"),
+        ({"closes": days(1)}, "needs due"),
+        ({"exercises": [{"exercise": "nothing", "points": 1}]}, "no exercise nothing"),
+        ({"exercises": [{"exercise": "scara", "points": 1}] * 2}, "twice"),
+    ],
+)
+def test_an_unusable_assignment_is_refused(
+    class_: Class, fields: dict[str, object], reason: str
+) -> None:
+    with pytest.raises(CourseError, match=reason):
+        class_.assign(**json.loads(json.dumps(fields)))
+
+
+def test_attempts_outside_of_assignments_have_the_limit_of_the_exercise_file(class_: Class) -> None:
+    class_.assign(limit=1)
+    class_.hand_in("a")
+    outside = asyncio.run(class_.store.standing("scara", "ada", "", None))
+    assert (outside.counted, outside.last) == (0, 1)
