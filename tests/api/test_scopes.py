@@ -82,6 +82,7 @@ BODIES: Mapping[str, Any] = {
         **ANSWERS,
     },
     "POST /tutor/check": FILE,
+    "POST /tutor/drafts": FILE,
     "POST /tutor/files": {**FILE, "before": ""},
     "POST /tutor/class": CLASS,
 }

@@ -141,7 +141,7 @@ def _unread(
             if entry.expression is None:
                 yield CellWithoutNumber(*place, entry.findings[0] if entry.findings else _NOTHING)
             elif absent := sorted(entry.expression.symbols - names):
-                message = f"The robot has no joint variable {absent[0]}."
+                message = f"This robot has no {absent[0]}."
                 yield CellWithoutNumber(*place, reading_error("unknown_joint", message))
             elif not is_number[i, j]:
                 yield CellWithoutNumber(*place, _NO_NUMBER)

@@ -1,7 +1,8 @@
 // The grids of a part as tabs: arrow keys, Home and End choose one, and each tab shows how far its grid is.
 
-import { h } from "../../shared/dom.js";
+import { h, visible } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
+import { typeset } from "../../typeset/names.js";
 
 export class Tabs {
   /** @type {HTMLButtonElement[]} */
@@ -31,7 +32,7 @@ export class Tabs {
           onclick: () => this.show(i),
           onkeydown: (event) => this.#pressed(event, i),
         },
-        title,
+        ...typeset(visible(title)),
         h("span", { class: "mark" }),
       )
     );
