@@ -14,7 +14,7 @@ from rich.text import Text
 from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise, by_level
 from service.catalogue.robots.robot import Robot
-from service.cli.commands import check, export_robot, import_robot
+from service.cli.exercises import check, export_robot, import_robot
 from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
 from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, reference_figure

@@ -28,7 +28,7 @@ TEXTS = """() => {
 # some pixels, which may stand out.
 CUT = """() => [...document.querySelector("dh-exercise").shadowRoot.querySelectorAll("math")]
   .filter((math) => {
-    const block = math.closest("p, dd, dt, li, h1, h2, caption, th, .display, .shown");
+    const block = math.closest("p, dd, dt, li, h1, h2, caption, th, button, .display, .shown");
     const scrolls = block.matches(".display, .shown");
     const [inner, outer] = [math, block].map((each) => each.getBoundingClientRect());
     return !scrolls && (inner.right > outer.right + 5 || inner.left < outer.left - 1);

@@ -1,0 +1,1 @@
+"""The parts of `dh-grader exercises`: check, import and export."""
