@@ -55,7 +55,11 @@ FILE = {"id": EXERCISE, "text": (shipped_folder() / f"{EXERCISE}.toml").read_tex
 CLASS = {"exercise": EXERCISE, "files": [{"path": "ada.json", "text": json.dumps(ANSWERS)}]}
 ASSIGNMENT = {"title": "Homework", "exercises": [{"exercise": EXERCISE, "points": 10}]}
 # The routes that make something with a new id.
-MAKING = ("POST /v1/courses", "POST /v1/courses/{course_id}/assignments")
+MAKING = (
+    "POST /v1/courses",
+    "POST /v1/courses/{course_id}/assignments",
+    "POST /tutor/files",
+)
 # The body of each route that has one.
 BODIES: Mapping[str, Any] = {
     "POST /v1/exercises/{exercise_id}/grade": ANSWERS,

@@ -32,7 +32,8 @@ export class Tabs {
           onclick: () => this.show(i),
           onkeydown: (event) => this.#pressed(event, i),
         },
-        ...typeset(visible(title)),
+        h("span", { "aria-hidden": "true" }, ...typeset(visible(title))),
+        h("span", { class: "aloud" }, visible(title)),
         h("span", { class: "mark" }),
       )
     );
