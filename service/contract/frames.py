@@ -143,6 +143,9 @@ class FramesOfTable(BaseModel):
         description="For each picture, all frames from the base frame on, in the base frame, 4×4 "
         "by rows."
     )
+    values: list[list[list[float]]] = Field(
+        description="For each picture, the numbers of each row with a frame: a, alpha, d and theta."
+    )
     row_joints: list[int] = Field(
         description="For each row with a frame, the joint whose variable is in the row, or 0."
     )

@@ -194,7 +194,13 @@ def _table(
     except UnreadableAnswerError as error:
         reason = _error(error.finding)
         nothing = FramesOfTable(
-            complete=False, frames=[], row_joints=[], unread=[], error=reason, lost_freedoms=[]
+            complete=False,
+            frames=[],
+            values=[],
+            row_joints=[],
+            unread=[],
+            error=reason,
+            lost_freedoms=[],
         )
         return nothing, None
     found = table_frames(written, table.convention, scope, numbers, amounts)
@@ -204,6 +210,8 @@ def _table(
     drawn = FramesOfTable(
         complete=found.complete,
         frames=_plain(found.frames),
+        # Not rounded: a long link would magnify the error of a rounded angle.
+        values=(found.values + 0.0).tolist(),
         row_joints=[joint.index if joint else 0 for joint in found.row_joints],
         unread=[
             UnreadCell(row=cell.row, column=cell.column, error=_error(cell.finding))

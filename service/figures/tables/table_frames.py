@@ -48,12 +48,13 @@ class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
     The frames end before the first row that has a cell without a number; ``unread`` lists these
-    cells. ``row_joints`` has the joint of each row up to there, by the variable in the row.
-    ``symbols`` are the symbols in the table. ``freedoms`` is the number of degrees of freedom of a
-    complete table, else None.
+    cells. ``values`` has the numbers of the rows up to there, ``(configurations, rows, 4)``, and
+    ``row_joints`` their joints, by the variable in the row. ``symbols`` are the symbols in the
+    table. ``freedoms`` is the number of degrees of freedom of a complete table, else None.
     """
 
     frames: Matrices
+    values: Numbers
     row_joints: tuple[Joint | None, ...]
     symbols: Set[str]
     unread: tuple[CellWithoutNumber, ...] = ()
@@ -98,14 +99,15 @@ def table_frames(
     unread = tuple(_unread(written, is_number, scope))
     whole = np.asarray(is_number.all(axis=-1))
     end = len(whole) if whole.all() else int(whole.argmin())
-    reached = np.moveaxis(frames(table[:end, :, :count], convention), 1, 0)
+    read = table[:end, :, :count]
+    reached = np.moveaxis(frames(read, convention), 1, 0), np.moveaxis(read, -1, 0)
     used = [_symbols(row) for row in written.rows]
     symbols = set[str]().union(*used)
     joints = tuple(_joint(row, scope) for row in used[:end])
     if unread or end < len(scope.joints):
-        return TableFrames(reached, joints, symbols, unread, complete=False)
+        return TableFrames(*reached, joints, symbols, unread, complete=False)
     freedoms, lost = _freedoms(table[..., count:], convention, scope, symbols)
-    return TableFrames(reached, joints, symbols, freedoms=freedoms, lost=lost)
+    return TableFrames(*reached, joints, symbols, freedoms=freedoms, lost=lost)
 
 
 def _symbols(row: StudentRow) -> Set[str]:

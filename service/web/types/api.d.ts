@@ -211,6 +211,7 @@ declare namespace Api {
   type FramesOfTable = {
     complete: boolean;
     frames: number[][][][];
+    values: number[][][];
     row_joints: number[];
     unread: UnreadCell[];
     error?: PreviewError;
