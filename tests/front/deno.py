@@ -15,6 +15,7 @@ ROOT: Final = Path(__file__).parents[2]
 STATIC: Final = ROOT / "service" / "web" / "static"
 VENDOR: Final = STATIC / "vendor"
 TYPES: Final = ROOT / "service" / "web" / "types"
+TESTS: Final = Path(__file__).parent
 
 # All settings are in one file, which editors and TypeScript's own tsc read, too.
 _CONFIG: Final = ("--config", "jsconfig.json")
@@ -31,11 +32,11 @@ def scripts() -> list[Path]:
     return sorted(file for file in STATIC.rglob("*.js") if VENDOR not in file.parents)
 
 
-def deno(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run Deno at the root of the project, without a network."""
+def deno(*arguments: str, written: str = "") -> subprocess.CompletedProcess[str]:
+    """Run Deno at the root of the project, without a network, with a text as its input."""
     return subprocess.run(
         [find_deno_bin(), *arguments], cwd=ROOT, env=os.environ | _VARIABLES, check=False,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8",
+        input=written, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8",
     )  # fmt: skip
 
 

@@ -85,7 +85,7 @@ declare namespace Front {
 
   // The 3D view: pictures from the service, drawn by three.js or shown as a drawing.
   type Frame = number[][];
-  type Picture = { frames: Frame[] | null; mechanism: Api.DrawnConfiguration | null };
+  type Picture = { frames: Frame[] | null; values?: number[][] | null; mechanism: Api.DrawnConfiguration | null };
   type Subject = {
     kinds: Api.JointKind[];
     rowKinds: (Api.JointKind | null)[];
@@ -100,8 +100,25 @@ declare namespace Front {
     labels: string[];
     given(): boolean;
     gap(picture: Picture): Gap | null;
+    row(shapes: Shapes, size: number, stage: HTMLElement): RowShape | null;
+    shownRow(picture: Picture): ShownRow | null;
   };
   type Gap = import("../static/robot/frames/gap.js").Gap;
+  // A row on its way: `at` moves are done. If it is lit, only the current move is shown.
+  type ShownRow = {
+    start: Frame;
+    moves: Move[];
+    at: number;
+    current: number;
+    isLit: boolean;
+    text: string;
+    gap: Gap | null;
+  };
+  type Move = import("../static/robot/rows/row_moves.js").Move;
+  type RowShape = import("../static/robot/rows/row_shape.js").RowShape;
+  type RowShapeClass = typeof import("../static/robot/rows/row_shape.js").RowShape;
+  type RowPlayer = import("../static/robot/rows/row_player.js").RowPlayer;
+  type RowHost = { host: ViewHost; isFlat(): boolean; draw(): void; build(): void };
   type LabelRoom = import("../static/robot/frames/label_places.js").Room;
   type DrawSvg = (theme: Api.Theme) => Promise<string | null | undefined>;
   type RobotView = import("../static/robot/robot_view.js").RobotView;
@@ -112,11 +129,16 @@ declare namespace Front {
   type Scene = import("../static/vendor/three-0.185.1.module.min.js").Scene;
   type Camera = import("../static/vendor/three-0.185.1.module.min.js").PerspectiveCamera;
   type Vector2 = import("../static/vendor/three-0.185.1.module.min.js").Vector2;
+  type Vector3 = import("../static/vendor/three-0.185.1.module.min.js").Vector3;
   type Palette = typeof import("../static/robot/palette.js").LIGHT;
+  // A cell of the table that is drawn.
+  type TableCell = { input: HTMLInputElement; element: HTMLElement; place: { label: string } };
   type ViewHost = {
     service: import("../static/shared/service.js").Service;
     body(): Api.FramesRequest | null;
     descriptions?: Record<string, string>;
+    unit?: string;
+    cells?(): TableCell[][];
     announce(text: string): void;
     answered?(answer: Api.Frames, isKept: boolean): void;
     moved?(picture: Picture): void;

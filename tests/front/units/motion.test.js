@@ -14,7 +14,7 @@ const planar = ([first, second]) => {
   const hand = [elbow[0] + Math.cos(first + second), elbow[1] + Math.sin(first + second)];
   return [turned(0), turned(first, ...elbow), turned(first + second, ...hand)];
 };
-const service = (sets) => Promise.resolve({ table: { frames: sets.map(planar) } });
+const service = (sets) => Promise.resolve({ table: { frames: sets.map(planar), values: sets.map((each) => [each]) } });
 
 function close(actual, expected, tolerance = 1e-12) {
   assert.equal(actual.length, expected.length);
@@ -29,9 +29,12 @@ test("a column of a frame is an axis or the origin", () => {
 });
 
 test("an answer has a picture for each set of joint values, or none", () => {
-  const answer = { table: { frames: ["first", "second"] }, mechanism: { configurations: ["one", "two"] } };
-  assert.deepEqual(pictureOf(answer, 1), { frames: "second", mechanism: "two" });
-  assert.deepEqual(pictureOf({}), { frames: null, mechanism: null });
+  const answer = {
+    table: { frames: ["first", "second"], values: [[], ["numbers"]] },
+    mechanism: { configurations: ["one", "two"] },
+  };
+  assert.deepEqual(pictureOf(answer, 1), { frames: "second", values: ["numbers"], mechanism: "two" });
+  assert.deepEqual(pictureOf({}), { frames: null, values: null, mechanism: null });
 });
 
 test("half of a quarter turn is an eighth turn, and the frame stays orthonormal", () => {
@@ -102,7 +105,9 @@ test("between its pictures a sweep follows the arm", async () => {
   // A chord is off its arc by the radius times step squared over 8; no radius is more than 3.
   const tolerance = (3 * (2 * Math.PI / 87) ** 2) / 8;
   for (let angle = -Math.PI; angle <= Math.PI; angle += 0.1) {
-    const { frames } = sweep.at(angle);
+    const { frames, values } = sweep.at(angle);
+    // The numbers of a row change with the joint.
+    close(values[0], [angle, 0.5]);
     planar([angle, 0.5]).forEach((frame, i) => {
       close(column(frames[i], 3), column(frame, 3), tolerance);
       close(column(frames[i], 0), column(frame, 0), tolerance);

@@ -72,6 +72,7 @@ export class DhPlay extends HTMLElement {
     this.view = new RobotView({
       service: this.service,
       body: () => this.#body(),
+      cells: () => this.table.rows.map((row) => row.cells),
       announce: (text) => this.announce(text),
       answered: (answer, isKept) => this.#answered(answer, isKept),
       moved: (picture) => this.results.showPose(picture),

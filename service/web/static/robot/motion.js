@@ -6,7 +6,7 @@ const PICTURES = 30;
 const REQUESTS = 3;
 
 /**
- * Return a picture of an answer: `{frames, mechanism}`; either may be null.
+ * Return a picture of an answer: `{frames, values, mechanism}`; each may be null.
  *
  * @param {Api.Frames} answer
  * @param {number} [i]
@@ -14,7 +14,11 @@ const REQUESTS = 3;
  */
 export function pictureOf(answer, i = 0) {
   const { table, mechanism } = answer;
-  return { frames: table?.frames[i] ?? null, mechanism: mechanism?.configurations[i] ?? null };
+  return {
+    frames: table?.frames[i] ?? null,
+    values: table?.values[i] ?? null,
+    mechanism: mechanism?.configurations[i] ?? null,
+  };
 }
 
 /** Pictures of one joint from one end of its range to the other. */
@@ -98,6 +102,7 @@ export function between(from, to, share) {
   return {
     frames: after &&
       (from.frames?.slice(0, after.length).map((frame, i) => frameBetween(frame, after[i], point)) ?? null),
+    values: from.values && to.values && points(from.values, to.values),
     mechanism: one && other && {
       centres: points(one.centres, other.centres),
       axes: one.axes.map((axis, i) => direction(axis, other.axes[i])),

@@ -4,6 +4,7 @@
 import { h, message } from "../shared/dom.js";
 import { ViewWords } from "./frames/view_words.js";
 import { column, pictureOf, Sweep } from "./motion.js";
+import { RowLoader } from "./rows/row_loader.js";
 import { Stage } from "./stage.js";
 import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
 
@@ -33,7 +34,8 @@ export class RobotView {
   structure = null;
 
   /**
-   * `host` has: `service`; `body()`, the fields of every request, or null; `descriptions` of symbols by name;
+   * `host` has: `service`; `body()`, the fields of every request, or null; `descriptions` of symbols by name; the
+   * `unit` of lengths; `cells()`, the rows of the table that is drawn;
    * `announce`; `answered`, called with each answer, and with true if the earlier picture stays; `moved`, called with
    * each picture.
    *
@@ -44,6 +46,11 @@ export class RobotView {
     this.words = new ViewWords((text) => host.announce?.(text));
     this.stage = new Stage((theme) => this.#drawing(theme), this.words.text.id);
     this.told = h("p", { class: "told" });
+    const [draw, build] = [
+      () => this.#draw(),
+      () => this.#answer && this.picture && this.#showScene(this.#answer, this.picture),
+    ];
+    this.rows = new RowLoader({ host, isFlat: () => this.stage.isFlat, draw, build });
     this.numbers = new PoseNumbers();
     this.sliders = new JointSliders(this);
     this.symbols = new SymbolFields((name, value) => this.#chosen(name, value), host.descriptions);
@@ -65,6 +72,7 @@ export class RobotView {
       this.words.text,
       this.words.legend,
       this.told,
+      this.rows.element,
       this.sliders.element,
       h("div", { class: "switches" }, this.home, this.given.label, this.over),
       this.frames.element,
@@ -76,6 +84,7 @@ export class RobotView {
   /** Load the stage, and draw. */
   async open() {
     await this.stage.open();
+    this.rows.open();
     await this.#refresh();
   }
 
@@ -83,6 +92,7 @@ export class RobotView {
     this.#closed = true;
     clearTimeout(this.#timer);
     this.words.close();
+    this.rows.close();
     this.stage.close();
     this.element.remove();
   }
@@ -249,7 +259,7 @@ export class RobotView {
     const subject = {
       kinds: joints.map(({ kind }) => kind),
       rowKinds: table?.row_joints.map((joint) => kinds.get(joint) ?? null) ?? [],
-      convention: this.host.body()?.table?.convention ?? "standard",
+      convention: this.#convention,
       size: mechanism?.size ?? sizeOf(frames ?? []),
       azimuth: mechanism?.azimuth ?? -60,
       elevation: mechanism?.elevation ?? 25,
@@ -260,6 +270,8 @@ export class RobotView {
       labels: mechanism?.frames ?? [],
       given: () => this.given.box.checked,
       gap: (shown) => this.words.gap(shown),
+      row: this.rows.shape,
+      shownRow: (shown) => this.rows.shown(shown),
     };
     this.stage.show(subject, picture);
     if (this.#refit) this.stage.reset();
@@ -348,8 +360,13 @@ export class RobotView {
     this.told.hidden = !this.told.textContent;
   }
 
+  get #convention() {
+    return this.host.body()?.table?.convention ?? "standard";
+  }
+
   #showNumbers() {
-    if (!this.picture) return;
+    if (!this.picture || !this.#answer) return;
+    this.rows.show(this.#answer, this.picture, this.#convention);
     this.numbers.show(this.picture, this.words.gap(this.picture));
     this.words.describe(this.picture);
     this.host.moved?.(this.picture);

@@ -85,7 +85,7 @@ export class RobotScene {
 
   /**
    * Draw a subject: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot, labels, given,
-   * gap}`.
+   * gap, row, shownRow}`.
    *
    * @param {Front.Subject} subject
    * @param {Front.Picture} picture
@@ -100,7 +100,7 @@ export class RobotScene {
 
   #build() {
     this.#clear();
-    const { kinds, rowKinds, size, convention, solid, labels } = this.#subject;
+    const { kinds, rowKinds, size, convention, solid, labels, row } = this.#subject;
     const { frames, mechanism } = this.#picture;
     this.palette = paletteOf(this.stage);
     const [below, above] = (this.shapes = [
@@ -118,12 +118,16 @@ export class RobotScene {
     this.ghosts = mechanism && new GhostFrames(above, labels, 0.26 * size);
     this.gap = mechanism && new GapShape(above, size, this.stage);
     if (this.ghosts && this.gap) this.over.add(this.ghosts.group, this.gap.group);
+    this.row = row(above, size, this.stage);
+    if (this.row) this.over.add(this.row.group);
     for (const each of this.shapes) each.finish();
   }
 
   #clear() {
-    for (const part of [this.mechanism, this.chain, this.frames, this.ghosts, this.gap]) part?.group.removeFromParent();
+    const parts = [this.mechanism, this.chain, this.frames, this.ghosts, this.gap, this.row];
+    for (const part of parts) part?.group.removeFromParent();
     this.gap?.dispose();
+    this.row?.dispose();
     for (const each of this.shapes ?? []) each.dispose();
   }
 
@@ -141,7 +145,7 @@ export class RobotScene {
    */
   move(picture) {
     this.#picture = picture;
-    const { shown, robot, beside, given, gap } = this.#subject;
+    const { shown, robot, beside, given, gap, shownRow } = this.#subject;
     if (this.mechanism && picture.mechanism) this.mechanism.put(picture.mechanism);
     if (this.ghosts && picture.mechanism) this.ghosts.put(picture.mechanism.frames);
     if (this.ghosts) this.ghosts.group.visible = given();
@@ -154,6 +158,7 @@ export class RobotScene {
     const aside = beside() ? this.aside : new Vector3();
     this.chain?.group.position.copy(aside);
     this.frames?.group.position.copy(aside);
+    this.row?.put(shownRow(picture), aside);
     if (this.#wasInside && !this.#isInside()) this.#fit(this.camera.position.clone().sub(this.controls.target));
     this.draw();
   }
@@ -279,7 +284,8 @@ export class RobotScene {
     this.#asked = 0;
     if (this.inSoftware && !fine) this.resting = setTimeout(() => this.#render(true), AT_REST);
     if (this.renderer.getPixelRatio() !== this.#ratio(fine)) this.renderer.setPixelRatio(this.#ratio(fine));
-    const taken = this.gap?.follow(this.camera, this.size);
+    const texts = [...(this.gap ? [this.gap.text] : []), ...(this.row?.texts ?? [])];
+    const taken = texts.flatMap((text) => text.follow(this.camera, this.size));
     for (const each of this.shapes ?? []) each.put(taken);
     this.renderer.clear();
     this.renderer.render(this.solids, this.camera);

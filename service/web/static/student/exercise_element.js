@@ -275,6 +275,8 @@ export class DhExercise extends HTMLElement {
     const host = {
       service: this.service,
       body: () => ({ ...this.context(), ...this.#tableToDraw() }),
+      cells: () => this.#drawnTable()?.rows.map((row) => row.cells) ?? [],
+      unit: symbols.find(({ kind }) => kind === "length")?.unit,
       descriptions: Object.fromEntries(symbols.map(({ name, description }) => [name, description])),
       announce: (/** @type {string} */ text) => this.announce(text),
     };
@@ -283,9 +285,13 @@ export class DhExercise extends HTMLElement {
   }
 
   /** Return the table that the student changed last, if there is one. */
-  #tableToDraw() {
+  #drawnTable() {
     const tables = this.#parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
-    const [table] = tables.sort((one, other) => other.changedAt - one.changedAt);
+    return tables.sort((one, other) => other.changedAt - one.changedAt)[0];
+  }
+
+  #tableToDraw() {
+    const table = this.#drawnTable();
     if (!table) return {};
     const { shape } = table.part;
     const own = "convention" in shape ? shape.convention : "standard";

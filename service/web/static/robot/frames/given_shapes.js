@@ -1,9 +1,9 @@
 // What the exercise gives, in the 3D view: its frames as thin pale ghosts, and the gap to its tool frame.
 
-import { h } from "../../shared/dom.js";
-import { Group, Vector3 } from "../../vendor/three-0.185.1.module.min.js";
+import { Group } from "../../vendor/three-0.185.1.module.min.js";
 import { lay, vector } from "../shapes.js";
 import { gapText, isClosed } from "./gap.js";
+import { StageText } from "./stage_text.js";
 
 /** @type {Record<string, string>} */
 const LOWERED = { e: "ₑ", s: "ₛ", ...Object.fromEntries([..."₀₁₂₃₄₅₆₇₈₉"].map((digit, i) => [i, digit])) };
@@ -34,45 +34,25 @@ export class GhostFrames {
 
 /** The vector from the last frame of a table to the tool frame, with its length and the angle between the frames. */
 export class GapShape {
-  /** @param {Front.Shapes} shapes @param {number} size @param {HTMLElement} stage */
-  constructor(shapes, size, stage) {
+  /** @param {Front.Shapes} shapes @param {number} size @param {HTMLElement} stage @param {string} [name] of its class */
+  constructor(shapes, size, stage, name = "gap") {
     this.size = size;
     this.line = shapes.mesh("thin", "gap", true);
     this.group = new Group();
     this.group.add(this.line);
-    this.text = h("output", { class: "gap", "aria-hidden": "true", hidden: true });
-    this.middle = new Vector3();
-    stage.append(this.text);
+    this.text = new StageText(stage, name);
   }
 
   /** @param {Front.Gap | null} gap */
   put(gap) {
     this.group.visible = Boolean(gap && !isClosed(gap));
-    this.text.hidden = !this.group.visible;
-    if (!gap || !this.group.visible) return;
+    if (!gap || !this.group.visible) return this.text.put("");
     const [from, to] = [vector(gap.from), vector(gap.to)];
     lay(this.line, from, to, 0.008 * this.size);
-    this.middle.copy(from).add(to).multiplyScalar(0.5);
-    this.text.textContent = gapText(gap);
-  }
-
-  /**
-   * Move the text to the middle of the vector, and return its room in pixels from the lower left corner.
-   *
-   * @param {Front.Camera} camera
-   * @param {Front.Vector2} stage
-   */
-  follow(camera, stage) {
-    if (this.text.hidden) return [];
-    const at = this.middle.clone().project(camera);
-    const { offsetWidth: width, offsetHeight: height } = this.text;
-    const left = Math.max(0, Math.min(stage.x - width, ((at.x + 1) / 2) * stage.x + 8));
-    const top = Math.max(0, Math.min(stage.y - height, ((1 - at.y) / 2) * stage.y - height / 2));
-    this.text.style.translate = `${left}px ${top}px`;
-    return [{ left, right: left + width, low: stage.y - top - height, high: stage.y - top }];
+    return this.text.put(gapText(gap), from.add(to).multiplyScalar(0.5));
   }
 
   dispose() {
-    this.text.remove();
+    this.text.dispose();
   }
 }

@@ -1,0 +1,137 @@
+"""A row that is played in the 3D view: by keyboard, with words, and with little motion."""
+
+import gzip
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+from service.web.assets import FOLDER
+from tests.browser.fixtures import Visit
+from tests.browser.steps import cells, open_exercise
+from tests.browser.test_pages import violations
+from tests.browser.test_robot_view import open_view, picture
+
+Opening = Callable[..., Visit]
+
+TABLE = ["0.5", "0", "0", "theta1", "a2", "0", "0", "theta2"]
+MOST = 60_000
+
+# Measures pictures in a second while a row is played, pictures in a second of the page alone, and
+# milliseconds of script for each picture.
+PLAY = """async (button) => {
+  const ask = window.requestAnimationFrame.bind(window);
+  const pictures = async () => {
+    const from = performance.now();
+    let count = 0;
+    for (; performance.now() < from + 1000; count++) await new Promise((done) => ask(done));
+    return count;
+  };
+  const floor = await pictures();
+  let script = 0, calls = 0;
+  window.requestAnimationFrame = (run) => ask((now) => {
+    const from = performance.now();
+    run(now);
+    script += performance.now() - from;
+    calls += 1;
+  });
+  button.click();
+  const count = await pictures();
+  window.requestAnimationFrame = ask;
+  // Two calls for each picture: one moves the ghost, one draws it.
+  return [count, floor, 2 * script / calls];
+}"""
+
+
+def text(page: Page, name: str) -> str:
+    return page.locator(f".row-player {name}").inner_text()
+
+
+def test_a_row_is_played_by_keyboard(visit: Opening, service: str, axe: str) -> None:
+    opened = visit(bypass_csp=True, viewport={"width": 1280, "height": 900})
+    page = opened.page
+    page.add_init_script(axe)
+    open_exercise(page, service, "planar-rr")
+    for i, written in enumerate(TABLE):
+        cells(page).nth(i).fill(written)
+    open_view(page)
+    still = picture(page)
+    assert [url for url in opened.requests if "row_player" in url or "row_shape" in url] == []
+
+    # The cell in hand lights its length.
+    cells(page).nth(0).focus()
+    expect(page.locator("output.measure")).to_have_text("a₁ = 0.5 m")
+    assert picture(page) != still
+    page.get_by_role("button", name="Play a row").focus()
+    expect(page.locator("output.measure")).to_be_hidden()
+    page.keyboard.press("Enter")
+    caption = page.locator(".row-player .caption")
+    expect(caption).to_have_text("Row 1 begins on frame {0}.")
+    live = page.locator("[role=status][aria-live]")
+    for move in [
+        "1 of 4: turn about z₀ by θ₁ = 0°, so nothing moves.",
+        "2 of 4",
+        "3 of 4: along x₁",
+    ]:
+        page.get_by_role("button", name="Next move").press("Enter")
+        expect(caption).to_contain_text(move)
+        expect(live.filter(has_text=move)).to_have_count(1)
+    expect(live.filter(has_text="The ghost frame is at (0.5, 0, 0).")).to_have_count(1)
+    # The cell of the move is marked.
+    marked = page.locator("td.moving input")
+    expect(marked).to_have_value("0.5")
+    at_third = picture(page)
+    bar = page.get_by_role("slider", name="Moves of the row")
+    bar.press("Home")
+    expect(caption).to_have_text("Row 1 begins on frame {0}.")
+    assert picture(page) != at_third
+    bar.press("End")
+    # Link 1 of the robot has another length, so z₁ is beside the axis of joint 2.
+    expect(bar).to_have_attribute(
+        "aria-valuetext", "4 of 4: turn about x₁ by α₁ = 0°, so nothing moves."
+    )
+    expect(page.locator(".row-player .misses")).to_contain_text("z₁ misses the axis of joint 2: 0.")
+    cells(page).nth(0).fill("a1")
+    # The end of the length that is changed is shown, at once.
+    expect(caption).to_contain_text("3 of 4: along x₁ by a₁")
+    bar.press("End")
+    expect(page.locator(".row-player .quiet")).to_contain_text("z₁ lies on the axis of joint 2.")
+
+    # People who want no motion see the end of each move.
+    page.get_by_label("Row", exact=True).select_option("2")
+    page.get_by_role("button", name="Play", exact=True).press("Enter")
+    expect(caption).to_contain_text("1 of 4: turn about z₁")
+    assert bar.input_value() == "1"
+    page.get_by_role("button", name="Pause", exact=True).press("Enter")
+    page.get_by_role("button", name="Previous move").press("Enter")
+    expect(caption).to_have_text("Row 2 begins on frame {1}.")
+    page.set_viewport_size({"width": 320, "height": 700})
+    assert violations(page, "") == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+    page.get_by_role("button", name="Play a row").press("Enter")
+    expect(caption).to_be_hidden()
+    expect(page.locator("td.moving")).to_have_count(0)
+
+
+def test_a_row_of_seven_joints_moves_smoothly(
+    visit: Opening, service: str, figure: Callable[[str], None]
+) -> None:
+    small = {"width": 640, "height": 480}
+    page = visit(viewport=small, reduced_motion="no-preference").page
+    page.goto(f"{service}/play")
+    page.get_by_label("Start from a robot").select_option("Redundant arm, 7R")
+    expect(page.locator(".slider")).to_have_count(7)
+    page.get_by_role("button", name="Play a row").click()
+    page.get_by_label("Row", exact=True).select_option("3")
+    picture(page)
+    play = page.get_by_role("button", name="Play", exact=True)
+    drawn, floor, script = play.evaluate(PLAY)
+    figure(f"a row: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each")
+    # At 60 pictures a second there are 16 ms for one, and the browser needs most of them.
+    assert script < 16
+    assert drawn > floor / 6
+
+
+def test_the_scripts_of_the_3d_view_are_small() -> None:
+    """Each is sent compressed."""
+    files = (FOLDER / "robot").rglob("*.js")
+    assert sum(len(gzip.compress(file.read_bytes())) for file in files) < MOST
