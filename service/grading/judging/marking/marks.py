@@ -15,7 +15,7 @@ from service.grading.lost_points import (
     ALL_OR_NOTHING,
     CELLS,
     NO_ANSWER,
-    STANDS_STILL,
+    NO_JOINT_MOVES,
     NOT_READ,
     OUTSIDE,
     WHOLE,
@@ -133,7 +133,7 @@ def _losses(
 ) -> tuple[_Loss, ...]:
     """Return what a wrong answer has lost, place by place."""
     if judged.stands_still:
-        return (_Loss(STANDS_STILL, worth.total),)
+        return (_Loss(NO_JOINT_MOVES, worth.total),)
     if marking == "whole":
         return (_Loss(ALL_OR_NOTHING, worth.total),)
     losses = [_Loss(CELLS, steps, i) for i, steps in enumerate(charges) if steps]
