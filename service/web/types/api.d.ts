@@ -351,7 +351,7 @@ declare namespace Api {
     follow_through: boolean;
     rows: RowReport[];
     feedback: Feedback[];
-    lost: LostPoints[];
+    lost?: LostPoints[];
     little_worth?: LittleWorth;
   };
   type PartSolution = { text: string; latex: string; part: string; kind: string; title: string; answer: unknown; };
