@@ -14,7 +14,13 @@ from service.api.web_pages import WebPages
 from service.catalogue import exercise_after
 from service.web.assets import Asset, load_assets
 from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
-from service.web.pages import catalogue_page, exercise_page, play_page, reference_page
+from service.web.pages import (
+    catalogue_page,
+    exercise_page,
+    learner_page,
+    play_page,
+    reference_page,
+)
 from service.web.problem_pages import problem_page
 from service.web.tutor.attempt_routes import attempt_routes
 from service.web.tutor.tutor_routes import Tutoring, tutor_routes
@@ -66,6 +72,11 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         """Answer with the page of free play; its tables stay in the browser."""
         shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
         return HTMLResponse(shown, headers=PAGE_HEADERS)
+
+    @router.get("/learn")
+    async def learn() -> Response:
+        """Answer with the learner's page, the same for all; the key in the link never gets here."""
+        return HTMLResponse(learner_page(assets), headers=PAGE_HEADERS)
 
     @router.get("/docs")
     async def reference(request: Request) -> Response:

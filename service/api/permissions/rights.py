@@ -70,6 +70,7 @@ _change_course = partial(_change, Reach.COURSE, in_course=True)
 RIGHTS: Final[Mapping[str, Right]] = {
     "GET /": _EVERYBODY,
     "GET /play": _EVERYBODY,
+    "GET /learn": _EVERYBODY,
     "GET /embed.js": _EVERYBODY,
     "GET /static/{name}": _EVERYBODY,
     "GET /exercises/{exercise_id}": _EVERYBODY,

@@ -91,3 +91,18 @@ export class RobotFigure {
     this.shown(isOpen);
   }
 }
+
+/**
+ * Return the table that the student changed last, if there is one.
+ *
+ * @param {Front.PartView[]} parts
+ */
+export function tableToDraw(parts) {
+  const tables = parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
+  const [table] = tables.sort((one, other) => other.changedAt - one.changedAt);
+  if (!table) return {};
+  const { shape } = table.part;
+  const own = "convention" in shape ? shape.convention : "standard";
+  const { rows, convention = own } = /** @type {{ rows: unknown, convention?: typeof own }} */ (table.answer);
+  return { table: { rows, convention: convention === "either" ? "standard" : convention } };
+}
