@@ -8,7 +8,7 @@ from service.authoring import Level, examine
 from service.catalogue import Exercise, shipped_folder
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 from tests.grading.support.bare_numbers import BARE, BareExercise
-from tests.samples import one_in
+from tests.shipped import sampled
 from tests.together import together
 
 RIGHT_ROWS = '[["c1", 0, "s1", "d2 s1"], ["s1", 0, "-c1", "-d2 c1"], [0, 1, 0, "a1"], [0, 0, 0, 1]]'
@@ -42,7 +42,7 @@ def test_a_correct_file_gets_no_remarks(make_exercise: Make) -> None:
 
 
 @pytest.mark.parametrize(
-    "exercise_id", one_in(4, sorted(file.stem for file in shipped_folder().glob("*.toml")))
+    "exercise_id", sampled(sorted(file.stem for file in shipped_folder().glob("*.toml")), 4)
 )
 def test_the_shipped_exercises_have_no_failures(
     exercise_id: str, catalogue: Mapping[str, Exercise]
