@@ -119,6 +119,9 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "GET /v1/courses/{course_id}/learners/{learner}/view": _read_course(),
     "GET /v1/me": Right(Scope.RECORD, WithoutKeys.NOBODY, Reach.OWN, tokens=True, in_course=True),
     "GET /v1/exercises/{exercise_id}/solution": _solutions(Reach.PATH, in_course=True),
+    "GET /tutor/sign-in": _EVERYBODY,
+    "POST /tutor/sign-in": _EVERYBODY,
+    "POST /tutor/sign-out": _EVERYBODY,
     "GET /tutor": _solutions(Reach.OWN, in_course=True),
     "GET /tutor/solutions/{exercise_id}": _solutions(Reach.PATH, in_course=True),
     "GET /tutor/solutions/{exercise_id}/frames.svg": _solutions(Reach.PATH, in_course=True),
@@ -130,9 +133,9 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "GET /tutor/class": _solutions(Reach.ALL),
     "GET /tutor/class/report": _solutions(Reach.ALL),
     "POST /tutor/class": _solutions(Reach.ALL),
-    "GET /tutor/attempts": _attempts(Reach.OWN),
-    "GET /tutor/attempts/{attempt_id}": _attempts(Reach.OWN),
-    "GET /tutor/statistics/{exercise_id}": _attempts(Reach.PATH),
+    "GET /tutor/attempts": _attempts(Reach.OWN, in_course=True),
+    "GET /tutor/attempts/{attempt_id}": _attempts(Reach.OWN, in_course=True),
+    "GET /tutor/statistics/{exercise_id}": _attempts(Reach.PATH, in_course=True),
 }
 
 

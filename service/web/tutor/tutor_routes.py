@@ -18,7 +18,7 @@ from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
 from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
-from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
+from service.web.page_headers import FORM_HEADERS, NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
 from service.web.tutor.class_routes import class_routes
 from service.web.tutor.editor_routes import editor_routes
@@ -62,8 +62,14 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
         """Answer with the page for tutors; a restricted key sees only its exercises."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
-        content = tutor_page(shown, assets, of_all=caller.exercises is None)
-        return HTMLResponse(content, headers=PRIVATE_HEADERS)
+        content = tutor_page(
+            shown,
+            assets,
+            of_all=caller.reaches_all,
+            has_courses=tutoring.records and caller.exercises is None,
+            signed_in=access.is_signed_in(request),
+        )
+        return HTMLResponse(content, headers=FORM_HEADERS)
 
     return router
 
@@ -76,7 +82,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
     async def solution(request: Request, exercise_id: str) -> Response:
         """Answer with the model solution of an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        of_all = access.caller(request).exercises is None
+        of_all = access.caller(request).reaches_all
         key = (exercise.id, exercise.version, exercise.title, of_all)
         drawn = partial(solution_page, exercise, assets, of_all=of_all)
         content = await solutions.of(key, drawn)

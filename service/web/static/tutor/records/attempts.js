@@ -14,6 +14,7 @@ import {
   span,
   table,
   tell,
+  within,
 } from "./records.js";
 import { address, get, send } from "../tutor_service.js";
 
@@ -139,7 +140,11 @@ function changed(event) {
 
 /** Put filters and page into the address, for bookmarks and for the browser's back button. */
 function keepAddress() {
-  const pairs = [...FIELDS.map((name) => [name, fieldOf(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
+  const pairs = [
+    ...Object.entries(within()),
+    ...FIELDS.map((name) => [name, fieldOf(name).value]),
+    ...cursors.map((cursor) => ["cursor", cursor]),
+  ];
   const given = new URLSearchParams(pairs.filter(([, value]) => value));
   history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
 }
