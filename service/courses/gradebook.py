@@ -63,6 +63,17 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
     return found
 
 
+def handed_in(connection: Connection, course: str) -> dict[str, int]:
+    """Return the number of learners with a readable attempt, by assignment."""
+    rows = connection.execute(
+        select(assignments.c.id, func.count(attempts.c.learner.distinct()).label("number"))
+        .join_from(attempts, assignments)
+        .where(assignments.c.course == course, attempts.c.ordinal.is_not(None))
+        .group_by(assignments.c.id)
+    )
+    return {row.id: row.number for row in rows}
+
+
 def written_gradebook(book: Gradebook, form: GradebookFormat) -> Iterator[bytes]:
     """Yield a gradebook as CSV, line by line, with the headings that a platform imports.
 

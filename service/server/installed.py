@@ -50,7 +50,7 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         keys=_keys(settings, store, host),
     )
     tutoring = Tutoring(
-        access, settings.exercises_dir, settings.editor_dir, records=store is not None
+        access, settings.exercises_dir, settings.editor_dir, store is not None, store
     )
     app = application(
         catalogue,

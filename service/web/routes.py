@@ -13,6 +13,7 @@ from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
 from service.catalogue import exercise_after
 from service.web.assets import Asset, load_assets
+from service.web.courses.course_routes import course_routes
 from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
 from service.web.pages import catalogue_page, exercise_page, play_page, reference_page
 from service.web.problem_pages import problem_page
@@ -41,6 +42,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     router.include_router(sign_in_routes(assets, tutoring.access))
     router.include_router(tutor_routes(catalogue, assets, tutoring))
     router.include_router(attempt_routes(catalogue, assets, tutoring))
+    router.include_router(course_routes(catalogue, assets, tutoring))
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:

@@ -212,7 +212,8 @@ def guarded(
             access=each,
             store=store,
             pages=web_routes(
-                catalogue, Tutoring(each, (shipped_folder(),), editor_dir, records=True)
+                catalogue,
+                Tutoring(each, (shipped_folder(),), editor_dir, records=True, store=store),
             ),
         )
         for each in (access, open_access)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
@@ -25,20 +26,24 @@ from service.web.tutor.editor_routes import editor_routes
 from service.web.tutor.exercise_folder import ExerciseFolder
 from service.web.tutor.tutor_pages import misconceptions_page, solution_page, tutor_page
 
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
 
 @dataclass(frozen=True, slots=True)
 class Tutoring:
     """The settings of the tutor's pages.
 
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
-    in ``editor_dir``. ``records`` is true if the service records attempts. ``checking`` checks the
-    text in the editor, and ``drafts`` has the exercises in its preview.
+    in ``editor_dir``. ``records`` is true if the service records attempts, in ``store``.
+    ``checking`` checks the text in the editor, and ``drafts`` has the exercises in its preview.
     """
 
     access: Access
     folders: Sequence[Path] = field(default=())
     editor_dir: Path | None = None
     records: bool = False
+    store: "AttemptStore | None" = None
     checking: Checking = field(default_factory=Checking)
     drafts: Drafts = field(default_factory=Drafts)
 
