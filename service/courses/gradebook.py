@@ -107,9 +107,7 @@ def _chosen(connection: Connection, course: str, assignment: str | None) -> list
     return assignments_of(connection, course)
 
 
-def _shares(
-    connection: Connection, course: str, assignment: str | None
-) -> dict[_Place, float]:
+def _shares(connection: Connection, course: str, assignment: str | None) -> dict[_Place, float]:
     """Return the share of the points that counts, at each place with an attempt that counts."""
     of = attempts.c
     rows = connection.execute(

@@ -161,7 +161,7 @@ async function lookUp(event) {
   try {
     /** @type {Api.ForgottenData} */
     const found = await send("v1/learners/forget", { learner });
-    if (!found.attempts) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
+    if (!found.attempts && !found.courses) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
     tell(forgetState(), "");
     return confirm(found);
   } catch (error) {
@@ -170,11 +170,12 @@ async function lookUp(event) {
 }
 
 /** @param {Api.ForgottenData} found */
-const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
+const amounts = ({ attempts, earlier_reports: earlier, overrides, courses }) =>
   [
     count(attempts, "attempt"),
     earlier && count(earlier, "earlier report"),
     overrides && count(overrides, "overridden mark"),
+    courses && `the place in ${count(courses, "course")}`,
   ]
     .filter(Boolean)
     .join(", ");
