@@ -19,6 +19,8 @@ from service.cli.program import program
 from service.contract.courses import NewAssignment, NewCourse, NewLearner
 from service.courses import roll
 from service.courses.assignments import add_assignment
+from service.server.installed import installed_app
+from service.settings import load_settings
 
 NOW = datetime.now(UTC)
 SECRET = "0123456789abcdef" * 4
@@ -109,6 +111,16 @@ def test_old_attempts_are_deleted_and_no_others(
     assert learners(database) == ["ada"]
     assert months_before(datetime(2026, 3, 31, 8, tzinfo=UTC), 1).isoformat()[:10] == "2026-02-28"
     assert months_before(datetime(2026, 1, 5, 8, tzinfo=UTC), 13).isoformat()[:10] == "2024-12-05"
+
+
+def test_the_service_deletes_old_attempts_at_its_start(
+    database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed_app(load_settings())
+    assert learners(database) == ["ada", "grace"]
+    monkeypatch.setenv("DH_GRADER_KEEP_MONTHS", "12")
+    installed_app(load_settings())
+    assert learners(database) == ["ada"]
 
 
 def test_everything_known_of_a_learner_is_exported_and_forgotten(database: Path) -> None:
