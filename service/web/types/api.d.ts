@@ -198,6 +198,7 @@ declare namespace Api {
     attempts: number;
     earlier_reports: number;
     overrides: number;
+    courses: number;
     erased?: boolean;
   };
   type FrameFreedom = "given" | "free";

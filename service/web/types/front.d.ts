@@ -148,7 +148,14 @@ declare namespace Front {
   type Robot = { convention: Api.Convention; unit: Api.AngleUnit; rows: PlayRow[] };
 
   // The pages of recorded attempts.
-  type Filter = { exercise?: string; learner?: string; since?: string; until?: string };
+  type Filter = {
+    exercise?: string;
+    learner?: string;
+    since?: string;
+    until?: string;
+    course?: string;
+    assignment?: string;
+  };
   type FilterField = HTMLInputElement | HTMLSelectElement;
   // A file in an archive: the place of its bytes, and true if they are packed.
   type ZipEntry = {
