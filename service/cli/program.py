@@ -17,6 +17,7 @@ COMMANDS: Final = {
     "assignments": "Assignments of several exercises.",
     "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
     "py, …).",
+    "merge": "Merge the shards that `grade --shard` has written into the JSON lines of one run.",
     "attempts": "Recorded attempts: read, export, regrade, forget.",
     "courses": "Courses: learners, links, assignments, gradebook.",
     "keys": "API keys of the service: create, list, revoke.",
@@ -71,7 +72,6 @@ program = typer.Typer(
     name="dh-grader",
     help="Grades Denavit-Hartenberg tables, transforms and forward kinematics, and says why.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 

@@ -88,6 +88,13 @@ def database(*, create: bool = False) -> Iterator[Engine]:
         engine.dispose()
 
 
+@commands.command("migrate")
+def migrate() -> None:
+    """Create or update the tables. The service does so, too, when it starts."""
+    with database(create=True):
+        typer.echo("The tables are those of this version.")
+
+
 @commands.command("list")
 def list_attempts(
     exercise: ExerciseOption = None,
