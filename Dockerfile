@@ -29,6 +29,8 @@ ENV PATH="/opt/dh-grader/bin:$PATH" \
     PYTHONDONTWRITEBYTECODE=1 \
     PYTHONUNBUFFERED=1
 WORKDIR /srv
+# A new volume that is mounted here belongs to the user of the service.
+RUN install --directory --owner=10001 --group=10001 --mode=0700 /data
 
 # By number, so that a cluster which demands a non-root user can see that this is one.
 USER 10001:10001

@@ -88,6 +88,13 @@ class Settings(BaseSettings):
         description="The Redis in which several processes count requests together: "
         "`redis://:password@host:6379/0`. By default each process counts for itself.",
     )
+    keep_months: int | None = Field(
+        None,
+        ge=1,
+        le=1200,
+        description="For how many months attempts are kept. Older ones are deleted when the "
+        "service starts, and by `dh-grader attempts expire`. By default they are kept for ever.",
+    )
     read_attempts: bool | None = Field(
         None,
         description="Who may read recorded attempts and statistics. By default: tutors with a "

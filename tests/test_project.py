@@ -128,7 +128,13 @@ def test_files_that_the_dockerfile_copies_exist_and_are_not_ignored() -> None:
 
 
 @pytest.mark.parametrize(
-    "file", ["Dockerfile", "service/bundles/templates/prairielearn/Dockerfile", "compose.yaml"]
+    "file",
+    [
+        "Dockerfile",
+        "service/bundles/templates/prairielearn/Dockerfile",
+        "compose.yaml",
+        "deploy/simple/compose.yaml",
+    ],
 )
 def test_every_external_image_is_named_by_its_digest(file: str) -> None:
     images = re.findall(r"^ *(?:FROM|image:) (\S+)", read(file), re.MULTILINE)
@@ -140,8 +146,11 @@ def test_every_external_image_is_named_by_its_digest(file: str) -> None:
     assert len({image.partition("@")[0] for image in of_others}) == len(set(of_others))
 
 
-def test_every_action_is_named_by_its_commit() -> None:
-    actions = re.findall(r"uses: (.+)", read("docs/ci/github.yml"))
+@pytest.mark.parametrize(
+    "file", ["docs/ci/github.yml", "action.yml", ".github/workflows/release.yml"]
+)
+def test_every_action_is_named_by_its_commit(file: str) -> None:
+    actions = re.findall(r"uses: (.+)", read(file))
     assert actions
     for action in actions:
         assert re.fullmatch(r"[\w/-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action), action

@@ -75,6 +75,7 @@ SUITES = {
     "load",
     "worst",
     "browser",
+    "deploy",
     "front",
 }
 

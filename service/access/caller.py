@@ -32,6 +32,11 @@ class Caller:
         return self.exercises is None or exercise in self.exercises
 
     @property
+    def reaches_all(self) -> bool:
+        """True if the caller is restricted neither to exercises nor to a course."""
+        return self.exercises is None and self.course is None
+
+    @property
     def owner(self) -> str:
         """The owner of the caller's requests and attempts, at most 32 characters.
 

@@ -101,6 +101,24 @@ class KeyRing:
         token = LearnerToken(caller.key_id, caller.learner, scopes, caller.exercises)
         return signed(token, expires_at, self.secret.token_secret)
 
+    async def session_caller(self, session: str) -> Caller:
+        """Return the holder of the key that a session names.
+
+        Raises CredentialError, KeysUnreachableError, KeysBusyError.
+        """
+        from service.access.sessions import key_of_session
+
+        if self.secret is None:
+            raise CredentialError("The service cannot check sessions: DH_GRADER_SECRET is not set.")
+        return await self._holder("id", key_of_session(session, self.secret.session_secret))
+
+    def session(self, caller: Caller, expires_at: datetime) -> str:
+        """Return the text of a session of the holder of a key."""
+        from service.access.sessions import signed_session
+
+        assert self.secret is not None
+        return signed_session(caller.key_id, expires_at, self.secret.session_secret)
+
     def close(self) -> None:
         """Write pending notes of use and stop the threads."""
         self._known_lookups.close()

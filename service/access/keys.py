@@ -74,6 +74,15 @@ class Keys(Protocol):
     def token(self, caller: Caller, expires_at: datetime) -> str:
         """Return a token with the rights of ``caller``."""
 
+    async def session_caller(self, session: str) -> Caller:
+        """Return the holder of the key that a session names.
+
+        Raises CredentialError, KeysUnreachableError, KeysBusyError.
+        """
+
+    def session(self, caller: Caller, expires_at: datetime) -> str:
+        """Return the text of a session of the holder of a key."""
+
     @property
     def secret(self) -> "Secret | None":
         """The secret of the installation, if it is known."""
@@ -105,6 +114,11 @@ class Secret:
     def token_secret(self) -> bytes:
         """The key that signs tokens."""
         return self._derived("tokens")
+
+    @property
+    def session_secret(self) -> bytes:
+        """The key that signs the sessions of tutors."""
+        return self._derived("sessions")
 
     def _derived(self, purpose: str) -> bytes:
         return hmac.digest(self._text, f"dh-grader {purpose}".encode(), "sha256")

@@ -58,13 +58,16 @@ class LearnerData:
     attempts: int
     earlier_reports: int
     overrides: int
+    courses: int
 
 
 def data_of(connection: Connection, learner: str) -> LearnerData:
     """Count the records of a learner."""
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     columns = (attempts.c.number, earlier_reports.c.attempt, overrides.c.attempt)
-    counts = (select(func.count(column)).where(column.in_(mine)) for column in columns)
+    counts = [select(func.count(column)).where(column.in_(mine)) for column in columns]
+    enrolled = course_learners.c.learner
+    counts.append(select(func.count(enrolled)).where(enrolled == learner))
     return LearnerData(*(connection.scalar(count) or 0 for count in counts))
 
 

@@ -17,11 +17,18 @@ COMMANDS: Final = {
     "assignments": "Assignments of several exercises.",
     "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
     "py, …).",
+    "merge": "Merge the shards that `grade --shard` has written into the JSON lines of one run.",
     "attempts": "Recorded attempts: read, export, regrade, forget.",
     "courses": "Courses: learners, links, assignments, gradebook.",
     "keys": "API keys of the service: create, list, revoke.",
+    "learners": "Learners: export all that is known of one.",
+    "backup": "Copy the database to a file, also while the service runs.",
+    "restore": "Put a backup in the place of the database.",
+    "doctor": "Check this installation, and say how to mend it.",
     "bundle": "Write a zip file for a grading platform.",
 }
+# Those whose file is in ``operations/`` instead.
+_OPERATIONS: Final = {"learners", "backup", "restore", "doctor"}
 
 
 class _Commands(TyperGroup):
@@ -29,7 +36,8 @@ class _Commands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name, _, rest = super().resolve_command(ctx, args)
-        commands: typer.Typer = import_module(f"service.cli.commands.{name}").commands
+        room = "operations" if name in _OPERATIONS else "commands"
+        commands: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
         if not gc.isenabled():
             gc.freeze()
             gc.enable()
@@ -64,7 +72,6 @@ program = typer.Typer(
     name="dh-grader",
     help="Grades Denavit-Hartenberg tables, transforms and forward kinematics, and says why.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 

@@ -12,6 +12,7 @@ from service.catalogue import Exercise, exercise_files, load_catalogue, load_exe
 from service.settings import load_settings
 from service.submissions.lookup import find_exercise
 
+BELOW_PASS_MARK = 1
 UNUSABLE = 2
 # The exit code of a shell for SIGPIPE (the reader of a pipe has gone): 128 plus its number.
 BROKEN_PIPE = 141

@@ -49,6 +49,7 @@ class ForgottenData(BaseModel):
     attempts: int
     earlier_reports: int
     overrides: int = Field(description="Points that tutors gave or withdrew.")
+    courses: int = Field(description="The courses in which the learner is.")
     erased: bool | None = Field(
         None,
         description="True if the deleted data is no longer in SQLite's files. If false, another "

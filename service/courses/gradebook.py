@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sqlalchemy import Connection, func, or_, select
+from sqlalchemy import Connection, func, or_, select, true
 
 from service.attempts.storage.tables import assignments, attempts
 from service.contract.courses import (
@@ -32,7 +32,7 @@ def gradebook(connection: Connection, course: str, assignment: str | None = None
         for each in chosen
         for one in each.exercises
     ]
-    shares = _shares(connection, course)
+    shares = _shares(connection, course, assignment)
     rows = []
     for person in people(connection, course):
         found = [shares.get((person.learner, each.assignment, each.exercise)) for each in columns]
@@ -48,7 +48,7 @@ def gradebook(connection: Connection, course: str, assignment: str | None = None
 def missing(connection: Connection, course: str, assignment: str) -> list[MissingLearner]:
     """Return who has not handed in which exercises of an assignment. Raises CourseError."""
     [chosen] = _chosen(connection, course, assignment)
-    shares = _shares(connection, course)
+    shares = _shares(connection, course, assignment)
     dues = {each.learner: each.due for each in chosen.extensions}
     found = []
     for person in people(connection, course):
@@ -61,6 +61,17 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
             due = dues.get(person.learner) or chosen.due
             found.append(MissingLearner(**person._mapping, exercises=absent, due=due))
     return found
+
+
+def handed_in(connection: Connection, course: str) -> dict[str, int]:
+    """Return the number of learners with a readable attempt, by assignment."""
+    rows = connection.execute(
+        select(assignments.c.id, func.count(attempts.c.learner.distinct()).label("number"))
+        .join_from(attempts, assignments)
+        .where(assignments.c.course == course, attempts.c.ordinal.is_not(None))
+        .group_by(assignments.c.id)
+    )
+    return {row.id: row.number for row in rows}
 
 
 def written_gradebook(book: Gradebook, form: GradebookFormat) -> Iterator[bytes]:
@@ -96,7 +107,7 @@ def _chosen(connection: Connection, course: str, assignment: str | None) -> list
     return assignments_of(connection, course)
 
 
-def _shares(connection: Connection, course: str) -> dict[_Place, float]:
+def _shares(connection: Connection, course: str, assignment: str | None) -> dict[_Place, float]:
     """Return the share of the points that counts, at each place with an attempt that counts."""
     of = attempts.c
     rows = connection.execute(
@@ -104,6 +115,7 @@ def _shares(connection: Connection, course: str) -> dict[_Place, float]:
         .join_from(attempts, assignments)
         .where(
             assignments.c.course == course,
+            true() if assignment is None else assignments.c.id == assignment,
             of.assignment.is_not(None),
             or_(of.ordinal.is_not(None), of.awarded.is_not(None)),
         )

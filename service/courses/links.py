@@ -5,7 +5,7 @@ class twice.
 """
 
 import secrets
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from datetime import datetime, timedelta
 from typing import Any
 
@@ -17,6 +17,7 @@ from service.access.keys import WRONG_SECRET, Key, Secret
 from service.attempts.storage.tables import course_learners, courses, keys
 from service.contract.courses import LinksRequest, PersonalLink
 from service.courses.errors import CourseError
+from service.formats.shared import spreadsheet
 
 # The page of a learner, relative to the service. The key is in the fragment, which browsers neither
 # send to a server nor name as referrer.
@@ -54,6 +55,14 @@ def issue_links(
         link = f"{address.rstrip('/')}/{_PAGE}{secret.link_key(key.id)}"
         links.append(PersonalLink(**row._mapping, link=link, expires_at=key.expires_at))
     return links
+
+
+def written_links(links: Iterable[PersonalLink]) -> Iterator[bytes]:
+    """Yield links as CSV, line by line, for a mail merge."""
+    yield spreadsheet.line(("learner", "name", "email", "link", "expires"))
+    for each in links:
+        until = f"{each.expires_at:%Y-%m-%d}"
+        yield spreadsheet.line((each.learner, each.name, each.email, each.link, until))
 
 
 def revoke_links(

@@ -8,7 +8,7 @@ from service.grading.report import LittleWorth, LostPoints, RowReport, Verdict, 
 CELLS: Final = "cells"
 WHOLE: Final = "whole"
 OUTSIDE: Final = "outside_cells"
-NO_MOTION: Final = "no_motion"
+NO_JOINT_MOVES: Final = "no_motion"
 ALL_OR_NOTHING: Final = "all_or_nothing"
 NOT_READ: Final = "not_read"
 NO_ANSWER: Final = "no_answer"
@@ -19,7 +19,7 @@ _SENTENCES: Final = {
     CELLS: "{cells} in row {row}",
     WHOLE: "one mistake in the whole answer",
     OUTSIDE: "an extra row, or rows that do not lead to the end effector",
-    NO_MOTION: "no joint moves this answer",
+    NO_JOINT_MOVES: "no joint moves this answer",
     ALL_OR_NOTHING: "only a right answer earns points here",
     NOT_READ: "the answer cannot be read",
     NO_ANSWER: "no answer",

@@ -147,7 +147,7 @@ class PartReport:
     follow_through: bool
     rows: tuple[RowReport, ...]
     feedback: tuple[Feedback, ...] = ()
-    lost: tuple[LostPoints, ...] = ()
+    lost: Annotated[tuple[LostPoints, ...], Field(json_schema_extra={"x-added-later": True})] = ()
     little_worth: LittleWorth | None = None
 
 

@@ -1,5 +1,7 @@
 """Build the application of an installation from its settings."""
 
+import logging
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
@@ -18,6 +20,8 @@ from service.web import Tutoring, web_routes
 if TYPE_CHECKING:  # it imports the database drivers
     from service.attempts.store import AttemptStore
 
+_log = logging.getLogger(__name__)
+
 
 def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
     """Return the application, with fair admission.
@@ -35,6 +39,8 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:
             raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
+        if settings.keep_months is not None:
+            _delete_old(store, settings.keep_months)
     metrics = None
     if settings.metrics != "off":
         # Imported only here, because it imports the Prometheus client.
@@ -50,7 +56,7 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         keys=_keys(settings, store, host),
     )
     tutoring = Tutoring(
-        access, settings.exercises_dir, settings.editor_dir, records=store is not None
+        access, settings.exercises_dir, settings.editor_dir, store is not None, store
     )
     app = application(
         catalogue,
@@ -101,6 +107,17 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
             "DH_GRADER_OPEN=until-keys"
         )
     return ring
+
+
+def _delete_old(store: "AttemptStore", months: int) -> None:
+    """Delete the attempts that are older than some months; the log says how many."""
+    from service.attempts.learner_data import delete_older, months_before
+    from service.attempts.storage.database import in_transaction
+
+    before = months_before(datetime.now(UTC), months)
+    count = in_transaction(store.engine, lambda connection: delete_older(connection, before))
+    if count:
+        _log.info("%d attempts before %s were deleted", count, f"{before:%Y-%m-%d}")
 
 
 def _is_here(host: str) -> bool:

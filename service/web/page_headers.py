@@ -43,3 +43,5 @@ REFERENCE_HEADERS: Final = {
 # Browsers must not store what only a tutor may see.
 NO_STORE: Final = {"Cache-Control": "no-store"}
 PRIVATE_HEADERS: Final = {**PAGE_HEADERS, **NO_STORE}
+# A page without a referrer would send its forms without an origin.
+FORM_HEADERS: Final = {**PRIVATE_HEADERS, "Referrer-Policy": "same-origin"}

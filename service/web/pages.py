@@ -55,6 +55,17 @@ def play_page(assets: Assets, *, tutor: bool = False) -> bytes:
     return page("web/templates/play.html", assets, "", ["page.js", "play.js"], tutor=tutor)
 
 
+def learner_page(assets: Assets) -> bytes:
+    """Return the page of a learner with a personal link; its script loads the assignments."""
+    return page(
+        "web/templates/learn.html",
+        assets,
+        "",
+        ["page.js", "embed.js", "learner.js"],
+        styles=["learner.css"],
+    )
+
+
 def reference_page(assets: Assets, *, tutor: bool = False) -> bytes:
     """Return the page /docs, on which people read and try the operations."""
     return page(

@@ -5,23 +5,21 @@ from http import HTTPStatus
 from typing import Final
 
 from fastapi import Request
-from starlette.responses import Response
+from starlette.responses import RedirectResponse, Response
 
 from service.api.http.problems import ProblemError, ProblemPage
 from service.web.assets import Assets
 from service.web.page_headers import PRIVATE_HEADERS
 from service.web.pages import page
+from service.web.sign_in import sign_in_address
 
-_AS_PASSWORD: Final = "Open the page again and enter the key as the password. Any user name works."
 # The advice to readers without a tutor's key, by the names of problems.
 _FOR_TUTORS: Final[Mapping[str, str]] = {
-    "key-needed": f"This page needs a tutor's key. {_AS_PASSWORD}",
-    "key-not-valid": f"{{detail}} {_AS_PASSWORD}",
-    "scope-missing": f"{{detail}} This page needs a tutor's key. {_AS_PASSWORD}",
-    "solutions-off": "Create a tutor's key, and enter it as the password when the browser asks. "
-    "If DH_GRADER_SOLUTIONS is false, no key opens this page.",
-    "attempts-not-shown": "Create a tutor's key, and enter it as the password when the browser "
-    "asks. If DH_GRADER_READ_ATTEMPTS is false, no key opens this page.",
+    "scope-missing": "{detail} This page needs a tutor's key.",
+    "solutions-off": "Create a tutor's key, and sign in with it. If DH_GRADER_SOLUTIONS is false, "
+    "no key opens this page.",
+    "attempts-not-shown": "Create a tutor's key, and sign in with it. If DH_GRADER_READ_ATTEMPTS "
+    "is false, no key opens this page.",
 }
 
 
@@ -36,7 +34,13 @@ def problem_page(assets: Assets) -> ProblemPage:
         accepted = request.headers.get("accept", "")
         if request.method != "GET" or path.startswith("/v1/") or "text/html" not in accepted:
             return None
-        response = problem.answer(_content(problem, assets, "../" * (path.count("/") - 1)))
+        root = "../" * (path.count("/") - 1)
+        if problem.status is HTTPStatus.UNAUTHORIZED:
+            asking = f"{root}{sign_in_address(path, request.url.query)}"
+            return RedirectResponse(
+                asking, HTTPStatus.SEE_OTHER, {**PRIVATE_HEADERS, "Vary": "Accept, Cookie"}
+            )
+        response = problem.answer(_content(problem, assets, root))
         response.headers.update({**PRIVATE_HEADERS, "Vary": "Accept"})
         return response
 

@@ -13,9 +13,17 @@ from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
 from service.catalogue import exercise_after
 from service.web.assets import Asset, load_assets
+from service.web.courses.course_routes import course_routes
 from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
-from service.web.pages import catalogue_page, exercise_page, play_page, reference_page
+from service.web.pages import (
+    catalogue_page,
+    exercise_page,
+    learner_page,
+    play_page,
+    reference_page,
+)
 from service.web.problem_pages import problem_page
+from service.web.sign_in import sign_in_routes
 from service.web.tutor.attempt_routes import attempt_routes
 from service.web.tutor.tutor_routes import Tutoring, tutor_routes
 
@@ -37,8 +45,10 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     assets = load_assets()
     files = assets.by_name
     tutoring = tutoring or Tutoring(Access())
+    router.include_router(sign_in_routes(assets, tutoring.access))
     router.include_router(tutor_routes(catalogue, assets, tutoring))
     router.include_router(attempt_routes(catalogue, assets, tutoring))
+    router.include_router(course_routes(catalogue, assets, tutoring))
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
@@ -66,6 +76,11 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         """Answer with the page of free play; its tables stay in the browser."""
         shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
         return HTMLResponse(shown, headers=PAGE_HEADERS)
+
+    @router.get("/learn")
+    async def learn() -> Response:
+        """Answer with the learner's page, the same for all; the key in the link never gets here."""
+        return HTMLResponse(learner_page(assets), headers=PAGE_HEADERS)
 
     @router.get("/docs")
     async def reference(request: Request) -> Response:

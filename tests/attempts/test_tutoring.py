@@ -68,8 +68,8 @@ def test_nothing_of_a_forgotten_learner_is_left(
         override(connection, first.id, 1.0, "because", "me", NOON)
         connection.execute(regrade_queue.insert().values(attempt=first.number, exercise="scara"))
     with store.engine.begin() as connection:
-        assert forget(connection, "ada") == LearnerData(2, 2, 1)
-        assert forget(connection, "ada") == LearnerData(0, 0, 0)
+        assert forget(connection, "ada") == LearnerData(2, 2, 1, 0)
+        assert forget(connection, "ada") == LearnerData(0, 0, 0, 0)
     with store.engine.connect() as connection:
         assert list(connection.scalars(select(attempts.c.id))) == [other.id]
         for table in metadata.tables.values():
@@ -100,7 +100,7 @@ def test_a_learner_can_be_forgotten_while_a_regrade_begins(
                     # Within one transaction the view would not change.
                     watching.rollback()
                     time.sleep(0.01)
-        assert deleted.result(ANSWER) == LearnerData(1, 0, 0)
+        assert deleted.result(ANSWER) == LearnerData(1, 0, 0, 0)
     with store.engine.connect() as connection:
         assert regrading.waiting(connection) == 0
     store.close()

@@ -48,15 +48,12 @@ class Recording:
     key: str
     narrow_key: str
 
-    @property
-    def visitor(self) -> dict[str, Any]:
-        """Return the options of a browser that enters the key as the password."""
-        return self.visitor_with(self.key)
-
-    def visitor_with(self, key: str) -> dict[str, Any]:
-        """Return the options of a browser that enters this key as the password."""
-        password = {"username": "tutor", "password": key, "origin": self.address}
-        return {"viewport": NARROW, "http_credentials": password}
+    def sign_in(self, page: Page, key: str = "") -> None:
+        """Sign in with a key; by default with the one for all exercises."""
+        page.goto(f"{self.address}/tutor")
+        page.get_by_label("Your key").fill(key or self.key)
+        page.get_by_role("button", name="Sign in").click()
+        expect(page.get_by_role("heading", level=1)).to_have_text("For tutors")
 
     def record(self, learner: str, table: Any) -> str:
         """Record an attempt as a course does, and return its id."""
@@ -114,17 +111,17 @@ def test_a_tutor_works_with_recorded_attempts(
     recording: Recording, visit: Opening, tmp_path: Path
 ) -> None:
     # Under the page's own policy, by keyboard where it matters, on a narrow screen.
-    page = visit(**recording.visitor).page
+    page = visit(viewport=NARROW).page
     page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")
-    page.goto(f"{recording.address}/tutor")
+    recording.sign_in(page)
     page.get_by_role("link", name="Recorded attempts").click()
     expect(page.get_by_text("Nobody has handed in yet")).to_be_visible()
     for learner, table in ANSWERS:
         recording.record(learner, table)
 
     # A tutor with a key for this exercise alone sees the same attempts.
-    other = visit(**recording.visitor_with(recording.narrow_key)).page
-    other.goto(f"{recording.address}/tutor")
+    other = visit(viewport=NARROW).page
+    recording.sign_in(other, recording.narrow_key)
     other.get_by_role("link", name="Recorded attempts").click()
     expect(rows(other)).to_have_count(3)
     other.close()
@@ -256,7 +253,8 @@ def test_the_pages_of_attempts_are_accessible(
     recording: Recording, visit: Opening, service: str, axe: str
 ) -> None:
     [*_, attempt] = [recording.record(learner, table) for learner, table in ANSWERS]
-    page = visit(bypass_csp=True, **recording.visitor).page
+    page = visit(bypass_csp=True, viewport=NARROW).page
+    recording.sign_in(page)
     page.add_init_script(axe)
 
     def check() -> None:
@@ -292,7 +290,8 @@ def test_the_pages_of_attempts_are_accessible(
 def test_the_api_page_shows_recorded_answers_as_text(recording: Recording, visit: Opening) -> None:
     """Recorded answers are shown as text when a tutor tries an operation at /docs."""
     attempt = recording.record(PICTURE, WRONG)
-    page = visit(**recording.visitor, bypass_csp=True).page
+    page = visit(viewport=NARROW, bypass_csp=True).page
+    recording.sign_in(page)
     page.goto(f"{recording.address}/docs#/attempts/getAttempt")
     page.get_by_placeholder("attempt_id").fill(attempt)
     page.get_by_role("button", name="Execute").click()

@@ -154,3 +154,17 @@ def test_a_closed_pipe_ends_the_program_quietly(arguments: tuple[str, ...], answ
         done = subprocess.run(command, cwd=ROOT, stdout=gone, stderr=subprocess.PIPE, check=False)
     # The exit code of a shell for a program that SIGPIPE has ended.
     assert (done.returncode, done.stderr) == (141, b"")
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [("dh-grader gr", "grade"), ("dh-grader grade x --quie", "--quiet"),
+     ("dh-grader keys cr", "create")],
+)  # fmt: skip
+def test_a_shell_completes_commands_and_their_options(words: str, expected: str) -> None:
+    result = process(
+        _DH_GRADER_COMPLETE="complete_bash",
+        COMP_WORDS=words,
+        COMP_CWORD=str(len(words.split()) - 1),
+    )
+    assert result.stdout.decode().split() == [expected]

@@ -17,9 +17,10 @@ from service.api.routes.preview import GENERIC
 from service.catalogue import Exercise
 from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from service.grading import FeedbackLevel, Submission, grade
+from service.grading.lost_points import without_places
 from service.grading.misconception import all_records
 from service.grading.reading.preview import preview_pasted
-from service.grading.report import Feedback, Place, messages_of
+from service.grading.report import Feedback, PartReport, Place, messages_of
 from service.grids import GRID_LIMITS
 from tests.docs import test_message_codes as messages_page
 from tests.docs.codes import sources
@@ -157,6 +158,18 @@ def said_of_answers(
                     f"{example.exercise}, {part.part}{unit}{_place(places)}",
                     shown(example.answers[part.part]),
                 )
+            yield from _said_of_points(part, example)
+
+
+def _said_of_points(part: PartReport, example: Example) -> Iterator[Said]:
+    """Yield the sentences that say where points were lost, and why rows are worth little."""
+    where = f"{example.exercise}, {part.part}"
+    answer = shown(example.answers.get(part.part, ""))
+    # The second is the form of the level ``score``.
+    for lost in (*part.lost, *without_places(part.lost)):
+        yield Said(lost.code, lost.message, "", where, answer)
+    if part.little_worth:
+        yield Said("little_worth", part.little_worth.message, "", where, answer)
 
 
 def _correction(message: Feedback) -> str:

@@ -41,6 +41,7 @@ SECTIONS: Final = (
         "See [Recorded attempts](attempts.md) and [Keys](keys.md).",
         (
             "database",
+            "keep_months",
             "secret",
             "secret_file",
             "open",

@@ -8,7 +8,7 @@ The words after the three backticks say what a code block does:
     toml FILE instead replaces what the block before has added
     json FILE         becomes the file, and so does csv FILE; a name with blanks is in quotes
     csv FILE expected is what a command before has written into the file
-    toml, json, sh    is only read
+    toml, json, yaml, sh  is only read
 
 In the output, `…` matches any text within a line, and alone on a line any lines.
 `$ export NAME=VALUE` sets a variable for the commands that follow.
@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 from service.cli.program import program
@@ -76,6 +77,8 @@ class Reader:
                         file = self._folder / name
                         file.parent.mkdir(parents=True, exist_ok=True)
                         file.write_text(block.text, encoding="utf-8")
+                case "yaml":
+                    yaml.safe_load(block.text)
                 case "sh":
                     pass
                 case other:

@@ -22,6 +22,7 @@ ROOMS = {
     "student": {"shared", "typeset", "robot", "pages", "catalogue"},
     "play": {"shared", "robot", "student"},
     "tutor": {"shared", "student"},
+    "learner": {"shared", "typeset", "student", "tutor"},
 }
 
 

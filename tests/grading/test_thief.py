@@ -17,7 +17,7 @@ from service.grading.report import messages_of
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
 from tests.grading.support.submitting import handed_in, part
 from tests.grading.support.thief import Thief, expressions_in, is_trivial, known_before, lazy
-from tests.samples import one_in
+from tests.shipped import sampled
 from tests.solutions.solved import solved
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
@@ -37,7 +37,7 @@ def thieves(exercise: Exercise, level: FeedbackLevel, first: str) -> Iterator[Th
         yield Thief(exercise, spec, level, grid, known)
 
 
-@pytest.mark.parametrize("exercise_id", one_in(5, IDS))
+@pytest.mark.parametrize("exercise_id", sampled(IDS, 5))
 @pytest.mark.parametrize("first", FIRST)
 @pytest.mark.parametrize("level", [HINTS, VERDICTS, SCORE])
 def test_a_thief_gains_nothing(
@@ -135,7 +135,7 @@ def _same(one: str, other: str, exercise: Exercise) -> bool:
     return bool(np.allclose(numbers[0], numbers[1]))
 
 
-@pytest.mark.parametrize("exercise_id", one_in(4, IDS))
+@pytest.mark.parametrize("exercise_id", sampled(IDS, 4))
 def test_no_hint_contains_the_value_of_its_cell(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:

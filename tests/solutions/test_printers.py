@@ -18,6 +18,7 @@ from service.kinematics.dh import Convention
 from service.solutions.algebra import Algebra
 from tests.grading.support.submitting import full_marks, handed_in
 from tests.samples import one_in
+from tests.shipped import sampled
 from tests.solutions.prints import PRINTERS as MATRIX_PRINTERS
 from tests.solutions.prints import Print, prints, refused
 from tests.solutions.solved import memoized_by_exercise, solved
@@ -62,7 +63,7 @@ def _unchanged_entries(before: object, after: object) -> int:
 
 
 @pytest.mark.parametrize("printer", PRINTERS)
-@pytest.mark.parametrize("exercise_id", one_in(3, IDS))
+@pytest.mark.parametrize("exercise_id", sampled(IDS, 3))
 def test_the_model_solution_gets_full_marks_as_sympy_prints_it(
     exercise_id: str,
     printer: str,
@@ -90,7 +91,7 @@ def test_the_model_solution_gets_full_marks_as_sympy_prints_it(
 SAMPLE = 6
 
 
-@pytest.mark.parametrize("exercise_id", one_in(3, IDS))
+@pytest.mark.parametrize("exercise_id", sampled(IDS, 3))
 def test_matrices_get_full_marks_as_programs_print_them(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -5,17 +5,25 @@ import pytest
 from service.web.catalogue_words import words_of
 from tests.shipped import shipped_exercises
 
+SEVEN = ("franka-research-3", "kuka-lbr-iiwa-7", "kinova-gen3", "sawyer")
+MODIFIED = {
+    "planar-rrr", "planar-rrr-drawn", "rrrp-proximal", "franka-research-3", "kuka-lbr-iiwa-7",
+    "kinova-gen3", "puma-560-craig",
+}  # fmt: skip
+
 
 @pytest.mark.parametrize(
     ("query", "expected"),
     [
-        ("proximal", {"planar-rrr", "planar-rrr-drawn", "rrrp-proximal"}),
-        ("modified", {"planar-rrr", "planar-rrr-drawn", "rrrp-proximal"}),
-        ("6dof", {"stanford-arm", "stanford-arm-d1", "stanford-arm-drawn"}),
-        ("7R", {"baxter-left-arm"}),
-        ("puma", {"spatial-rrr", "spherical-wrist"}),
-        ("scara", {"scara", "rrrp", "rrrp-drawn", "rrrp-proximal"}),
-        ("spherical", {"spherical-wrist", "stanford-arm", "stanford-arm-d1", "stanford-arm-drawn"}),
+        ("proximal", MODIFIED),
+        ("modified", MODIFIED),
+        ("7dof", {"baxter-left-arm", *SEVEN}),
+        ("7R", {"baxter-left-arm", *SEVEN}),
+        ("puma", {"spatial-rrr", "spherical-wrist", "puma-560", "puma-560-craig"}),
+        ("scara", {"scara", "rrrp", "rrrp-drawn", "rrrp-proximal", "adept-cobra-600"}),
+        ("e-Series", {"ur3e", "ur5e", "ur10e", "ur16e"}),
+        ("KUKA", {"kuka-kr-5-arc", "kuka-kr-10-r1100", "kuka-lbr-iiwa-7", "kuka-youbot-arm"}),
+        ("gantry", {"abb-irb-6620lx", "three-link-cartesian"}),
         ("RPP", {"three-link-cylindrical"}),
     ],
 )

@@ -11,6 +11,8 @@ Schema = dict[str, Any]
 
 _REFERENCE: Final = "#/components/schemas/"
 _NULL: Final = {"type": "null"}
+# The mark of a field that answers recorded by an older version do not have.
+ADDED_LATER: Final = "x-added-later"
 
 # The names that classes have in the document if they are not their own.
 _PUBLIC_NAMES: Final = {
@@ -128,18 +130,20 @@ class _Tidying:
 
         The service sends every field that has a value, so a field with a default is
         required there. In a request the description says the default: given as ``default``,
-        it makes some generators require the field.
+        it makes some generators require the field. A field with the mark ``ADDED_LATER`` may be
+        absent in answers that an older version has recorded.
         """
         required = list(schema.get("required", ()))
         fields = {}
         for name, field in schema["properties"].items():
             if name not in required:
                 field = _without_null(field)
+                added_later = field.pop(ADDED_LATER, False)
                 if "default" in field:
                     default = json.dumps(field.pop("default"))
-                    if is_sent:
+                    if is_sent and not added_later:
                         required.append(name)
-                    else:
+                    elif not is_sent:
                         field["description"] += f" Default: `{default}`."
             fields[name] = self.tidied(field, is_sent=is_sent)
         in_order = [name for name in fields if name in required]

@@ -18,9 +18,9 @@ M = TypeVar("M", bound=BaseModel)
 async def read_body(model: type[M], request: Request) -> M:
     """Return the body as this model. Any Content-Type is accepted if the body is JSON.
 
-    Forms and scripts often forget the header. Accepting them is safe, because no cookie gives a
-    request any right. Raises ProblemError: 400 if the body is not JSON, 415 if moreover the
-    header names another type, 422 if the body does not match the model.
+    Forms and scripts often forget the header. Accepting them is safe, because a cookie gives
+    rights only to requests of the service's own pages. Raises ProblemError: 400 if the body is not
+    JSON, 415 if moreover the header names another type, 422 if the body does not match the model.
     """
     try:
         value = read_json(await request.body())

@@ -27,12 +27,15 @@ from service.api.permissions.access_problems import (
     access_problem,
     scope_missing,
     token_for_token,
-    with_password_challenge,
 )
 from service.api.permissions.rights import RIGHTS, Reach, Right, WithoutKeys, right_of
 
 # The key of a request's ASGI scope under which the authentication leaves the identity.
 IDENTITY: Final = "dh_grader.identity"
+# The cookies with the session of a tutor. Browsers accept the first one only over HTTPS, and only
+# from the service itself (RFC 6265bis, section 4.1.3.2).
+SECURE_COOKIE: Final = "__Host-dh-grader"
+PLAIN_COOKIE: Final = "dh-grader"
 # Headers by which a proxy names its client or the address it was asked for, besides X-Forwarded-….
 _OF_PROXIES: Final = frozenset(
     {
@@ -98,11 +101,17 @@ class Access:
         if self.keys is None or not await self.keys.are_needed():
             return self._without_keys(scope)
         credential, in_browser = _credential(Headers(scope=scope).get("authorization", ""))
-        if not credential:
+        session = "" if credential else session_in(scope)
+        if not (credential or session):
             return Identity(self._always.caller, by_key=True)
         try:
-            caller = await self.keys.caller(credential)
+            if session:
+                caller, in_browser = await self.keys.session_caller(session), True
+            else:
+                caller = await self.keys.caller(credential)
         except CredentialError as error:
+            if session:  # it has ended
+                return Identity(self._always.caller, by_key=True)
             refusal = access_problem("key-not-valid", reason=error)
         except KeysUnreachableError:
             refusal = store_down("The key cannot be checked: the database does not answer.")
@@ -123,6 +132,10 @@ class Access:
         """Return the caller of a request."""
         return self._identity(request).caller
 
+    def is_signed_in(self, request: Request) -> bool:
+        """Return whether the request has the session of a tutor."""
+        return self._identity(request).in_browser
+
     def require_allowed_origin(self, request: Request, origins: Collection[str]) -> None:
         """Check that the request comes from a page that may record attempts. Raises ProblemError.
 
@@ -133,7 +146,7 @@ class Access:
         identity = self._identity(request)
         shows_key = bool(identity.caller.key_id) and not identity.in_browser
         is_allowed = "*" in origins or request.headers.get("origin") in origins
-        if not (shows_key or is_allowed or _is_same_origin(request)):
+        if not (shows_key or is_allowed or is_same_origin(request)):
             raise access_problem("origin-refused")
 
     def shows_solutions(self, request: Request) -> bool:
@@ -160,7 +173,7 @@ class Access:
         identity = self._identity(request)
         problem = identity.refusal or self._problem(request, identity, right, right.scope)
         if problem is not None:
-            raise with_password_challenge(problem) if right.scope is Scope.TUTOR else problem
+            raise problem
         course = identity.caller.course
         if course is not None and not right.in_course:
             raise access_problem("other-course")
@@ -195,7 +208,7 @@ class Access:
             is_shown = shown is not False
         # A program that sends a key in a header of its own may name any origin.
         sends_key = identity.by_key and not identity.in_browser
-        is_allowed = is_shown and (sends_key or _is_same_origin(request))
+        is_allowed = is_shown and (sends_key or is_same_origin(request))
         return None if is_allowed else access_problem(_NOT_SHOWN[right.without_keys])
 
     def _identity(self, request: Request) -> Identity:
@@ -271,7 +284,7 @@ def _host_name(netloc: str) -> str:
         return ""
 
 
-def _is_same_origin(request: Request) -> bool:
+def is_same_origin(request: Request) -> bool:
     """True unless a page of another origin made the request; programs name no origin.
 
     A browser says in Sec-Fetch-Site where a request comes from (Fetch Metadata), also for pictures
@@ -289,6 +302,17 @@ def _is_same_origin(request: Request) -> bool:
     scheme, _, host = origin.partition("://")
     is_of_scheme = site == "same-origin" or scheme == request.scope["scheme"]
     return is_of_scheme and host == headers.get("host", "")
+
+
+def session_in(scope: AsgiScope) -> str:
+    """Return the session in the cookies of a request, or "".
+
+    Browsers send cookies also for pages of other origins, whose requests have no session here. A
+    user may follow a link from any page.
+    """
+    request = Request(scope)
+    session = request.cookies.get(SECURE_COOKIE) or request.cookies.get(PLAIN_COOKIE) or ""
+    return session if session and is_same_origin(request) else ""
 
 
 def _follows_link(request: Request) -> bool:

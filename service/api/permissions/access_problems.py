@@ -1,7 +1,6 @@
 """The problems of callers without the right to do what they ask for."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from http import HTTPStatus
 from typing import Final, NamedTuple
 
@@ -9,10 +8,6 @@ from service.access.caller import Scope
 from service.api.http.problems import ProblemError
 
 _BEARER: Final = "Bearer"
-# With this challenge a browser asks its user for a password, which then is the key, and sends it
-# with all requests of the pages. Each challenge is a header of its own: of several in one header
-# Chromium reads only the first.
-_PASSWORD: Final = ('Basic realm="A key of DH Grader as password", charset="UTF-8"', _BEARER)
 _ALLOWS: Final = {
     Scope.GRADE: "have answers graded",
     Scope.RECORD: "record attempts",
@@ -137,10 +132,3 @@ def token_for_token() -> ProblemError:
         "scope-missing",
         "The token is not for this",
     )
-
-
-def with_password_challenge(problem: ProblemError) -> ProblemError:
-    """Return the problem; a browser then asks its user for a key, if the status is 401."""
-    if problem.status is not HTTPStatus.UNAUTHORIZED:
-        return problem
-    return replace(problem, challenges=_PASSWORD)

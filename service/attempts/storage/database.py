@@ -6,6 +6,8 @@ from typing import Any, Final, TypeVar
 
 from alembic import command
 from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
@@ -39,11 +41,7 @@ def open_database(url: str, *, create: bool = True) -> Engine:
     ``url`` is an SQLAlchemy URL (postgresql://…, sqlite:///…) or the path of an SQLite file. With
     ``create``, a missing file is created. Raises UnusableDatabaseError.
     """
-    try:
-        engine = _engine(url)
-    except (ArgumentError, ValueError) as error:
-        # Do not repeat the URL: it may contain a password.
-        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
+    engine = unmigrated_database(url)
     is_sqlite = engine.dialect.name == "sqlite"
     if is_sqlite and not _is_there(path := engine.url.database or ""):
         if not create:
@@ -66,6 +64,23 @@ def open_database(url: str, *, create: bool = True) -> Engine:
     finally:
         engine.dispose()
     return engine
+
+
+def migration_state(connection: Connection) -> tuple[str | None, str | None]:
+    """Return the version of the tables, None if there are none, and the newest version."""
+    config = Config()
+    config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+    newest = ScriptDirectory.from_config(config).get_current_head()
+    return MigrationContext.configure(connection).get_current_revision(), newest
+
+
+def unmigrated_database(url: str) -> Engine:
+    """Return the database at the URL as it is. Raises UnusableDatabaseError."""
+    try:
+        return _engine(url)
+    except (ArgumentError, ValueError) as error:
+        # Do not repeat the URL: it may contain a password.
+        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
 
 
 def _is_there(path: str) -> bool:

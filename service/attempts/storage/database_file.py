@@ -1,7 +1,8 @@
 """The file of an SQLite database. It must not be moved or replaced while it is open."""
 
 import os
-from contextlib import suppress
+import sqlite3
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any, Final
 
@@ -54,6 +55,30 @@ def make_private(path: str) -> None:
     """
     with suppress(OSError):
         os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, _OWN))
+
+
+def copy_into(source: Path, target: Path) -> None:
+    """Copy an SQLite database into a new file, while others read and write it.
+
+    Only the owner may read the copy. Raises sqlite3.Error.
+    """
+    make_private(str(target))
+    uri = f"{source.absolute().as_uri()}?mode=ro"
+    with closing(sqlite3.connect(uri, uri=True, isolation_level=None)) as connection:
+        connection.execute("VACUUM INTO ?", (str(target),))
+
+
+def is_in_use(path: Path) -> bool:
+    """True if another program has the SQLite database open; else its log is emptied."""
+    with closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as connection:
+        try:
+            # In WAL mode every open connection holds a lock that excludes this one.
+            connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+            connection.execute("BEGIN EXCLUSIVE")
+            connection.execute("COMMIT")
+        except sqlite3.OperationalError:
+            return True
+    return False
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

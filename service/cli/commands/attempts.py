@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Final
 
 import typer
-from sqlalchemy import Engine
+from sqlalchemy import Engine, func, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.attempt import AttemptFilter, GradesFormat
@@ -17,11 +17,13 @@ from service.attempts.errors import (
     UnusableDatabaseError,
     UnusablePointsError,
 )
+from service.attempts.learner_data import delete_older, months_before
 from service.attempts.results.grades import counting_rules, graded_attempts, written
 from service.attempts.results.listing import page
 from service.attempts.results.statistics import exercise_statistics
 from service.attempts.storage.database import in_transaction, open_database, reason
 from service.attempts.storage.erasure import overwrite_deleted
+from service.attempts.storage.tables import attempts
 from service.attempts.tutoring import (
     LearnerData,
     data_of,
@@ -84,6 +86,13 @@ def database(*, create: bool = False) -> Iterator[Engine]:
         give_up(f"The database does not answer: {reason(error)}")
     finally:
         engine.dispose()
+
+
+@commands.command("migrate")
+def migrate() -> None:
+    """Create or update the tables. The service does so, too, when it starts."""
+    with database(create=True):
+        typer.echo("The tables are those of this version.")
 
 
 @commands.command("list")
@@ -233,6 +242,34 @@ def override_points(
     typer.echo("Withdrawn." if points is None else f"The attempt has {number(points)} points.")
 
 
+@commands.command("expire")
+def expire(
+    months: Annotated[
+        int | None, typer.Option(min=1, max=1200, help="[DH_GRADER_KEEP_MONTHS]")
+    ] = None,
+    apply: Annotated[
+        bool, typer.Option("--apply", help="Delete them; otherwise only count them.")
+    ] = False,
+) -> None:
+    """Delete the attempts that are older than some months."""
+    kept = months or load_settings().keep_months
+    if kept is None:
+        give_up("Say for how many months attempts are kept: --months, or DH_GRADER_KEEP_MONTHS.")
+    before = months_before(datetime.now(UTC), kept)
+    with database() as engine:
+        if not apply:
+            with engine.connect() as connection:
+                old = select(func.count()).where(attempts.c.at < before)
+                count = connection.scalar(old) or 0
+            typer.echo(f"{count} attempts are from before {before:%Y-%m-%d}. --apply deletes them.")
+            return
+        count = in_transaction(engine, lambda connection: delete_older(connection, before))
+        erased = overwrite_deleted(engine)
+    typer.echo(f"Deleted: {count} attempts from before {before:%Y-%m-%d}.")
+    if erased is False:
+        typer.echo(_STILL_THERE)
+
+
 @commands.command("forget")
 def forget_learner(
     learner: Annotated[
@@ -244,7 +281,7 @@ def forget_learner(
     with database() as engine:
         with engine.connect() as connection:
             found = data_of(connection, learner)
-        if not found.attempts:
+        if not (found.attempts or found.courses):
             # After an earlier call, deleted data may still wait to be overwritten.
             left = overwrite_deleted(engine) is False
             give_up("Nothing is recorded of this learner." + (f" {_STILL_THERE}" if left else ""))
@@ -261,5 +298,5 @@ def forget_learner(
 def _counts(data: LearnerData) -> str:
     return (
         f"attempts: {data.attempts}, earlier reports: {data.earlier_reports}, "
-        f"points given by tutors: {data.overrides}"
+        f"points given by tutors: {data.overrides}, courses: {data.courses}"
     )

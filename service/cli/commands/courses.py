@@ -24,8 +24,7 @@ from service.courses import roll
 from service.courses.class_list import read_class_list
 from service.courses.errors import CourseError
 from service.courses.gradebook import gradebook, missing, written_gradebook
-from service.courses.links import issue_links, revoke_links
-from service.formats.shared import spreadsheet
+from service.courses.links import issue_links, revoke_links, written_links
 from service.formats.shared.plain_text import number, visible
 from service.settings import load_settings
 
@@ -144,11 +143,7 @@ def links(
         give_up("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE.")
     wanted = LinksRequest(learners=learner, renew=renew, days=days)
     found = changed(lambda it: issue_links(it, course, wanted, secret, address, now))
-    lines = [spreadsheet.line(("learner", "name", "email", "link", "expires"))]
-    for each in found:
-        until = f"{each.expires_at:%Y-%m-%d}"
-        lines.append(spreadsheet.line((each.learner, each.name, each.email, each.link, until)))
-    write(lines, output, at_once=True)
+    write(written_links(found), output, at_once=True)
 
 
 @commands.command("gradebook")

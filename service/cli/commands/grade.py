@@ -24,11 +24,12 @@ from service.cli.remote.server import (
 from service.cli.running.interrupts import interruptible
 from service.cli.running.processes import WorkerLostError, jobs_for, mapped
 from service.cli.running.progress import Progress, progress
-from service.cli.terminal import UNUSABLE, complain, give_up
+from service.cli.running.shards import Shard, shard_of, with_header
+from service.cli.terminal import BELOW_PASS_MARK, UNUSABLE, complain, give_up
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
-from service.formats.shared.report_format import Setting, UnusableSettingError
+from service.formats.shared.report_format import ReportFormat, Setting, UnusableSettingError
 from service.grading import FeedbackLevel
 from service.local_grading import GradingTerms, graded
 from service.settings import Settings, load_settings
@@ -43,8 +44,6 @@ from service.submissions.outline import SetExercise
 
 if TYPE_CHECKING:
     from service.client import GraderClient
-
-BELOW_PASS_MARK = 1
 
 commands = typer.Typer(add_completion=False)
 
@@ -160,6 +159,25 @@ def command(
             help="When Gradescope shows the result to students.",
         ),
     ] = Visibility.VISIBLE,
+    shard: Annotated[
+        Shard | None,
+        typer.Option(
+            parser=shard_of,
+            metavar="K/N",
+            help="Grade only the K-th of N shards of the submissions, as jsonl. `dh-grader merge` "
+            "puts the shards together.",
+            show_default=False,
+        ),
+    ] = None,
+    quiet: Annotated[
+        bool,
+        typer.Option(
+            "--quiet",
+            "-q",
+            help="Print no report and no progress bar, only problems. The exit code and --output "
+            "stay the same.",
+        ),
+    ] = False,
 ) -> None:
     """Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, py, …).
 
@@ -176,12 +194,7 @@ def command(
     chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
     if grader is not None:
         require_no_own_files(chosen)
-    taken = report_format(output_format)
-    if taken.is_single and len(paths) > 1:
-        give_up(
-            f"{output_format} holds one submission, and {len(paths)} files are given: grade them "
-            "one by one, or take a format for several."
-        )
+    taken = _format(output_format, paths, shard)
     folders = [path for path in paths if path.is_dir()]
     if output is not None:
         _require_no_input(output, [*paths, *filter(None, [assignment])])
@@ -203,13 +216,14 @@ def command(
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
+    own = found if shard is None else shard.of(found)
     is_class = bool(folders) and not one_student
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
         with (
             interruptible() as check,
-            progress(len(found)) as shown,
-            _grading(grader, terms, found, jobs, output, settings) as all_graded,
+            progress(0 if quiet else len(own)) as shown,
+            _grading(grader, terms, own, jobs, output, settings) as all_graded,
         ):
             run = _Run(all_graded, shown, check)
             several = is_class or len(found) > 1
@@ -217,7 +231,10 @@ def command(
                 write_folder(taken.folder(run.submissions(), setting), output)
             else:
                 pieces = taken.pieces(run.submissions(), setting)
-                write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
+                if shard is not None:
+                    pieces = with_header(pieces, shard, *_names(found, terms))
+                at_once = shown.is_shown or not taken.is_stream
+                write(pieces, output, at_once=at_once, quiet=quiet)
             remember(output, folders)
     except UnusableFolderError as error:
         give_up(f"{output}: {error}")
@@ -243,6 +260,24 @@ def chosen_assignment(
         return of_one(find(exercise or ""), part)
     except UnknownPartNameError as error:
         give_up(str(error))
+
+
+def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportFormat:
+    """Return the format of this name; end the program if it does not suit the other options."""
+    taken = report_format(name)
+    if taken.is_single and len(paths) > 1:
+        give_up(
+            f"{name} holds one submission, and {len(paths)} files are given: grade them one by "
+            "one, or take a format for several."
+        )
+    if shard is not None and name != "jsonl":
+        give_up("--shard writes shards as JSON lines: add --format jsonl.")
+    return taken
+
+
+def _names(found: Iterable[HandedIn], terms: GradingTerms) -> tuple[list[str], list[str]]:
+    """The names of all submissions and exercises of the run to which a shard belongs."""
+    return [each.name for each in found], [each.id for each in terms.answered]
 
 
 def _require_no_input(output: Path, read: Iterable[Path]) -> None:
@@ -272,7 +307,7 @@ def _grading(
     """A context with the graded submissions in order, from the server or from this machine."""
     if server is not None:
         return graded_by(server, terms, found, jobs or REQUESTS, output, settings)
-    jobs = min(jobs or jobs_for(len(found)), len(found))
+    jobs = max(1, min(jobs or jobs_for(len(found)), len(found)))
     return mapped(partial(graded, terms=terms), found, jobs)
 
 

@@ -24,16 +24,20 @@ def console_of(output: Path | None) -> Console:
     return Console(file=page, width=80, highlight=False, markup=False)
 
 
-def write(pieces: Iterable[bytes], output: Path | None, *, at_once: bool) -> None:
+def write(
+    pieces: Iterable[bytes], output: Path | None, *, at_once: bool, quiet: bool = False
+) -> None:
     """Write the pieces to a file, which appears only when it is complete, or to the screen.
 
     The screen shows each piece immediately, or, with ``at_once``, all of them at the end, so that a
-    pipe never gets an incomplete document.
+    pipe never gets an incomplete document. With ``quiet``, the screen shows nothing.
     """
     if output is not None:
         _write_file(pieces, output)
-        return
-    if at_once:
+    elif quiet:
+        for _ in pieces:
+            pass
+    elif at_once:
         with SpooledTemporaryFile(_IN_MEMORY) as whole:
             whole.writelines(pieces)
             whole.seek(0)

@@ -113,6 +113,8 @@ def _surface(
     """Return the point, slightly inside the joint, where a line from its middle leaves it."""
     step = towards - start
     length = float(np.linalg.norm(step))
+    if length == 0:  # two joints in one place, where a short wrist has no room for both
+        return start
     direction = step / length
     along = abs(float(direction @ shown.axes[joint]))
     across = float(np.sqrt(max(1.0 - along**2, 0.0)))

@@ -1,20 +1,44 @@
 """The pages of recorded attempts as HTML: forms, and empty elements that scripts fill."""
 
+from typing import NamedTuple
+
 from service.api.http.lookup import Catalogue
 from service.catalogue import Exercise
 from service.web.assets import Assets
 from service.web.pages import page
 
 
-def attempts_page(catalogue: Catalogue, assets: Assets, *, of_all: bool = True) -> bytes:
+class CoursePlace(NamedTuple):
+    """The course and the assignment to which a page is limited; "" for no limit."""
+
+    course: str = ""
+    assignment: str = ""
+
+
+def attempts_page(
+    catalogue: Catalogue,
+    assets: Assets,
+    place: CoursePlace,
+    *,
+    of_all: bool = True,
+    forgets: bool = True,
+) -> bytes:
     """Return the page with the list of attempts, its filters, the export, and the deletion.
 
-    Without ``of_all``, the list always shows one exercise, and there is no deletion, because it
-    concerns all exercises.
+    Without ``of_all``, the list always shows one exercise; without ``forgets``, there is no
+    deletion, because it concerns all exercises and courses.
     """
     all_of_them = [("", "All exercises")] if of_all else []
     choices = [*all_of_them, *((each.id, each.title) for each in catalogue.values())]
-    return _page("attempts", assets, "../", "attempts.js", choices=choices, of_all=of_all)
+    return _page(
+        "attempts",
+        assets,
+        "../",
+        "attempts.js",
+        choices=choices,
+        forgets=forgets,
+        **place._asdict(),
+    )
 
 
 def attempt_page(attempt_id: str, assets: Assets) -> bytes:
@@ -22,9 +46,19 @@ def attempt_page(attempt_id: str, assets: Assets) -> bytes:
     return _page("attempt", assets, "../../", "attempt.js", attempt_id=attempt_id)
 
 
-def statistics_page(exercise: Exercise, assets: Assets) -> bytes:
+def statistics_page(
+    exercise: Exercise, assets: Assets, place: CoursePlace, *, regrades: bool = True
+) -> bytes:
     """Return the page of an exercise with the statistics of its attempts, export, and regrade."""
-    return _page("statistics", assets, "../../", "statistics.js", exercise=exercise)
+    return _page(
+        "statistics",
+        assets,
+        "../../",
+        "statistics.js",
+        exercise=exercise,
+        regrades=regrades,
+        **place._asdict(),
+    )
 
 
 def nothing_recorded_page(assets: Assets, root: str) -> bytes:

@@ -1,5 +1,8 @@
 """The routes of the pages of recorded attempts; scripts load the attempts themselves."""
 
+import re
+from typing import Final
+
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
@@ -8,12 +11,15 @@ from service.api.permissions.access import require_reach
 from service.web.assets import Assets
 from service.web.page_headers import PRIVATE_HEADERS
 from service.web.tutor.attempt_pages import (
+    CoursePlace,
     attempt_page,
     attempts_page,
     nothing_recorded_page,
     statistics_page,
 )
 from service.web.tutor.tutor_routes import Tutoring
+
+_NAME: Final = re.compile(r"[a-z0-9-]{1,64}", re.ASCII)
 
 
 def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -31,7 +37,14 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
         caller = access.caller(request)
         require_reach(caller, exercise or None)
         shown = reachable_exercises(catalogue, caller)
-        return answer(attempts_page(shown, assets, of_all=caller.exercises is None), "../")
+        drawn = attempts_page(
+            shown,
+            assets,
+            _place(request),
+            of_all=caller.exercises is None,
+            forgets=caller.reaches_all,
+        )
+        return answer(drawn, "../")
 
     @router.get("/attempts/{attempt_id}")
     async def attempt(attempt_id: str) -> Response:
@@ -39,9 +52,21 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
         return answer(attempt_page(attempt_id, assets), "../../")
 
     @router.get("/statistics/{exercise_id}")
-    async def statistics(exercise_id: str) -> Response:
+    async def statistics(request: Request, exercise_id: str) -> Response:
         """Answer with the page of an exercise's statistics and regrade."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        return answer(statistics_page(exercise, assets), "../../")
+        regrades = access.caller(request).course is None
+        return answer(
+            statistics_page(exercise, assets, _place(request), regrades=regrades), "../../"
+        )
 
     return router
+
+
+def _place(request: Request) -> CoursePlace:
+    """Return the course and the assignment in the address of a page, if they are well formed."""
+    given = request.query_params
+    course, assignment = given.get("course", ""), given.get("assignment", "")
+    if not _NAME.fullmatch(course):
+        return CoursePlace()
+    return CoursePlace(course, assignment if _NAME.fullmatch(assignment) else "")

@@ -16,12 +16,27 @@ from service.web.pages import page
 _TABULAR: Final = r"\begin{tabular}"
 
 
-def tutor_page(catalogue: Catalogue, assets: Assets, *, of_all: bool = True) -> bytes:
+def tutor_page(
+    catalogue: Catalogue,
+    assets: Assets,
+    *,
+    of_all: bool = True,
+    has_courses: bool = False,
+    signed_in: bool = False,
+) -> bytes:
     """Return the page with links to all pages for tutors.
 
     Without ``of_all``, it has no links to the editor and the report on a class.
     """
-    return _page("home", assets, "", exercises=list(catalogue.values()), of_all=of_all)
+    return _page(
+        "home",
+        assets,
+        "",
+        exercises=list(catalogue.values()),
+        of_all=of_all,
+        has_courses=has_courses,
+        signed_in=signed_in,
+    )
 
 
 def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) -> bytes:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
@@ -18,12 +19,15 @@ from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
 from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
-from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
+from service.web.page_headers import FORM_HEADERS, NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
 from service.web.tutor.class_routes import class_routes
 from service.web.tutor.editor_routes import editor_routes
 from service.web.tutor.exercise_folder import ExerciseFolder
 from service.web.tutor.tutor_pages import misconceptions_page, solution_page, tutor_page
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +35,15 @@ class Tutoring:
     """The settings of the tutor's pages.
 
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
-    in ``editor_dir``. ``records`` is true if the service records attempts. ``checking`` checks the
-    text in the editor, and ``drafts`` has the exercises in its preview.
+    in ``editor_dir``. ``records`` is true if the service records attempts, in ``store``.
+    ``checking`` checks the text in the editor, and ``drafts`` has the exercises in its preview.
     """
 
     access: Access
     folders: Sequence[Path] = field(default=())
     editor_dir: Path | None = None
     records: bool = False
+    store: "AttemptStore | None" = None
     checking: Checking = field(default_factory=Checking)
     drafts: Drafts = field(default_factory=Drafts)
 
@@ -62,8 +67,14 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
         """Answer with the page for tutors; a restricted key sees only its exercises."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
-        content = tutor_page(shown, assets, of_all=caller.exercises is None)
-        return HTMLResponse(content, headers=PRIVATE_HEADERS)
+        content = tutor_page(
+            shown,
+            assets,
+            of_all=caller.reaches_all,
+            has_courses=tutoring.records and caller.exercises is None,
+            signed_in=access.is_signed_in(request),
+        )
+        return HTMLResponse(content, headers=FORM_HEADERS)
 
     return router
 
@@ -76,7 +87,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
     async def solution(request: Request, exercise_id: str) -> Response:
         """Answer with the model solution of an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        of_all = access.caller(request).exercises is None
+        of_all = access.caller(request).reaches_all
         key = (exercise.id, exercise.version, exercise.title, of_all)
         drawn = partial(solution_page, exercise, assets, of_all=of_all)
         content = await solutions.of(key, drawn)

@@ -198,6 +198,7 @@ declare namespace Api {
     attempts: number;
     earlier_reports: number;
     overrides: number;
+    courses: number;
     erased?: boolean;
   };
   type FrameFreedom = "given" | "free";
@@ -352,7 +353,7 @@ declare namespace Api {
     follow_through: boolean;
     rows: RowReport[];
     feedback: Feedback[];
-    lost: LostPoints[];
+    lost?: LostPoints[];
     little_worth?: LittleWorth;
   };
   type PartSolution = { text: string; latex: string; part: string; kind: string; title: string; answer: unknown; };

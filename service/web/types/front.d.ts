@@ -76,11 +76,32 @@ declare namespace Front {
   type FormHost = HTMLElement & {
     service: import("../static/shared/service.js").Service;
     exercise: Api.Exercise;
-    answers: Answers;
+    texts: Answers;
     store: import("../static/shared/storage.js").Store;
     announce(text: string): void;
     edited(): void;
     check(): void;
+  };
+
+  // The assignments of a learner: the state of one exercise, an unconfirmed hand-in, and what an address names.
+  type Own = { learner: string; course: Api.OwnCourse; assignment: Api.OwnAssignment; exercise: Api.OwnExercise };
+  type Pending = { key: string; body: Api.HandInRequest };
+  type Assigned = { path: string; exercise: string; attempt?: string };
+  type Service = import("../static/shared/service.js").Service;
+  // What a hand-in needs from the exercise.
+  type HandInHost = HTMLElement & {
+    service: import("../static/shared/service.js").Service;
+    exercise: Api.Exercise;
+    texts: Answers;
+    answers: Record<string, unknown>;
+    angleUnit: Api.AngleUnit;
+    bar: import("../static/student/check_bar.js").CheckBar;
+    form: import("../static/student/form/form.js").Form;
+    received: HTMLElement;
+    announce(text: string): void;
+    edited(): void;
+    save(): void;
+    showReport(report: Api.Report): void;
   };
 
   // The 3D view: pictures from the service, drawn by three.js or shown as a drawing.
@@ -149,7 +170,14 @@ declare namespace Front {
   type Robot = { convention: Api.Convention; unit: Api.AngleUnit; rows: PlayRow[] };
 
   // The pages of recorded attempts.
-  type Filter = { exercise?: string; learner?: string; since?: string; until?: string };
+  type Filter = {
+    exercise?: string;
+    learner?: string;
+    since?: string;
+    until?: string;
+    course?: string;
+    assignment?: string;
+  };
   type FilterField = HTMLInputElement | HTMLSelectElement;
   // A file in an archive: the place of its bytes, and true if they are packed.
   type ZipEntry = {

@@ -291,3 +291,9 @@ def test_a_report_always_has_its_lists(document: Schema) -> None:
     row = document["components"]["schemas"]["RowReport"]
     assert row["required"] == ["label", "verdict", "points", "max_points", "cells", "feedback"]
     assert "read" not in document["components"]["schemas"]["CellReport"]["required"]
+
+
+def test_reports_of_older_versions_have_no_lost_points(document: Schema) -> None:
+    part = document["components"]["schemas"]["PartReport"]
+    assert part["properties"].keys() - set(part["required"]) == {"lost", "little_worth"}
+    assert part["properties"]["lost"].keys() == {"type", "items"}

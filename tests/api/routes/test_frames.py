@@ -16,7 +16,7 @@ from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.robots.robot import Robot
 from service.contract.frames import MOST_CONFIGURATIONS
 from tests.api.conftest import InProcess
-from tests.shipped import shipped_exercises
+from tests.shipped import sampled, shipped_exercises
 
 ROOT = Path(__file__).parents[3]
 URL = "/v1/frames"
@@ -69,7 +69,7 @@ def parameters(exercise: Exercise) -> set[str]:
 TABLES = [name for name, exercise in SHIPPED.items() if isinstance(exercise.reference, Robot)]
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", sampled(TABLES))
 def test_a_mechanism_tells_nothing_that_the_statement_does_not(
     client: httpx.Client, name: str
 ) -> None:

@@ -47,7 +47,16 @@ def test_an_empty_database_setting_means_no_database(
     assert (result.exit_code, "names no database" in result.output) == (2, True)
 
 
-def test_no_command_creates_a_database(
+def test_migrate_creates_the_tables(
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "new.db"))
+    for _ in range(2):
+        assert run("attempts", "migrate").exit_code == 0
+    assert run("attempts", "list").stdout.strip() == "No attempts are recorded."
+
+
+def test_no_other_command_creates_a_database(
     run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     file = tmp_path / "missing.db"

@@ -414,3 +414,16 @@ def test_html_writes_a_class_into_a_folder_with_an_overview(
     result = table_only(run, *files, "--format", "html", "--output", folder)
     assert result.exit_code == 2
     assert f"{folder}: holds 'mine.txt'" in result.stderr.replace("\n", "")
+
+
+def test_quiet_prints_only_problems(run: Run, save: Save, tmp_path: Path) -> None:
+    half, empty = save({"answers": {"table": HALF}}), save(b"", "empty.csv")
+    whole = table_only(run, half, empty)
+    quiet = table_only(run, half, empty, "--quiet")
+    assert quiet.exit_code == whole.exit_code == 2
+    assert (quiet.stdout, quiet.stderr) == ("", whole.stderr)
+    assert "empty.csv" in quiet.stderr
+    output = tmp_path / "points.csv"
+    result = table_only(run, half, "-q", "--format", "csv", "--output", output)
+    assert (result.exit_code, result.output) == (1, "")
+    assert "answer.json" in output.read_text(encoding="utf-8")

@@ -39,7 +39,7 @@ def test_a_new_file_passes_as_it_is(run: Run, tmp_path: Path) -> None:
     )
     result = run("exercises", "check", "--strict", folder)
     assert (result.exit_code, result.stderr) == (0, "")
-    lazy = "Writing only zeros and joint variables earns 16 % of table, 7 % of pose."
+    lazy = "Writing only zeros and joint variables earns 12 % of table, 7 % of pose."
     assert result.stdout == f"elbow-arm: ok, 2 parts, 4 checks. {lazy}\n"
 
 
@@ -77,18 +77,18 @@ def test_an_unwritable_folder_is_reported(run: Run, tmp_path: Path) -> None:
 
 
 def test_a_failed_check_gives_exit_code_1_and_its_line(run: Run, arm: Path) -> None:
-    changed(arm, ("points = 2.33", "points = 3"))
+    changed(arm, ("points = 2.25", "points = 3"))
     result = run("exercises", "check", arm)
     assert result.exit_code == 1
     first, second = result.stdout.splitlines()
-    lazy = "Writing only zeros and joint variables earns 16 % of table, 7 % of pose."
+    lazy = "Writing only zeros and joint variables earns 12 % of table, 7 % of pose."
     assert first == f"arm: failed, 2 parts, 4 checks. {lazy}"
     line = 1 + arm.read_text(encoding="utf-8").splitlines().index(
         'title = "The twist has the wrong sign"'
     )
     assert second.startswith(
         f"  failed: checks[2] (line {line - 1}): 'The twist has the wrong sign': table should get "
-        f"3 points; it got partial, 2.33 of 4 points: "
+        f"3 points; it got partial, 2.25 of 4 points: "
     )
 
 
@@ -104,7 +104,7 @@ def test_an_unusable_file_gives_exit_code_2_and_the_others_are_checked(run: Run,
     run("exercises", "new", "broken", "--output", arm.parent)
     run("exercises", "new", "wrong", "--output", arm.parent)
     broken = changed(arm.parent / "broken.toml", ("[0.3, 0.9]", "[0.9, 0.3]"))
-    changed(arm.parent / "wrong.toml", ("points = 2.33", "points = 3"))
+    changed(arm.parent / "wrong.toml", ("points = 2.25", "points = 3"))
     result = run("exercises", "check", arm.parent)
     assert result.exit_code == 2
     line = broken.read_text(encoding="utf-8").split("[0.9, 0.3]")[0].count("\n") + 1

@@ -5,23 +5,29 @@ from functools import cache
 
 from service.catalogue import Exercise
 from tests.frame_choice.robots import Robot, TextRow
-from tests.shipped import shipped_exercises
+from tests.shipped import shipped_exercises, without_most_real_robots
 
 _DEGREES = re.compile(r"(\d+(?:\.\d+)?)\s*deg")
 
 
 @cache
 def shipped_robots() -> tuple[Robot, ...]:
-    """Return each robot once, because several exercises may ask for the same one."""
+    """Return each robot once, because several exercises may ask for the same one.
+
+    Most real robots have a campaign of their own (``tests.exercises.real``).
+    """
     found: dict[tuple[str, tuple[TextRow, ...]], Robot] = {}
-    for exercise in shipped_exercises().values():
+    shipped = shipped_exercises()
+    for name in without_most_real_robots(shipped):
+        exercise = shipped[name]
         if any(part.kind == "dh_table" for part in exercise.parts):
-            robot = _robot(exercise)
+            robot = robot_of(exercise)
             found.setdefault((robot.structure + robot.convention, robot.rows), robot)
     return tuple(found.values())
 
 
-def _robot(exercise: Exercise) -> Robot:
+def robot_of(exercise: Exercise) -> Robot:
+    """Return the robot of an exercise in the form of these tests."""
     robot = exercise.robot
     rows = []
     for row in robot.tables[robot.convention].rows:

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { target, undoKey } from "../../../service/web/static/shared/keyboard.js";
 import { blockOf, placedFrom } from "../../../service/web/static/shared/pasted_block.js";
 import { cellName } from "../../../service/web/static/student/messages.js";
-import { cellsOf } from "../../../service/web/static/tutor/records/answer_cells.js";
+import { cellsOf } from "../../../service/web/static/student/handin/answer_cells.js";
 
 test("a block from a spreadsheet has rows and columns", () => {
   assert.deepEqual(blockOf("a1\t0\r\na2\tpi/2\r\n"), [["a1", "0"], ["a2", "pi/2"]]);

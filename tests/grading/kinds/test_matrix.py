@@ -19,8 +19,8 @@ def test_a_matrix_of_any_size_is_graded(make_exercise: Make) -> None:
     assert full_marks(graded(exercise, "[1 l phi; k^2 sin(phi) 0]"))
     report = graded(exercise, [[1, "l", "-phi"], ["k", "sin phi", 0]])
     assert set(not_correct(report)) == {("1", "3"), ("2", "1")}
-    # Five entries are not 0; two of them are wrong.
-    assert report.points == pytest.approx(6 * 3 / 5)
+    # Five entries are not 0. They are worth 1.25 points each, the last one 1. Two are wrong.
+    assert report.points == 6 - 2 * 1.25
 
 
 @pytest.mark.parametrize("answer", [[[1, 2, 3]] * 3, [], 4, [["1"]] * 2])

@@ -60,12 +60,13 @@ def test_a_bad_entry_affects_only_itself(
     report = graded_pose(arm, with_entry(i, j, text))
     place = (str(i + 1), str(j + 1))
     assert not_correct(report) == {place: verdict}
-    # Four entries of the rotation and two of the position differ from the identity. A wrong entry
-    # costs a unit; an unread one costs a unit only if it is a content cell.
+    # Four entries of the rotation and two of the position differ from the identity; each half is
+    # worth 4 points. A wrong entry costs a unit; an unread one costs a unit only if it is a content
+    # cell, else a fifth: 0.2 and 0.4 points, in quarters.
     known = POSE[i][j] not in ("0", "1")
-    units = 1.0 if known or verdict is Verdict.INCORRECT else 0.2
-    cost = units / 2 / (2 if j == 3 else 4)
-    assert report.points == pytest.approx(report.max_points * (1 - cost))
+    unit, fifth = (2.0, 0.5) if j == 3 else (1.0, 0.25)
+    cost = unit if known or verdict is Verdict.INCORRECT else fifth
+    assert report.points == report.max_points - cost
     assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
     if i == 3 and verdict is Verdict.INCORRECT and code != "undefined":
         code = "bottom_row"
@@ -114,8 +115,8 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
     """The missing bottom row of a 3×4 matrix is reported; the other rows are graded."""
     report = graded_pose(arm, POSE[:3])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
-    # The row has no content cell, so that it costs a fifth in each half.
-    assert report.points == pytest.approx(report.max_points * (3.8 / 4 + 1.8 / 2) / 2)
+    # The row has no content cell, so that it costs a fifth of a unit in each half.
+    assert report.points == 8 - (0.25 + 0.5)
     assert report.verdict is Verdict.PARTIAL
 
 

@@ -5,7 +5,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from service.catalogue import PartSpec
@@ -13,8 +13,9 @@ from service.catalogue.files.fields import Marking
 from service.grading.judging.marking.worth import BESIDES, CellWorth, apportioned, worth_of
 from service.grading.lost_points import (
     ALL_OR_NOTHING,
+    CELLS,
     NO_ANSWER,
-    NO_MOTION,
+    NO_JOINT_MOVES,
     NOT_READ,
     OUTSIDE,
     WHOLE,
@@ -40,10 +41,11 @@ _Verdicts = Sequence[Sequence[Verdict]]
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """Steps that were lost, by a row's index or by a code for the whole answer."""
+    """Steps that were lost: in the cells of the row with this index, or in the whole answer."""
 
-    place: int | str
+    code: str
     steps: int
+    row: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,10 +133,10 @@ def _losses(
 ) -> tuple[_Loss, ...]:
     """Return what a wrong answer has lost, place by place."""
     if judged.stands_still:
-        return (_Loss(NO_MOTION, worth.total),)
+        return (_Loss(NO_JOINT_MOVES, worth.total),)
     if marking == "whole":
         return (_Loss(ALL_OR_NOTHING, worth.total),)
-    losses = [_Loss(i, steps) for i, steps in enumerate(charges) if steps]
+    losses = [_Loss(CELLS, steps, i) for i, steps in enumerate(charges) if steps]
     lost = sum(charges)
     if marking == "content" and math.isfinite(judged.lost):
         # Another valid table may lose less than the likeliest one, which the verdicts are from. Its
@@ -157,7 +159,7 @@ def _losses(
         return (_Loss(OUTSIDE, lost),) if lost else ()
     shares = apportioned(lost, [loss.steps for loss in losses])
     pairs = zip(losses, shares, strict=True)
-    return tuple(_Loss(loss.place, steps) for loss, steps in pairs if steps)
+    return tuple(replace(loss, steps=steps) for loss, steps in pairs if steps)
 
 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
@@ -190,7 +192,7 @@ def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[in
             else:
                 unread.add(group)
         for group in unread:
-            found[group][i] = found[group].get(i, 0) + worth.fifth
+            found[group][i] = found[group].get(i, 0) + worth.fifth(group)
     charges = [0] * len(verdicts)
     for group, rows in found.items():
         costs = list(rows.values())
@@ -236,9 +238,9 @@ def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
 
 def _told(loss: _Loss, marks: _Marks, rows: Sequence[RowReport]) -> LostPoints:
     points = marks.worth.points(loss.steps)
-    if isinstance(loss.place, str):
-        return lost_points(loss.place, points)
-    return lost_in_row(rows[loss.place], points)
+    if loss.row is None:
+        return lost_points(loss.code, points)
+    return lost_in_row(rows[loss.row], points)
 
 
 def _little_worth(

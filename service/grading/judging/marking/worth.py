@@ -53,11 +53,6 @@ class CellWorth:
         return tuple(sum(row) + more for row, more in zip(self.cells, self.besides, strict=True))
 
     @cached_property
-    def fifth(self) -> int:
-        """The cost of all unread cells of a row that are not content cells."""
-        return max(1, round(self.unit * BESIDES))
-
-    @cached_property
     def groups(self) -> dict[int, int]:
         """The most that each group of cells can lose, at least a step."""
         if self.is_fixed:
@@ -85,6 +80,10 @@ class CellWorth:
                         least[number] = min(cell, least.get(number, cell))
             units |= least
         return units
+
+    def fifth(self, group: int) -> int:
+        """Return the cost of all unread cells of a row in a group that are not content cells."""
+        return max(1, round(self.units[group] * BESIDES))
 
     def points(self, steps: int) -> float:
         """Return steps as points."""
@@ -135,10 +134,15 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
         )
         unit = max(1, total // content.count)
         return CellWorth(step, total, content, cells, (0,) * rows, unit, unit)
+    # A student's own choices may need more content cells than the reference's; that does not
+    # reduce the cost of a wrong cell.
+    is_fixed = content.most is not None and content.count > content.most
     if not content.besides:
         cells = _cells(content, evenly(total, content.count))
-        unit = max(1, total // content.count)
-        return CellWorth(step, total, content, cells, (0,) * rows, unit, unit)
+        # Rounded up, so that an answer with as many mistakes as the reference has cells earns 0.
+        unit = -(-total // max(1, content.most or 0)) if is_fixed else total // content.count
+        unit = max(1, unit)
+        return CellWorth(step, total, content, cells, (0,) * rows, unit, unit, is_fixed)
     unit = _unit(content.count, len(counts), total)
     left = total - unit * content.count
     if left < 0:
@@ -152,10 +156,7 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
         members = [i for i, row in enumerate(content.groups) if row[0] == number]
         for i, steps in zip(members, evenly(share, len(members)), strict=True):
             besides[i] = steps
-    is_fixed = content.most is not None and content.count > content.most
     if is_fixed:
-        # A student's own frames may have more content cells than the reference's; that does not
-        # reduce the cost of a wrong cell.
         unit = _unit(content.most or 0, len(counts), total)
         groups = evenly(max(0, total - unit * (content.most or 0)), len(counts))
     return CellWorth(

@@ -57,8 +57,34 @@ export class Service {
     return this.#ask("v1/frames", body);
   }
 
-  /** @param {string} path @param {unknown} [body] */
-  async #ask(path, body) {
+  /** The courses and assignments of the learner with this token. @returns {Promise<Api.OwnCourses>} */
+  own() {
+    return this.#ask("v1/me", undefined, { own: true });
+  }
+
+  /** One of the learner's attempts. @param {string} id @returns {Promise<Api.AttemptDetail>} */
+  attempt(id) {
+    return this.#ask(`v1/attempts/${encodeURIComponent(id)}`, undefined, { own: true });
+  }
+
+  /** @param {string} path "course/assignment" @param {string} exercise @returns {Promise<Api.ModelSolution>} */
+  assignedSolution(path, exercise) {
+    return this.#ask(`${assigned(path)}/solutions/${encodeURIComponent(exercise)}`, undefined, { own: true });
+  }
+
+  /** @param {string} path @param {string} key @param {Api.HandInRequest} body @returns {Promise<Api.AttemptResponse>} */
+  handIn(path, key, body) {
+    return this.#ask(`${assigned(path)}/attempts`, body, { key });
+  }
+
+  /**
+   * `own` is true if a request without a body needs the token; `key` is the Idempotency-Key.
+   *
+   * @param {string} path
+   * @param {unknown} [body]
+   * @param {{ own?: boolean, key?: string }} [options]
+   */
+  async #ask(path, body, { own = false, key } = {}) {
     const headers = new Headers();
     /** @type {RequestInit} */
     const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
@@ -66,10 +92,11 @@ export class Service {
       options.method = "POST";
       headers.set("Content-Type", "application/json");
       options.body = JSON.stringify(body);
-      // Other requests need no token; without this header, the browser sends them without a preflight.
-      const token = this.token();
-      if (token) headers.set("Authorization", `Bearer ${token}`);
+      if (key) headers.set("Idempotency-Key", key);
     }
+    // Other requests need no token; without this header, the browser sends them without a preflight.
+    const token = own || body !== undefined ? this.token() : null;
+    if (token) headers.set("Authorization", `Bearer ${token}`);
     let answer, content;
     try {
       answer = await fetch(this.address(path), options);
@@ -82,6 +109,12 @@ export class Service {
     if (!answer.ok) throw failure(answer.status, content ?? {});
     return content;
   }
+}
+
+/** Return the path of an assignment. @param {string} path "course/assignment" */
+function assigned(path) {
+  const [course = "", assignment = ""] = path.split("/");
+  return `v1/courses/${encodeURIComponent(course)}/assignments/${encodeURIComponent(assignment)}`;
 }
 
 /** @param {number} status @param {Partial<Api.Problem>} problem */

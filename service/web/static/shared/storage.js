@@ -7,6 +7,9 @@ const LONGEST = 60_000;
 
 /** The saved answers to one exercise of one service. */
 export class Store {
+  // What the student reads if the answers are not saved.
+  unsaved = "This browser cannot save your answers: a reload loses them";
+
   /** @param {string} base @param {string} exercise */
   constructor(base, exercise) {
     this.name = `${PREFIX}:${base}:${exercise}`;

@@ -1,10 +1,7 @@
 // <dh-exercise exercise="scara">: an exercise to read, fill in and check, on any page.
 //
-// Attributes: exercise, its id; api, the address of the service (by default that of this script);
-// parts, the ids of the parts to show; feedback, the highest feedback level; token, the learner's token
-// if the service needs keys; theme, "light", "dark" or "auto" (by default that of the page); readonly, to
-// show answers only; locale, which is reserved. `linked` is for the service's own page: the element reads
-// answers from the address. The event `graded` (bubbling, composed) has the report as its detail.
+// docs/embedding.md describes its attributes, properties, methods and events. `linked` is for the service's own
+// pages: the element reads answers from the address, and its title is that of the page.
 
 import { h, points, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
@@ -13,22 +10,26 @@ import { about } from "./about.js";
 import { CheckBar } from "./check_bar.js";
 import { PageColours } from "./embedding/page_colours.js";
 import { Form } from "./form/form.js";
+import { textsOf } from "./handin/cell_texts.js";
+import { HandIn } from "./handin/hand_in.js";
+import { offer } from "./handin/notice.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
 import { lock } from "./embedding/readonly.js";
 import { typeset } from "../typeset/names.js";
-import { RobotFigure } from "./robot_figure.js";
+import { RobotFigure, tableToDraw, tableWords } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
 import { answersIn, Store } from "../shared/storage.js";
 
 const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("./element.css", import.meta.url).href;
+const HAND_IN = new URL("./handin/hand_in.css", import.meta.url).href;
 const PAPER = new URL("../pages/print.css", import.meta.url).href;
 const HOME = new URL("../", import.meta.url).href;
 const SAVED_AFTER = 250;
 
 export class DhExercise extends HTMLElement {
-  static observedAttributes = ["exercise", "api", "parts", "readonly", "theme"];
+  static observedAttributes = ["exercise", "api", "parts", "readonly", "theme", "assignment", "submit", "token"];
 
   /** @type {PartView[]} */
   #parts = [];
@@ -38,7 +39,6 @@ export class DhExercise extends HTMLElement {
   #onOnline = () => this.#online();
 
   // Set whenever an exercise has been loaded.
-
   /** @type {Service} */
   service;
   /** @type {Api.Exercise} */
@@ -59,6 +59,8 @@ export class DhExercise extends HTMLElement {
   bar;
   /** @type {Form} */
   form;
+  /** @type {HandIn | null} */
+  handIn = null;
 
   constructor() {
     super();
@@ -68,7 +70,7 @@ export class DhExercise extends HTMLElement {
     this.main = h("div", { class: "exercise" }, h("slot"));
     this.state = h("div", { class: "state" });
     this.received = h("div", { class: "card notice" });
-    const sheets = [TOKENS, STYLE, PAPER].map((href) => h("link", { rel: "stylesheet", href }));
+    const sheets = [TOKENS, STYLE, HAND_IN, PAPER].map((href) => h("link", { rel: "stylesheet", href }));
     const outer = h("div", { class: "outer" }, this.state, this.main, this.live);
     this.colours = new PageColours(this, outer, () => this.robot?.recolour());
     root.append(...sheets, outer);
@@ -84,12 +86,19 @@ export class DhExercise extends HTMLElement {
     this.colours.stop();
     removeEventListener("online", this.#onOnline);
     this.robot?.close();
+    this.handIn?.close();
     this.#loading += 1;
   }
 
-  /** @param {string} _name @param {string | null} before @param {string | null} after */
-  attributeChangedCallback(_name, before, after) {
+  /** @param {string} name @param {string | null} before @param {string | null} after */
+  attributeChangedCallback(name, before, after) {
     if (!this.isConnected || before === after) return;
+    if (name === "token") {
+      // A new token is for the same exercise; what the service refused without it is sent again.
+      if (this.handIn) this.handIn.resume();
+      else if (this.hasAttribute("assignment")) this.#begin();
+      return;
+    }
     this.colours.start();
     this.#begin();
   }
@@ -111,8 +120,9 @@ export class DhExercise extends HTMLElement {
       h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }),
     );
     try {
-      const exercise = await this.service.exercise(id);
-      if (turn === this.#loading) this.#show(exercise);
+      const [exercise, handIn] = await Promise.all([this.service.exercise(id), HandIn.of(this, id)]);
+      if (turn === this.#loading) this.#show(exercise, handIn);
+      else handIn?.close();
     } catch (error) {
       if (turn !== this.#loading) return undefined;
       if (error.status === 404) this.#tell(error.message);
@@ -180,7 +190,7 @@ export class DhExercise extends HTMLElement {
   edited() {
     this.robot?.changed();
     clearTimeout(this.#saving);
-    this.#saving = setTimeout(() => this.#save(), SAVED_AFTER);
+    this.#saving = setTimeout(() => this.save(), SAVED_AFTER);
     this.#outdated();
   }
 
@@ -189,26 +199,50 @@ export class DhExercise extends HTMLElement {
     this.form.rail.update();
   }
 
-  #save() {
+  save() {
+    clearTimeout(this.#saving);
     const empty = this.#parts.every((part) => part.isEmpty);
-    const kept = this.store.save(empty ? null : this.answers);
-    this.saved.textContent = empty
-      ? ""
-      : kept
-      ? "Saved in this browser"
-      : "This browser cannot save your answers: a reload loses them";
+    const kept = this.store.save(empty ? null : this.texts);
+    this.saved.textContent = !kept ? this.store.unsaved : empty ? "" : "Saved in this browser";
+    this.dispatchEvent(new CustomEvent("changed", { bubbles: true, composed: true }));
   }
 
   get angleUnit() {
     return this.form.angleUnit;
   }
 
-  /** All answers: `{unit, parts: {id: {cells, choice}}}`. */
+  /** The answers that are filled in, as the service takes them: `{table: {rows: …}}`. */
   get answers() {
-    const parts = Object.fromEntries(
-      this.#parts.filter((part) => !part.isEmpty).map((part) => [part.part.id, part.state]),
-    );
-    return { unit: this.angleUnit, parts };
+    const filled = this.#parts.filter((part) => !part.isEmpty);
+    return Object.fromEntries(filled.map((part) => [part.part.id, part.answer]));
+  }
+
+  /** @param {Record<string, unknown>} answers parts that are left out become empty */
+  set answers(answers) {
+    this.texts = textsOf(answers, this.#parts, this.angleUnit);
+  }
+
+  /** Hand the answers in to the assignment. */
+  submit() {
+    return this.handIn?.submit();
+  }
+
+  /** Empty all cells. */
+  reset() {
+    this.texts = { unit: this.angleUnit, parts: {} };
+  }
+
+  /** The texts of all cells: `{unit, parts: {id: {cells, choice}}}`. */
+  get texts() {
+    const filled = this.#parts.filter((part) => !part.isEmpty);
+    return { unit: this.angleUnit, parts: Object.fromEntries(filled.map((part) => [part.part.id, part.state])) };
+  }
+
+  /** @param {Front.Answers} answers the student can undo it */
+  set texts(answers) {
+    this.history.note(this.#restore(answers));
+    for (const part of this.#parts) part.clearReport();
+    this.edited();
   }
 
   /** @param {Front.Answers} answers */
@@ -223,14 +257,16 @@ export class DhExercise extends HTMLElement {
 
   // The exercise on the page.
 
-  /** @param {Api.Exercise} exercise */
-  #show(exercise) {
+  /** @param {Api.Exercise} exercise @param {HandIn | null} handIn */
+  #show(exercise, handIn) {
     this.robot?.close();
+    this.handIn?.close();
+    this.handIn = handIn;
     this.exercise = exercise;
     this.robot = this.#robotFigure();
     this.history = new History();
     this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
-    this.store = new Store(this.service.base, exercise.id);
+    this.store = handIn?.store ?? new Store(this.service.base, exercise.id);
     const wanted = this.getAttribute("parts")?.trim().split(/[\s,]+/);
     // On the service's own page, the exercise's title is the title of the page.
     const isOwn = this.hasAttribute("linked");
@@ -249,7 +285,15 @@ export class DhExercise extends HTMLElement {
     new ResizeObserver(() => task.style.setProperty("--about-height", `${task.offsetHeight}px`)).observe(task);
     this.main.replaceChildren(
       task,
-      h("div", { class: "parts" }, this.form.tools.element, this.received, ...elements, this.bar.element),
+      h(
+        "div",
+        { class: "parts" },
+        handIn?.status,
+        this.form.tools.element,
+        this.received,
+        ...elements,
+        this.bar.element,
+      ),
       h("p", { class: "quiet source", part: "source" }, "Source: ", ...typeset(visible(exercise.source))),
     );
     this.main.hidden = false;
@@ -262,6 +306,7 @@ export class DhExercise extends HTMLElement {
     if (own) this.#restore(own);
     if (shared) this.#takeShared(shared, own);
     this.#outdated();
+    handIn?.begin();
     this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
   }
 
@@ -274,29 +319,12 @@ export class DhExercise extends HTMLElement {
     const address = () => this.colours.figure(figureAddress);
     const host = {
       service: this.service,
-      body: () => ({ ...this.context(), ...this.#tableToDraw() }),
-      cells: () => this.#drawnTable()?.rows.map((row) => row.cells) ?? [],
-      unit: symbols.find(({ kind }) => kind === "length")?.unit,
-      descriptions: Object.fromEntries(symbols.map(({ name, description }) => [name, description])),
+      body: () => ({ ...this.context(), ...tableToDraw(this.#parts) }),
+      ...tableWords(symbols, () => this.#parts),
       announce: (/** @type {string} */ text) => this.announce(text),
     };
     const failed = () => this.announce(this.saved.textContent = "The 3D view could not be loaded");
     return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen), failed);
-  }
-
-  /** Return the table that the student changed last, if there is one. */
-  #drawnTable() {
-    const tables = this.#parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
-    return tables.sort((one, other) => other.changedAt - one.changedAt)[0];
-  }
-
-  #tableToDraw() {
-    const table = this.#drawnTable();
-    if (!table) return {};
-    const { shape } = table.part;
-    const own = "convention" in shape ? shape.convention : "standard";
-    const { rows, convention = own } = /** @type {{ rows: unknown, convention?: typeof own }} */ (table.answer);
-    return { table: { rows, convention: convention === "either" ? "standard" : convention } };
   }
 
   /**
@@ -311,21 +339,14 @@ export class DhExercise extends HTMLElement {
     const back = () => {
       this.history.note(this.#restore(had));
       this.edited();
-      this.received.hidden = true;
     };
-    this.received.replaceChildren(
-      h("p", {}, "These answers came with the link."),
-      own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Restore my own answers") : "",
-    );
-    this.received.hidden = false;
+    offer(this.received, "These answers came with the link.", own ? { "Restore my own answers": back } : {});
     history.replaceState(null, "", location.pathname + location.search);
   }
 
   #clear() {
-    this.history.note(this.#restore({ unit: this.angleUnit, parts: {} }));
-    for (const part of this.#parts) part.clearReport();
-    this.#save();
-    this.#outdated();
+    this.reset();
+    this.save();
     this.announce("All cells are empty. Press Ctrl+Z in a cell to undo.");
     this.saved.textContent = "Cleared; press Ctrl+Z to undo";
     this.#parts[0]?.focus(this.#parts[0].cells[0]);
@@ -333,32 +354,32 @@ export class DhExercise extends HTMLElement {
 
   /** Grade all parts that are not empty, and show the report. */
   async check() {
-    const filled = this.#parts.filter((part) => !part.isEmpty);
-    if (!filled.length) {
-      this.bar.hint("Nothing is filled in yet.");
-      this.announce("Nothing is filled in yet.");
-      return;
-    }
+    const { answers } = this;
+    const hint = this.handIn && !this.handIn.mayPractise
+      ? "This assignment has no check: hand the exercise in."
+      : Object.keys(answers).length
+      ? ""
+      : "Nothing is filled in yet.";
+    this.bar.hint(hint);
+    if (hint) return this.announce(hint);
     if (this.bar.isBusy || this.hasAttribute("readonly")) return;
     this.bar.isBusy = true;
     const feedback = /** @type {Api.FeedbackLevel | null} */ (this.getAttribute("feedback"));
-    const body = {
-      answers: Object.fromEntries(filled.map((part) => [part.part.id, part.answer])),
-      angle_unit: this.angleUnit,
-      ...(feedback ? { feedback } : {}),
-    };
+    const body = { answers, angle_unit: this.angleUnit, ...(feedback ? { feedback } : {}) };
     try {
       const report = await this.service.grade(this.exercise.id, body);
       this.failed(null);
-      this.#showReport(report, filled);
+      this.showReport(report);
+      this.dispatchEvent(new CustomEvent("graded", { bubbles: true, composed: true, detail: { ...report, answers } }));
     } catch (error) {
       this.failed(error);
     }
     this.bar.isBusy = false;
   }
 
-  /** @param {Api.Report} report @param {PartView[]} filled */
-  #showReport(report, filled) {
+  /** Show a report on the answers in the cells. @param {Api.Report} report */
+  showReport(report) {
+    const filled = this.#parts.filter((part) => !part.isEmpty);
     const shown = new Map(report.parts.map((part) => [part.part, part]));
     for (const part of this.#parts) {
       const told = filled.includes(part) ? shown.get(part.part.id) : null;
@@ -375,6 +396,5 @@ export class DhExercise extends HTMLElement {
     );
     this.form.rail.update();
     this.announce([...told, this.form.leadToSlip(filled)].join(" "));
-    this.dispatchEvent(new CustomEvent("graded", { bubbles: true, composed: true, detail: report }));
   }
 }

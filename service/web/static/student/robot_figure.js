@@ -91,3 +91,39 @@ export class RobotFigure {
     this.shown(isOpen);
   }
 }
+
+/**
+ * Return the descriptions of symbols, the unit of lengths, and the cells of the table that is drawn.
+ *
+ * @param {Api.ExerciseSymbol[]} symbols
+ * @param {() => Front.PartView[]} parts
+ */
+export const tableWords = (symbols, parts) => ({
+  descriptions: Object.fromEntries(symbols.map(({ name, description }) => [name, description])),
+  unit: symbols.find(({ kind }) => kind === "length")?.unit,
+  cells: () => drawnTable(parts())?.rows.map((row) => row.cells) ?? [],
+});
+
+/**
+ * Return the table that the student changed last, if there is one.
+ *
+ * @param {Front.PartView[]} parts
+ */
+function drawnTable(parts) {
+  const tables = parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
+  return tables.sort((one, other) => other.changedAt - one.changedAt).at(0);
+}
+
+/**
+ * Return the fields of a request that draw the student's table.
+ *
+ * @param {Front.PartView[]} parts
+ */
+export function tableToDraw(parts) {
+  const table = drawnTable(parts);
+  if (!table) return {};
+  const { shape } = table.part;
+  const own = "convention" in shape ? shape.convention : "standard";
+  const { rows, convention = own } = /** @type {{ rows: unknown, convention?: typeof own }} */ (table.answer);
+  return { table: { rows, convention: convention === "either" ? "standard" : convention } };
+}

@@ -20,19 +20,20 @@ export class Tools {
       h("option", { value: "radians" }, "radians"),
       h("option", { value: "degrees" }, "degrees"),
     );
+    this.share = h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link");
     this.element = h(
       "div",
       { class: "tools" },
       h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
       this.saved,
-      h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link"),
+      this.share,
       h("button", { type: "button", class: "quiet-button", onclick: clear }, "Clear"),
     );
   }
 
   async #share() {
-    const { service, exercise, answers } = this.host;
-    const address = service.address(`exercises/${encodeURIComponent(exercise.id)}`) + fragment(answers);
+    const { service, exercise, texts } = this.host;
+    const address = service.address(`exercises/${encodeURIComponent(exercise.id)}`) + fragment(texts);
     let told = "Link copied, with your answers";
     try {
       await navigator.clipboard.writeText(address);

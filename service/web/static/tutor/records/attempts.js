@@ -14,6 +14,7 @@ import {
   span,
   table,
   tell,
+  within,
 } from "./records.js";
 import { address, get, send } from "../tutor_service.js";
 
@@ -139,7 +140,11 @@ function changed(event) {
 
 /** Put filters and page into the address, for bookmarks and for the browser's back button. */
 function keepAddress() {
-  const pairs = [...FIELDS.map((name) => [name, fieldOf(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
+  const pairs = [
+    ...Object.entries(within()),
+    ...FIELDS.map((name) => [name, fieldOf(name).value]),
+    ...cursors.map((cursor) => ["cursor", cursor]),
+  ];
   const given = new URLSearchParams(pairs.filter(([, value]) => value));
   history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
 }
@@ -156,7 +161,7 @@ async function lookUp(event) {
   try {
     /** @type {Api.ForgottenData} */
     const found = await send("v1/learners/forget", { learner });
-    if (!found.attempts) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
+    if (!found.attempts && !found.courses) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
     tell(forgetState(), "");
     return confirm(found);
   } catch (error) {
@@ -165,11 +170,12 @@ async function lookUp(event) {
 }
 
 /** @param {Api.ForgottenData} found */
-const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
+const amounts = ({ attempts, earlier_reports: earlier, overrides, courses }) =>
   [
     count(attempts, "attempt"),
     earlier && count(earlier, "earlier report"),
     overrides && count(overrides, "overridden mark"),
+    courses && `the place in ${count(courses, "course")}`,
   ]
     .filter(Boolean)
     .join(", ");

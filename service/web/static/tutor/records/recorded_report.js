@@ -1,7 +1,7 @@
 // A recorded submission with its report, as the student saw it. It is read-only.
 
 import { h, points, visible } from "../../shared/dom.js";
-import { cellsOf } from "./answer_cells.js";
+import { cellsOf } from "../../student/handin/answer_cells.js";
 import { lostItems } from "../../student/lost_points.js";
 import { item } from "../../student/messages.js";
 import { PartView } from "../../student/part_view.js";
@@ -11,6 +11,9 @@ import { send } from "../tutor_service.js";
 const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) =>
   new URL(name, import.meta.url).href
 );
+
+/** @type {Front.PreviewService} */
+const TUTORS = { previews: (body) => send("v1/previews", body), preview: (body) => send("v1/preview", body) };
 
 /** A part whose cells are read-only. */
 class RecordedPart extends PartView {
@@ -46,16 +49,15 @@ class RecordedPart extends PartView {
 /** A submission with one of its reports. */
 export class RecordedReport {
   /**
-   * `exercise` is what students see of it, or null if it no longer exists.
+   * `exercise` is what students see of it, or null if it no longer exists; `service` reads its entries.
    *
    * @param {Api.Exercise | null} exercise
    * @param {Submission} submission
+   * @param {Front.PreviewService} service
    */
-  constructor(exercise, submission) {
+  constructor(exercise, submission, service = TUTORS) {
     this.exercise = exercise;
     this.submission = submission;
-    /** @type {Front.PreviewService} */
-    const service = { previews: (body) => send("v1/previews", body), preview: (body) => send("v1/preview", body) };
     /** @type {() => Front.Context} */
     const context = () => ({ exercise: exercise?.id ?? "", angle_unit: submission.angle_unit ?? "radians" });
     // What a part needs from its host.

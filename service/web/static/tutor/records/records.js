@@ -82,8 +82,18 @@ export function startOf(day, later = 0) {
   return Number.isNaN(start.getTime()) ? "" : start.toISOString();
 }
 
-/** Return the span of time from the fields "since" and "until"; it includes both days. */
-export const span = () => ({ since: startOf(fieldOf("since").value), until: startOf(fieldOf("until").value, 1) });
+/** Return the course and the assignment in the page's address; links on their pages lead here. */
+export function within() {
+  const asked = new URLSearchParams(location.search);
+  return { course: asked.get("course") ?? "", assignment: asked.get("assignment") ?? "" };
+}
+
+/** Return the course, and the span of time from the fields "since" and "until"; it includes both days. */
+export const span = () => ({
+  since: startOf(fieldOf("since").value),
+  until: startOf(fieldOf("until").value, 1),
+  ...within(),
+});
 
 /**
  * Let the export links export the attempts of a filter. Hide the links of gradebooks if no exercise is chosen.

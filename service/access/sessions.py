@@ -1,0 +1,43 @@
+"""Sessions of tutors in a browser: signed like tokens, with a secret of their own.
+
+Sessions are not stored. A session names a key, and ends with it.
+"""
+
+import time
+from datetime import datetime
+from typing import Annotated, Final, Literal
+
+import jwt
+from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
+
+from service.access.keys import CredentialError
+
+_ALGORITHM: Final = "HS256"
+_JWS: Final = jwt.PyJWS()
+
+
+class _SessionClaims(BaseModel):
+    """The claims of a session, exactly as ``signed_session`` writes them."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    iss: Literal["dh-grader session"]
+    key: Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{8}$")]
+    exp: int
+
+
+def signed_session(key_id: str, expires_at: datetime, secret: bytes) -> str:
+    """Return the text of a session of the holder of a key."""
+    claims = {"iss": "dh-grader session", "key": key_id, "exp": int(expires_at.timestamp())}
+    return jwt.encode(claims, secret, _ALGORITHM)
+
+
+def key_of_session(text: str, secret: bytes) -> str:
+    """Return the id of the key of a session. Raises CredentialError."""
+    try:
+        claims = _SessionClaims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
+    except (jwt.InvalidTokenError, ValidationError) as error:
+        raise CredentialError("This is no session of this service.") from error
+    if claims.exp <= time.time():
+        raise CredentialError("The session has expired.")
+    return claims.key

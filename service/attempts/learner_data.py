@@ -1,0 +1,85 @@
+"""All records of one learner, and the deletion of old attempts: functions on a connection."""
+
+import json
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any, Final
+
+from sqlalchemy import ColumnElement, Connection, Row, Table, delete, select
+
+from service.attempts.storage.tables import (
+    assignments,
+    attempts,
+    course_learners,
+    earlier_reports,
+    extensions,
+    keys,
+    overrides,
+    regrade_queue,
+)
+
+# Columns that are about the database and not about the learner, and columns of JSON.
+_INNER: Final = {"number", "attempt", "assignment", "outcome", "digest"}
+_JSON: Final = {"submission", "report", "exercises"}
+
+
+def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
+    """Return all records of a learner, for JSON."""
+
+    def rows(table: Table, condition: ColumnElement[bool]) -> list[dict[str, Any]]:
+        found = connection.execute(select(table).where(condition)).all()
+        return [_known(row) for row in found]
+
+    def attempt(row: Row[Any]) -> dict[str, Any]:
+        return _known(row) | {
+            "overrides": rows(overrides, overrides.c.attempt == row.number),
+            "earlier_reports": rows(earlier_reports, earlier_reports.c.attempt == row.number),
+        }
+
+    mine = select(attempts, assignments.c.course, assignments.c.id.label("in_assignment"))
+    recorded = connection.execute(
+        mine.join_from(attempts, assignments, isouter=True)
+        .where(attempts.c.learner == learner)
+        .order_by(attempts.c.number)
+    ).all()
+    extended = connection.execute(
+        select(extensions, assignments.c.course, assignments.c.id.label("in_assignment"))
+        .join_from(extensions, assignments)
+        .where(extensions.c.learner == learner)
+    ).all()
+    return {
+        "learner": learner,
+        "courses": rows(course_learners, course_learners.c.learner == learner),
+        "extensions": [_known(row) for row in extended],
+        "links": rows(keys, keys.c.learner == learner),
+        "attempts": [attempt(row) for row in recorded],
+    }
+
+
+def delete_older(connection: Connection, before: datetime) -> int:
+    """Delete all attempts before a moment, with their reports; return their number."""
+    old = select(attempts.c.number).where(attempts.c.at < before)
+    for table in (regrade_queue, earlier_reports, overrides):
+        connection.execute(delete(table).where(table.c.attempt.in_(old)))
+    return connection.execute(delete(attempts).where(attempts.c.at < before)).rowcount
+
+
+def months_before(now: datetime, months: int) -> datetime:
+    """Return the moment that many months earlier, at the latest on the 28th of its month."""
+    total = 12 * now.year + now.month - 1 - months
+    return now.replace(year=total // 12, month=total % 12 + 1, day=min(now.day, 28))
+
+
+def _known(row: Row[Any]) -> dict[str, Any]:
+    """Return what a row says about the learner."""
+    return {name: _plain(name, value) for name, value in _named(row).items() if value is not None}
+
+
+def _named(row: Row[Any]) -> Mapping[str, Any]:
+    return {name: value for name, value in row._mapping.items() if name not in _INNER}
+
+
+def _plain(name: str, value: Any) -> Any:
+    if isinstance(value, datetime):
+        return value.isoformat()
+    return json.loads(value) if name in _JSON else value

@@ -1,0 +1,208 @@
+"""`dh-grader doctor`: check this installation, and say what is wrong and how to mend it."""
+
+import os
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Final
+
+import typer
+from sqlalchemy import Connection, select
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.access.caller import Scope
+from service.access.key_table import all_keys, fits
+from service.access.keys import WRONG_SECRET
+from service.api.permissions.access import is_loopback
+from service.attempts.errors import UnusableDatabaseError
+from service.attempts.storage.database import (
+    migration_state,
+    reason,
+    safe_url,
+    unmigrated_database,
+)
+from service.attempts.storage.tables import courses
+from service.catalogue import CatalogueError, load_catalogue
+from service.courses.errors import CourseError
+from service.courses.times import zone_named
+from service.settings import Settings, SettingsError, load_settings
+
+commands = typer.Typer(add_completion=False)
+
+_OWNERS_ONLY: Final = 0o077
+
+
+class AilmentError(Exception):
+    """Something is wrong with the installation; the message says how to mend it."""
+
+
+@commands.command("doctor")
+def command() -> None:
+    """Check this installation, and say how to mend it. Nothing is changed."""
+    try:
+        settings = load_settings()
+        settings.known_secret()
+    except SettingsError as error:
+        typer.echo(f"WRONG  settings: {error}")
+        raise SystemExit(1) from error
+    typer.echo("ok     settings")
+    wrong = 0
+    for name, check in _CHECKS.items():
+        try:
+            for line in check(settings):
+                typer.echo(f"ok     {name}: {line}")
+        except AilmentError as error:
+            wrong += 1
+            typer.echo(f"WRONG  {name}: {error}")
+    typer.echo("Nothing is wrong." if not wrong else f"Wrong: {wrong}.")
+    raise SystemExit(1 if wrong else 0)
+
+
+def _exercises(settings: Settings) -> Iterator[str]:
+    try:
+        yield f"{len(load_catalogue(*settings.exercises_dir))} exercises"
+    except CatalogueError as error:
+        raise AilmentError(f"{error}") from error
+
+
+def _time_zones(_: Settings) -> Iterator[str]:
+    try:
+        zone_named("Europe/Berlin")
+    except CourseError as error:
+        message = "there are no time zones. Install the package tzdata of the system or of Python."
+        raise AilmentError(message) from error
+    yield "time zones are known"
+
+
+def _folders(settings: Settings) -> Iterator[str]:
+    folder = settings.editor_dir
+    if folder is None:
+        return
+    if not (folder.is_dir() and os.access(folder, os.W_OK)):
+        raise AilmentError(
+            f"DH_GRADER_EDITOR_DIR: {folder} is no folder in which files can be saved."
+        )
+    yield f"the editor saves in {folder}"
+
+
+def _database(settings: Settings) -> Iterator[str]:
+    if settings.database is None:
+        yield "none; nothing is recorded. DH_GRADER_DATABASE=attempts.db would record attempts."
+        return
+    yield from _asked(settings, _state_of_database)
+
+
+def _state_of_database(connection: Connection, _: Settings) -> Iterator[str]:
+    current, newest = migration_state(connection)
+    name = safe_url(connection.engine)
+    if connection.dialect.name == "sqlite":
+        _check_file(Path(connection.engine.url.database or ""))
+        found = connection.exec_driver_sql("PRAGMA quick_check(1)").scalar()
+        if found != "ok":
+            raise AilmentError(
+                f"{name} is damaged: {found}. Restore a backup: dh-grader restore FILE."
+            )
+    if current is None:
+        yield f"{name} is empty; the service makes its tables when it starts"
+    elif current != newest:
+        yield f"{name} has tables {current}; the service migrates them to {newest} at its start"
+    else:
+        yield f"{name} answers; its tables are those of this version"
+
+
+def _check_file(file: Path) -> None:
+    if not os.access(file, os.W_OK) or not os.access(file.parent, os.W_OK):
+        message = f"{file} and its folder must be writable for the user that runs the service."
+        raise AilmentError(message)
+    if os.name == "posix" and file.stat().st_mode & _OWNERS_ONLY:
+        raise AilmentError(f"other users of this machine can read {file}. Run: chmod 600 {file}")
+
+
+def _keys(settings: Settings) -> Iterator[str]:
+    if settings.database is None:
+        _check_openness(settings, has_keys=False)
+        yield "none, because there is no database"
+        return
+    yield from _asked(settings, _state_of_keys)
+
+
+def _state_of_keys(connection: Connection, settings: Settings) -> Iterator[str]:
+    if migration_state(connection)[0] is None:
+        _check_openness(settings, has_keys=False)
+        yield "none yet"
+        return
+    now, secret = datetime.now(UTC), settings.known_secret()
+    found = all_keys(connection)
+    valid = [each for each in found if each.revoked_at is None and each.expires_at > now]
+    if found and secret is None:
+        message = "there are keys, but no secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE."
+        raise AilmentError(message)
+    if secret is not None and not fits(connection, secret):
+        raise AilmentError(WRONG_SECRET)
+    _check_openness(settings, has_keys=bool(found))
+    tutors = sum(Scope.TUTOR in each.scopes for each in valid)
+    if found and not tutors:
+        raise AilmentError("no tutor can sign in: dh-grader keys create NAME --scope tutor")
+    yield f"{len(valid)} valid, {tutors} of them of tutors, {len(found) - len(valid)} ended"
+
+
+def _check_openness(settings: Settings, *, has_keys: bool) -> None:
+    is_here = settings.host == "localhost" or is_loopback(settings.host)
+    if not (is_here or has_keys or settings.open is not None):
+        raise AilmentError(
+            f"other machines can reach {settings.host}, but there are no keys, so the service does "
+            "not start. Create one: dh-grader keys create NAME --scope tutor"
+        )
+
+
+def _courses(settings: Settings) -> Iterator[str]:
+    if settings.database is not None:
+        yield from _asked(settings, _state_of_courses)
+
+
+def _state_of_courses(connection: Connection, _: Settings) -> Iterator[str]:
+    current, newest = migration_state(connection)
+    if current != newest:
+        return
+    zones = connection.execute(select(courses.c.id, courses.c.zone)).all()
+    for course, zone in zones:
+        try:
+            zone_named(zone)
+        except CourseError as error:
+            raise AilmentError(f"the course {course}: {error}") from error
+    yield f"{len(zones)} courses"
+
+
+def _asked(
+    settings: Settings, question: Callable[[Connection, Settings], Iterator[str]]
+) -> Iterator[str]:
+    """Yield the answers of the database, which is not changed. Raises AilmentError."""
+    assert settings.database is not None
+    try:
+        engine = unmigrated_database(settings.database.get_secret_value())
+    except UnusableDatabaseError as error:
+        raise AilmentError(f"DH_GRADER_DATABASE: {error}") from error
+    if engine.dialect.name == "sqlite":
+        path = Path(engine.url.database or "").absolute()
+        if not path.parent.is_dir():
+            raise AilmentError(f"DH_GRADER_DATABASE: {path.parent} is no folder. Create it.")
+        if not path.exists():
+            yield f"{path} is not there yet; the service creates it when it starts"
+            return
+    try:
+        with engine.connect() as connection:
+            yield from list(question(connection, settings))
+    except SQLAlchemyError as error:
+        raise AilmentError(f"{safe_url(engine)} does not answer: {reason(error)}") from error
+    finally:
+        engine.dispose()
+
+
+_CHECKS: Final[dict[str, Callable[[Settings], Iterator[str]]]] = {
+    "exercises": _exercises,
+    "time zones": _time_zones,
+    "folders": _folders,
+    "database": _database,
+    "keys": _keys,
+    "courses": _courses,
+}

@@ -1,0 +1,80 @@
+"""`dh-grader restore`: put a backup in the place of the database."""
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from sqlalchemy import make_url
+
+from service.attempts.errors import UnusableDatabaseError
+from service.attempts.storage.database import open_database
+from service.attempts.storage.database_file import copy_into, is_in_use
+from service.cli.operations.backup import USE_POSTGRESQL
+from service.cli.terminal import give_up
+from service.settings import load_settings
+
+commands = typer.Typer(add_completion=False)
+
+
+@commands.command("restore")
+def command(
+    file: Annotated[Path, typer.Argument(help="A file that dh-grader backup wrote.")],
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Replace the database; keep it as FILE.before.")
+    ] = False,
+) -> None:
+    """Put a backup in the place of the database, while no service runs."""
+    target = _target()
+    if not file.is_file():
+        give_up(f"{file}: there is no such file.")
+    if _damage(file):
+        give_up(f"{file} is not a whole SQLite database.")
+    before = target.with_name(f"{target.name}.before")
+    if target.exists():
+        if not replace:
+            give_up(f"{target} is there already. Add --replace; it is then kept as {before}.")
+        if before.exists():
+            give_up(f"{before} is there already. Move it away first.")
+        if is_in_use(target):
+            give_up(f"{target} is in use. Stop the service first.")
+    new = target.with_name(f"{target.name}.new")
+    new.unlink(missing_ok=True)
+    copy_into(file, new)
+    try:
+        open_database(str(new), create=False)
+    except UnusableDatabaseError as error:
+        new.unlink()
+        give_up(f"{file}: {error}")
+    if target.exists():
+        target.rename(before)
+    new.rename(target)
+    typer.echo(f"{target} has the content of {file}.")
+
+
+def _target() -> Path:
+    """Return the place of the database of this installation."""
+    setting = load_settings().database
+    if setting is None:
+        give_up("Name the database: DH_GRADER_DATABASE.")
+    text = setting.get_secret_value()
+    if "://" not in text:
+        return Path(text)
+    url = make_url(text)
+    if url.get_backend_name() != "sqlite":
+        give_up(USE_POSTGRESQL)
+    return Path(url.database or "")
+
+
+def _damage(file: Path) -> bool:
+    """True if the file is not a whole database with the tables of the program."""
+    try:
+        with closing(
+            sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)
+        ) as connection:
+            [check] = connection.execute("PRAGMA integrity_check(1)").fetchone()
+            connection.execute("SELECT version_num FROM alembic_version")
+    except sqlite3.Error:
+        return True
+    return bool(check != "ok")

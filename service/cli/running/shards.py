@@ -1,0 +1,147 @@
+"""Divide a class between machines, and merge their JSON lines into those of one run.
+
+Shard 3 of 16 grades the third submission and every sixteenth after it. The first line of its file
+is a header that describes the division, so that merging notices a missing, incomplete or foreign
+file.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import asdict, dataclass
+from itertools import islice
+from pathlib import Path
+from typing import BinaryIO, Final, TypeVar
+
+import typer
+
+_Item = TypeVar("_Item")
+
+MOST_SHARDS: Final = 1000
+# The longest header; a file of something else may have lines of any length.
+_LONGEST_HEADER: Final = 1000
+_FORM: Final = re.compile(r"([0-9]{1,4})/([0-9]{1,4})", re.ASCII)
+
+
+class UnusableShardsError(ValueError):
+    """The files are not all shards of one run; the text gives the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of ``count`` shards; ``number`` begins with 1."""
+
+    number: int
+    count: int
+
+    def of(self, items: Sequence[_Item]) -> list[_Item]:
+        """Return the items of this shard."""
+        return list(items[self.number - 1 :: self.count])
+
+
+def shard_of(text: str) -> Shard:
+    """Return the shard that ``3/16`` names. Raises typer.BadParameter."""
+    found = _FORM.fullmatch(text)
+    shard = Shard(int(found[1]), int(found[2])) if found else Shard(0, 0)
+    if not 1 <= shard.number <= shard.count <= MOST_SHARDS:
+        raise typer.BadParameter(
+            f"{text!r} is not a shard such as 3/16: a number from 1 to the count of shards, which "
+            f"is at most {MOST_SHARDS}."
+        )
+    return shard
+
+
+@dataclass(frozen=True, slots=True)
+class ShardHeader:
+    """The first line of a shard's file.
+
+    ``submissions`` is the number of all submissions, ``exercises`` the number of lines for each of
+    them, and ``run`` a hash of the names of all submissions and exercises.
+    """
+
+    shard: int
+    shards: int
+    submissions: int
+    exercises: int
+    run: str
+
+
+def with_header(
+    lines: Iterable[bytes], shard: Shard, submissions: Sequence[str], exercises: Sequence[str]
+) -> Iterator[bytes]:
+    """Yield the header of a shard, then its lines. The names are those of the whole run."""
+    names = json.dumps([submissions, exercises])
+    run = hashlib.sha256(names.encode()).hexdigest()
+    header = ShardHeader(shard.number, shard.count, len(submissions), len(exercises), run)
+    yield json.dumps(asdict(header)).encode() + b"\n"
+    yield from lines
+
+
+def merged(files: Sequence[Path]) -> Iterator[bytes]:
+    """Yield the lines of one run from the files of all its shards, in any order.
+
+    Raises UnusableShardsError.
+    """
+    with ExitStack() as opened:
+        shards: dict[int, tuple[ShardHeader, Path, BinaryIO]] = {}
+        for path in files:
+            file = opened.enter_context(_opened(path))
+            header = _header(file.readline(_LONGEST_HEADER), path)
+            if header.shard in shards:
+                raise UnusableShardsError(
+                    f"{path}: is shard {header.shard}, and so is {shards[header.shard][1]}"
+                )
+            shards[header.shard] = header, path, file
+        _require_one_run(shards)
+        in_order = [shards[number] for number in sorted(shards)]
+        first = in_order[0][0]
+        for i in range(first.submissions):
+            _, path, file = in_order[i % first.shards]
+            yield from islice(_whole_lines(file, path), first.exercises)
+        for _, path, file in in_order:
+            if file.read(1):
+                raise UnusableShardsError(f"{path}: has more lines than its header says")
+
+
+def _opened(path: Path) -> BinaryIO:
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise UnusableShardsError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def _header(line: bytes, path: Path) -> ShardHeader:
+    try:
+        header = ShardHeader(**json.loads(line))
+        shard_of(f"{header.shard}/{header.shards}")
+    except (ValueError, TypeError, typer.BadParameter):
+        raise UnusableShardsError(
+            f"{path}: is not a shard; dh-grader grade --shard writes shards"
+        ) from None
+    return header
+
+
+def _require_one_run(shards: dict[int, tuple[ShardHeader, Path, BinaryIO]]) -> None:
+    first, first_path, _ = next(iter(shards.values()))
+    for header, path, _ in shards.values():
+        same = (header.shards, header.submissions, header.exercises, header.run)
+        if same != (first.shards, first.submissions, first.exercises, first.run):
+            raise UnusableShardsError(
+                f"{path}: is from another run than {first_path}: the submissions, the assignment "
+                "or the count of shards differ"
+            )
+    missing = [number for number in range(1, first.shards + 1) if number not in shards]
+    if missing:
+        numbers = ", ".join(map(str, missing))
+        raise UnusableShardsError(f"Missing shards of {first.shards}: {numbers}.")
+
+
+def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
+    """Yield the next lines, without end. Raises UnusableShardsError at the end of the file."""
+    while True:
+        line = file.readline()
+        if not line.endswith(b"\n"):
+            raise UnusableShardsError(f"{path}: is incomplete; grade this shard again")
+        yield line

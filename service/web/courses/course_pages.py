@@ -1,0 +1,148 @@
+"""The pages of courses as HTML. Scripts send their forms to the routes of the service."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Final, NamedTuple
+
+from service.api.http.lookup import Catalogue
+from service.contract.courses import (
+    Course,
+    CourseAssignment,
+    CourseLearner,
+    Gradebook,
+    MissingLearner,
+    OwnCourse,
+)
+from service.web.assets import Assets
+from service.web.pages import page
+
+# The number of groups in the distribution of points.
+_GROUPS: Final = 10
+
+
+class CourseState(NamedTuple):
+    """A course with its learners and assignments.
+
+    ``handed_in`` has the number of learners with a readable attempt, by assignment.
+    """
+
+    course: Course
+    learners: Sequence[CourseLearner]
+    assignments: Sequence[CourseAssignment]
+    handed_in: dict[str, int]
+
+
+class PointsGroup(NamedTuple):
+    """The learners whose share of the points is at least ``start`` and below ``end`` per cent."""
+
+    start: int
+    end: int
+    learners: int
+
+
+def courses_page(courses: Sequence[Course], assets: Assets, *, creates: bool) -> bytes:
+    """Return the page with the list of courses; with ``creates``, it has a form for a new one."""
+    return _page("courses", assets, "../", ["course_forms.js"], courses=courses, creates=creates)
+
+
+def course_page(
+    state: CourseState, catalogue: Catalogue, assets: Assets, *, has_secret: bool, has_keys: bool
+) -> bytes:
+    """Return the page of a course: its assignments, learners and links."""
+    return _page(
+        "course",
+        assets,
+        "../../",
+        ["course_forms.js"],
+        **state._asdict(),
+        catalogue=catalogue,
+        has_secret=has_secret,
+        has_keys=has_keys,
+        shown=_shown,
+    )
+
+
+def assignment_page(
+    state: CourseState,
+    chosen: CourseAssignment,
+    missing: Sequence[MissingLearner],
+    book: Gradebook,
+    catalogue: Catalogue,
+    assets: Assets,
+) -> bytes:
+    """Return the page of an assignment: its fields, extensions, missing learners and points."""
+    names = {each.learner: each.name for each in state.learners}
+    return _page(
+        "assignment",
+        assets,
+        "../../../../",
+        ["course_forms.js"],
+        course=state.course,
+        learners=state.learners,
+        names=names,
+        assignment=chosen,
+        missing=missing,
+        groups=distribution(book),
+        columns=_columns(book),
+        catalogue=catalogue,
+        shown=_shown,
+    )
+
+
+def gradebook_page(course: Course, assets: Assets) -> bytes:
+    """Return the page of the gradebook, which a script fills."""
+    return _page("gradebook", assets, "../../../", ["gradebook.js"], course=course)
+
+
+def learner_page(course: OwnCourse, learner: str, now: datetime, assets: Assets) -> bytes:
+    """Return the page of a learner: what the learner sees, and the learner's link."""
+    return _page(
+        "learner",
+        assets,
+        "../../../",
+        ["course_forms.js"],
+        course=course,
+        learner=learner,
+        now=now,
+        shown=_shown,
+    )
+
+
+def distribution(book: Gradebook) -> list[PointsGroup]:
+    """Return how many learners who have handed something in have which share of all points."""
+    most = sum(each.points for each in book.columns)
+    counts = [0] * _GROUPS
+    for row in book.rows:
+        if any(points is not None for points in row.points):
+            # Rounded, because points are sums of floats.
+            group = int(round(_GROUPS * row.total / most, 6)) if most else 0
+            counts[min(group, _GROUPS - 1)] += 1
+    width = 100 // _GROUPS
+    return [PointsGroup(i * width, (i + 1) * width, count) for i, count in enumerate(counts)]
+
+
+def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
+    """Return each exercise with its points, the number of its learners, and their mean points."""
+    found = []
+    for i, column in enumerate(book.columns):
+        earned = [row.points[i] for row in book.rows if row.points[i] is not None]
+        mean = sum(each or 0.0 for each in earned) / len(earned) if earned else None
+        found.append((column.exercise, column.points, len(earned), mean))
+    return found
+
+
+def _shown(when: datetime | None) -> str:
+    """Return a date, which is in the time zone of the course already, or a dash."""
+    return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
+
+
+def _page(name: str, assets: Assets, root: str, scripts: Sequence[str], **values: object) -> bytes:
+    return page(
+        f"web/courses/templates/{name}.html",
+        assets,
+        root,
+        ["page.js", *scripts],
+        styles=["tutor.css", "records.css", "courses.css"],
+        tutor=True,
+        **values,
+    )

@@ -1,0 +1,152 @@
+"""The routes of the pages of courses, for tutors."""
+
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated
+from urllib.parse import parse_qs
+
+from fastapi import APIRouter, Query, Request
+from starlette.responses import HTMLResponse, Response
+
+from service.api.courses.asking import AssignmentId, CourseId, course_problem, read, write
+from service.api.http.bodies import validated
+from service.api.http.lookup import Catalogue
+from service.contract.attempts import Learner
+from service.contract.courses import LinksRequest
+from service.courses.errors import CourseError
+from service.web.assets import Assets
+from service.web.courses.course_pages import (
+    CourseState,
+    assignment_page,
+    course_page,
+    courses_page,
+    gradebook_page,
+    learner_page,
+)
+from service.web.page_headers import FORM_HEADERS, NO_STORE
+from service.web.tutor.tutor_routes import Tutoring
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from sqlalchemy import Connection
+
+
+def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """Return the routes of the pages on which tutors run courses."""
+    router = APIRouter(include_in_schema=False)
+    router.include_router(_set_up_routes(catalogue, assets, tutoring))
+    router.include_router(_learner_routes(catalogue, assets, tutoring))
+    return router
+
+
+def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """Return the routes of courses and assignments."""
+    router = APIRouter(prefix="/tutor/courses")
+    access, store = tutoring.access, tutoring.store
+
+    @router.get("")
+    async def courses(request: Request) -> Response:
+        """Answer with the list of courses; a tutor of one course sees this one."""
+        from service.courses import roll
+
+        only = access.caller(request).course
+        found = await read(store, lambda it: roll.all_courses(it, only))
+        return _answer(courses_page(found, assets, creates=only is None))
+
+    @router.get("/{course_id}")
+    async def course(request: Request, course_id: CourseId) -> Response:
+        """Answer with the page of a course."""
+        state = await read(store, lambda it: _state(it, course_id))
+        drawn = course_page(
+            state,
+            catalogue,
+            assets,
+            has_secret=access.keys is not None and access.keys.secret is not None,
+            has_keys=bool(access.caller(request).key_id),
+        )
+        return _answer(drawn)
+
+    @router.get("/{course_id}/assignments/{assignment_id}")
+    async def assignment(course_id: CourseId, assignment_id: AssignmentId) -> Response:
+        """Answer with the page of an assignment."""
+        from service.courses.assignments import assignment_of
+        from service.courses.gradebook import gradebook, missing
+
+        def drawn(connection: "Connection") -> bytes:
+            return assignment_page(
+                _state(connection, course_id),
+                assignment_of(connection, course_id, assignment_id),
+                missing(connection, course_id, assignment_id),
+                gradebook(connection, course_id, assignment_id),
+                catalogue,
+                assets,
+            )
+
+        return _answer(await read(store, drawn))
+
+    return router
+
+
+def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """Return the routes of the gradebook, of one learner, and of the links."""
+    router = APIRouter(prefix="/tutor/courses")
+    access, store = tutoring.access, tutoring.store
+
+    @router.get("/{course_id}/gradebook")
+    async def book(course_id: CourseId) -> Response:
+        """Answer with the page of the gradebook."""
+        from service.courses import roll
+
+        found = await read(store, lambda it: roll.course(it, course_id))
+        return _answer(gradebook_page(found, assets))
+
+    @router.get("/{course_id}/learner")
+    async def learner(course_id: CourseId, learner: Annotated[Learner, Query()]) -> Response:
+        """Answer with the page of a learner. An id may have a slash: it is not in the path."""
+        from service.courses.learner_view import own_view
+
+        now = datetime.now(UTC)
+        view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))
+        if not view.courses:
+            message = f"The course has no learner {learner}."
+            raise course_problem(CourseError("unknown-learner", message))
+        return _answer(learner_page(view.courses[0], learner, now, assets))
+
+    @router.post("/{course_id}/links.csv")
+    async def links(request: Request, course_id: CourseId) -> Response:
+        """Answer with the personal links of all learners, or a new one of one learner, as CSV."""
+        from service.courses.links import issue_links, written_links
+
+        fields = parse_qs((await request.body()).decode(errors="replace"))
+        one = fields.get("learner")
+        secret = None if access.keys is None else access.keys.secret
+        if secret is None:
+            message = "Personal links need a secret: set DH_GRADER_SECRET."
+            raise course_problem(CourseError("unusable", message))
+        wanted = validated(LinksRequest, {"learners": one, "renew": one is not None})
+        known = secret
+        base, now = str(request.base_url), datetime.now(UTC)
+        found = await write(store, lambda it: issue_links(it, course_id, wanted, known, base, now))
+        attachment = f'attachment; filename="links-{course_id}.csv"'
+        headers = {**NO_STORE, "Content-Disposition": attachment}
+        content = b"".join(written_links(found))
+        return Response(content, HTTPStatus.OK, headers, "text/csv; charset=utf-8")
+
+    return router
+
+
+def _answer(content: bytes) -> Response:
+    return HTMLResponse(content, headers=FORM_HEADERS)
+
+
+def _state(connection: "Connection", course_id: str) -> CourseState:
+    """Return a course with all that its page shows. Raises CourseError."""
+    from service.courses import roll
+    from service.courses.assignments import assignments_of
+    from service.courses.gradebook import handed_in
+
+    return CourseState(
+        roll.course(connection, course_id),
+        roll.learners(connection, course_id, datetime.now(UTC)),
+        assignments_of(connection, course_id),
+        handed_in(connection, course_id),
+    )

@@ -1,0 +1,139 @@
+"""The page on which tutors sign in with their key, and the routes that start and end a session."""
+
+import re
+from datetime import UTC, datetime, timedelta
+from http import HTTPStatus
+from typing import Final
+from urllib.parse import parse_qs, quote
+
+from fastapi import APIRouter, Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from service.access.caller import Scope
+from service.access.keys import CredentialError, Keys, KeysBusyError, KeysUnreachableError
+from service.api.http.problems import store_down
+from service.api.permissions.access import (
+    PLAIN_COOKIE,
+    SECURE_COOKIE,
+    Access,
+    is_same_origin,
+)
+from service.api.permissions.access_problems import access_problem
+from service.web.assets import Assets
+from service.web.page_headers import FORM_HEADERS
+from service.web.pages import page
+
+# A session ends after one working day; using it does not make it longer.
+SESSION: Final = timedelta(hours=10)
+HOME: Final = "/tutor"
+# Paths of tutors' pages, as browsers send them.
+_OURS: Final = re.compile(r"/tutor(?:[/?][A-Za-z0-9/?._~%&=+:@!$'()*,;-]*)?", re.ASCII)
+_LONGEST: Final = 2000
+_MOST_FIELDS: Final = 10
+
+
+def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
+    """Return the routes to sign in and out."""
+    router = APIRouter(prefix="/tutor", include_in_schema=False)
+
+    def form(following: str, message: str = "") -> Response:
+        content = page(
+            "web/templates/sign_in.html",
+            assets,
+            "../",
+            ["page.js"],
+            styles=["tutor.css", "records.css"],
+            following=following,
+            message=message,
+        )
+        status = HTTPStatus.FORBIDDEN if message else HTTPStatus.OK
+        return HTMLResponse(content, status, headers=FORM_HEADERS)
+
+    @router.get("/sign-in")
+    async def ask(following: str = HOME) -> Response:
+        """Answer with the form that asks for a key."""
+        return form(own_path(following))
+
+    @router.post("/sign-in")
+    async def begin(request: Request) -> Response:
+        """Start a session, and open the page that the tutor wanted."""
+        fields = await _fields(request)
+        following = own_path(fields.get("following", ""))
+        if access.keys is None or not await access.keys.are_needed():
+            return _see(following)
+        if not is_same_origin(request):
+            return form(following, "The form was sent by a page of another site. Send it again.")
+        until = datetime.now(UTC) + SESSION
+        try:
+            session = await _session(access.keys, fields.get("key", "").strip(), until)
+        except CredentialError as error:
+            return form(following, str(error))
+        answer = _see(following)
+        _set_cookie(answer, request, session)
+        return answer
+
+    @router.post("/sign-out")
+    async def end(request: Request) -> Response:
+        """End the session of this browser."""
+        answer = _see(f"{HOME}/sign-in")
+        if is_same_origin(request):
+            _set_cookie(answer, request, "")
+        return answer
+
+    return router
+
+
+def sign_in_address(path: str, query: str) -> str:
+    """Return the address, relative to the root, of the form that leads back to a tutor's page."""
+    wanted = f"{path}?{query}" if query else path
+    return f"tutor/sign-in?following={quote(own_path(wanted), safe='')}"
+
+
+def own_path(path: str) -> str:
+    """Return the path if it is that of a tutor's page; else that of the first one."""
+    is_ours = len(path) <= _LONGEST and _OURS.fullmatch(path) and ".." not in path
+    return path if is_ours else HOME
+
+
+async def _session(keys: Keys, key: str, until: datetime) -> str:
+    """Return a session of the holder of a key. Raises CredentialError, ProblemError."""
+    if not key:
+        raise CredentialError("Enter a key.")
+    try:
+        caller = await keys.caller(key)
+    except KeysUnreachableError as error:
+        raise store_down("The key cannot be checked: the database does not answer.") from error
+    except KeysBusyError as error:
+        raise access_problem("busy") from error
+    if Scope.TUTOR not in caller.scopes or caller.learner is not None:
+        raise CredentialError("This key is not a tutor's: it has not the scope tutor.")
+    return keys.session(caller, until)
+
+
+async def _fields(request: Request) -> dict[str, str]:
+    """Return the fields of a form."""
+    body = (await request.body()).decode(errors="replace")
+    try:
+        return {name: each[0] for name, each in parse_qs(body, max_num_fields=_MOST_FIELDS).items()}
+    except ValueError:
+        return {}
+
+
+def _see(path: str) -> Response:
+    # Relative to /tutor/…, so that it works below the prefix of a proxy.
+    headers = {"Cache-Control": "no-store"}
+    return RedirectResponse(f"..{path}", HTTPStatus.SEE_OTHER, headers)
+
+
+def _set_cookie(answer: Response, request: Request, session: str) -> None:
+    """Set the cookie of the session; without one, remove the cookies.
+
+    The browser knows whether it uses HTTPS; a service behind a proxy may not.
+    """
+    origin = request.headers.get("origin", "")
+    is_secure = origin.startswith("https:") or request.url.scheme == "https"
+    age = int(SESSION.total_seconds()) if session else 0
+    for name in (SECURE_COOKIE, PLAIN_COOKIE):
+        if not session or (name == SECURE_COOKIE) is is_secure:
+            secure = name == SECURE_COOKIE
+            answer.set_cookie(name, session, age, secure=secure, httponly=True, samesite="lax")

@@ -1,0 +1,94 @@
+// An exercise of an assignment: the form, the learner's attempts, a report, and the solution.
+
+import { h, visible } from "../shared/dom.js";
+import { momentIn } from "../student/handin/dates.js";
+import { attemptName, attemptPoints } from "../student/handin/own_state.js";
+import { RecordedReport } from "../tutor/records/recorded_report.js";
+import { fragmentOf } from "./link_key.js";
+
+export const back = () => h("p", { class: "ways-on" }, h("a", { href: "#" }, "← All assignments"));
+
+/**
+ * Return the form of an exercise, and the element for what was handed in, which `handedIn` fills.
+ *
+ * @param {Front.Assigned} place
+ * @param {string} key
+ */
+export function form({ path, exercise }, key) {
+  const element = document.createElement("dh-exercise");
+  for (const [name, value] of Object.entries({ exercise, assignment: path, token: key, submit: "", linked: "" })) {
+    element.setAttribute(name, value);
+  }
+  const done = h("section", { class: "handed-in", "aria-label": "Handed in" });
+  return { element, done };
+}
+
+/**
+ * Return the list of the learner's attempts at an exercise, and the way to its solution.
+ *
+ * @param {Front.Own} own
+ * @param {Front.Assigned} place
+ * @param {() => void} showSolution
+ */
+export function handedIn({ course, exercise }, place, showSolution) {
+  const rows = exercise.attempts.toReversed().map((each) =>
+    h(
+      "li",
+      {},
+      h("a", { href: fragmentOf({ ...place, attempt: each.id }) }, attemptName(exercise, each.id)),
+      h("span", {}, momentIn(each.at, course.zone)),
+      h("span", {}, attemptPoints(each, exercise)),
+      each.counts ? h("span", { class: "badge" }, "counts") : null,
+    )
+  );
+  return [
+    h("h2", {}, "What you handed in"),
+    rows.length ? h("ul", {}, ...rows) : h("p", { class: "quiet" }, "Nothing yet."),
+    exercise.shows_solution
+      ? h("button", { type: "button", class: "quiet-button", onclick: showSolution }, "Show the solution")
+      : null,
+  ];
+}
+
+/**
+ * Return the report on an attempt.
+ *
+ * @param {Front.Service} service
+ * @param {Front.Assigned} place
+ * @param {Front.Own} own
+ */
+export async function report(service, place, { course, exercise: own }) {
+  const [found, exercise] = await Promise.all([
+    service.attempt(place.attempt ?? ""),
+    service.exercise(place.exercise).catch(() => null),
+  ]);
+  const attempt = own.attempts.find(({ id }) => id === found.attempt.id);
+  const drawn = new RecordedReport(exercise, found.submission, service);
+  drawn.show(found.report);
+  const facts = attempt
+    ? [attemptName(own, attempt.id), momentIn(attempt.at, course.zone), attemptPoints(attempt, own)].join(" · ")
+    : momentIn(found.attempt.at, course.zone);
+  return [
+    h("h1", {}, visible(own.title)),
+    h("p", {}, facts),
+    h("p", {}, h("a", { href: fragmentOf({ path: place.path, exercise: place.exercise }) }, "Back to the exercise")),
+    drawn.element,
+  ];
+}
+
+/**
+ * Return the model solution.
+ *
+ * @param {Front.Service} service
+ * @param {Front.Assigned} place
+ */
+export async function solution(service, { path, exercise }) {
+  const { parts } = await service.assignedSolution(path, exercise);
+  return [
+    h("h2", { tabindex: -1 }, "Solution"),
+    ...parts.flatMap(({ title, text }) => [
+      h("h3", {}, visible(title)),
+      h("pre", { tabindex: 0 }, text.split("\n").map(visible).join("\n")),
+    ]),
+  ];
+}

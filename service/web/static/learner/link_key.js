@@ -1,0 +1,55 @@
+// The key in a personal link, and the places on the learner's page. The key stays in this tab until it is closed.
+
+const NAME = "dh-grader:link";
+const LINK = /^#(dhg_[\w.-]+)$/;
+const PLACE = /^#\/([^/]+)\/([^/]+)\/([^/]+)(?:\/([^/]+))?$/;
+
+let inMemory = "";
+
+/** Return the key of the link in the address, or of an earlier one in this tab; an empty text if there is none. */
+export function takeKey() {
+  const [, key] = LINK.exec(location.hash) ?? [];
+  try {
+    if (key) sessionStorage.setItem(NAME, key);
+    else inMemory ||= sessionStorage.getItem(NAME) ?? "";
+  } catch {
+    // Without storage, a reload needs the link again.
+  }
+  if (key) {
+    inMemory = key;
+    // Nobody reads the key in the address bar, in the history or on a screenshot.
+    history.replaceState(null, "", location.pathname);
+  }
+  return inMemory;
+}
+
+export function forgetKey() {
+  inMemory = "";
+  try {
+    sessionStorage.removeItem(NAME);
+  } catch {
+    // There is nothing to remove.
+  }
+}
+
+/**
+ * Return the exercise that a fragment names, or null for the list of assignments.
+ *
+ * @param {string} hash
+ * @returns {Front.Assigned | null}
+ */
+export function placeIn(hash) {
+  const found = PLACE.exec(hash);
+  if (!found) return null;
+  try {
+    const [course, assignment, exercise, attempt] = found.slice(1).map((each) => each && decodeURIComponent(each));
+    return { path: `${course}/${assignment}`, exercise, ...(attempt ? { attempt } : {}) };
+  } catch {
+    return null;
+  }
+}
+
+/** Return the fragment of an exercise, or of one of its attempts. @param {Front.Assigned} place */
+export function fragmentOf({ path, exercise, attempt }) {
+  return `#/${[...path.split("/"), exercise, ...(attempt ? [attempt] : [])].map(encodeURIComponent).join("/")}`;
+}

@@ -1,0 +1,65 @@
+// The list of a learner's courses and assignments.
+
+import { h, visible } from "../shared/dom.js";
+import { attemptsInWords, datesInWords, pointsInWords, STATES } from "../student/handin/own_state.js";
+import { typeset } from "../typeset/names.js";
+import { fragmentOf } from "./link_key.js";
+
+/** @param {Api.OwnCourses} view */
+export function overview({ courses }) {
+  if (!courses.length) return [h("h1", {}, "My assignments"), h("p", {}, "You are in no course at the moment.")];
+  return [h("h1", {}, "My assignments"), ...courses.map(courseSection)];
+}
+
+/** @param {Api.OwnCourse} course */
+function courseSection(course) {
+  const { title, zone, name, assignments } = course;
+  return h(
+    "section",
+    { class: "course" },
+    h("h2", {}, visible(title)),
+    h("p", { class: "quiet" }, `${visible(name)} · times of ${visible(zone)}`),
+    assignments.length ? null : h("p", {}, "There are no assignments yet."),
+    ...assignments.map((each) => assignmentCard(course, each)),
+  );
+}
+
+/** @param {Api.OwnCourse} course @param {Api.OwnAssignment} assignment */
+function assignmentCard(course, assignment) {
+  const { id, title, state, is_extended: isExtended, exercises } = assignment;
+  return h(
+    "section",
+    { class: "assignment" },
+    h(
+      "header",
+      {},
+      h("h3", {}, visible(title)),
+      h("span", { class: "badge", "data-state": state }, STATES[state]),
+      isExtended ? h("span", { class: "badge" }, "extended for you") : null,
+    ),
+    h("p", {}, datesInWords(course, assignment)),
+    h(
+      "ul",
+      {},
+      ...exercises.map((each) =>
+        h(
+          "li",
+          {},
+          h(
+            "a",
+            { href: fragmentOf({ path: `${course.id}/${id}`, exercise: each.exercise }) },
+            ...typeset(visible(each.title)),
+          ),
+          h("span", {}, pointsInWords(each)),
+          h("span", { class: "quiet" }, [attemptsInWords(assignment, each), ...handedIn(each)].join(" · ")),
+        )
+      ),
+    ),
+  );
+}
+
+/** @param {Api.OwnExercise} exercise */
+function handedIn({ attempts, shows_solution: hasSolution }) {
+  const done = attempts.length ? [`${attempts.length} handed in`] : [];
+  return hasSolution ? [...done, "with solution"] : done;
+}

@@ -1,0 +1,260 @@
+// Hands the answers of an element in: the state of the assignment, the button Hand in, and the hand-in itself.
+
+import { h, visible } from "../../shared/dom.js";
+import { lastAttempt } from "./last_attempt.js";
+import {
+  attemptName,
+  attemptPoints,
+  attemptsInWords,
+  datesInWords,
+  ownState,
+  pointsInWords,
+  STATES,
+  whyClosed,
+} from "./own_state.js";
+import { offer } from "./notice.js";
+import { newKey, pauseAfter, PendingHandIn } from "./pending.js";
+import { DraftStore } from "./draft_store.js";
+
+const TRYING = "Not handed in yet, trying again. Your answers are saved in this browser.";
+const TOKEN_NEEDED = "Please open this exercise from your course page.";
+// Milliseconds: the time that a site has to set a token, and until it is asked for another one.
+const PATIENCE = 10_000;
+const ASKED_AGAIN = 60_000;
+const ELSEWHERE = "These answers were changed in another tab.";
+
+export class HandIn {
+  #isSending = false;
+  #isClosed = false;
+  #askedAt = 0;
+  /** @type {() => void} */
+  #wake = () => {};
+  #onVisible = () => document.visibilityState === "visible" && this.refresh();
+  #onOnline = () => this.#wake();
+  // What was typed just before the page is left or reloaded is saved, too.
+  #onLeaving = () => this.host.save();
+
+  /**
+   * `host` is the element, whose attribute `assignment` is `path`; `own` is the state that the service has told.
+   *
+   * @param {Front.HandInHost} host
+   * @param {string} path
+   * @param {Front.Own} own
+   */
+  constructor(host, path, own) {
+    this.host = host;
+    this.path = path;
+    this.own = own;
+    const name = `${path}/${own.exercise.exercise}:${own.learner}`;
+    this.store = new DraftStore(host.service.base, name, () => this.#changedElsewhere());
+    this.pending = new PendingHandIn(this.store.name);
+    // Other tabs are told of each hand-in, because it takes one of the attempts.
+    this.channel = new BroadcastChannel(this.store.name);
+    this.channel.onmessage = () => this.refresh();
+    document.addEventListener("visibilitychange", this.#onVisible);
+    addEventListener("online", this.#onOnline);
+    addEventListener("pagehide", this.#onLeaving);
+    this.status = h("section", { class: "card hand-in-state", "aria-label": "Assignment" });
+    this.told = h("p", { class: "hand-in-line", role: "status" });
+    this.button = h(
+      "button",
+      { type: "button", class: "check", part: "check", onclick: () => this.submit() },
+      "Hand in",
+    );
+  }
+
+  /**
+   * Return the hand-in of an element; null if the element has no assignment. Throws an Error if the learner has none.
+   *
+   * @param {Front.HandInHost} host
+   * @param {string} exercise
+   */
+  static async of(host, exercise) {
+    const path = host.getAttribute("assignment");
+    if (!path) return null;
+    if (!host.getAttribute("token")) await tokenNeeded(host);
+    const own = ownState(await host.service.own(), path, exercise);
+    if (!own) throw new Error("This exercise is not one of your assignments.");
+    return new HandIn(host, path, own);
+  }
+
+  /** Take over the element once its form has been made. */
+  begin() {
+    const { bar, form } = this.host;
+    form.tools.share.hidden = true;
+    bar.button.after(this.button);
+    bar.element.prepend(this.told);
+    this.#show();
+    this.resume();
+  }
+
+  /** Send again what the service has not confirmed. */
+  resume() {
+    const waiting = this.pending.get();
+    if (waiting) this.#send(waiting);
+    else this.refresh();
+  }
+
+  close() {
+    this.#isClosed = true;
+    this.#wake();
+    this.store.close();
+    this.channel.close();
+    document.removeEventListener("visibilitychange", this.#onVisible);
+    removeEventListener("online", this.#onOnline);
+    removeEventListener("pagehide", this.#onLeaving);
+  }
+
+  get mayPractise() {
+    return this.own.exercise.may_practise;
+  }
+
+  /** Ask the service for the state; without a connection, the last one is shown. */
+  async refresh() {
+    try {
+      const own = ownState(await this.host.service.own(), this.path, this.own.exercise.exercise);
+      if (own) this.own = own;
+    } catch {
+      return;
+    }
+    this.#show();
+  }
+
+  #show() {
+    const { course, assignment, exercise } = this.own;
+    const badge = h("span", { class: "badge", "data-state": assignment.state }, STATES[assignment.state]);
+    const extended = assignment.is_extended ? h("span", { class: "badge" }, "extended for you") : null;
+    this.status.replaceChildren(
+      h("p", {}, h("strong", {}, visible(assignment.title)), " ", badge, " ", extended ?? ""),
+      h("p", {}, datesInWords(course, assignment)),
+      h("p", { class: "quiet counts" }, `${attemptsInWords(assignment, exercise)} · ${pointsInWords(exercise)}`),
+    );
+    this.button.hidden = !this.host.hasAttribute("submit") || whyClosed(this.own) !== "";
+    const check = this.host.bar.button;
+    check.hidden = !this.mayPractise;
+    check.className = this.button.hidden ? "check" : "quiet-button";
+  }
+
+  /** Hand the answers in, after a confirmation if this is the last attempt. */
+  async submit() {
+    const { bar, answers } = this.host;
+    if (this.#isSending || bar.isBusy || this.host.hasAttribute("readonly")) return;
+    if (!Object.keys(answers).length) {
+      bar.hint("Nothing is filled in yet.");
+      return this.host.announce("Nothing is filled in yet.");
+    }
+    bar.isBusy = true;
+    await this.refresh();
+    bar.isBusy = false;
+    const closed = whyClosed(this.own);
+    if (closed) return this.#tell(closed);
+    const { exercise: { exercise, attempts_left: left } } = this.own;
+    const empty = this.host.exercise.parts.filter(({ id }) => !Object.hasOwn(answers, id)).map(({ title }) => title);
+    if (left === 1 && !(await lastAttempt(this.status, empty))) return undefined;
+    const feedback = /** @type {Api.FeedbackLevel | null} */ (this.host.getAttribute("feedback"));
+    const body = { exercise, answers, angle_unit: this.host.angleUnit, ...(feedback ? { feedback } : {}) };
+    const pending = { key: newKey(), body };
+    this.pending.set(pending);
+    return this.#send(pending);
+  }
+
+  /** @param {Front.Pending} pending */
+  async #send(pending) {
+    if (this.#isSending) return;
+    this.#setSending(true);
+    for (let tries = 0; !this.#isClosed; tries += 1) {
+      try {
+        const answer = await this.host.service.handIn(this.path, pending.key, pending.body);
+        this.pending.set(null);
+        await this.#handedIn(answer, pending.body);
+        break;
+      } catch (error) {
+        if (error.kind === "refused" || error.kind === undefined) {
+          await this.#refused(error);
+          break;
+        }
+        this.#tell(TRYING);
+        await this.#pause(pauseAfter(tries));
+      }
+    }
+    this.#setSending(false);
+  }
+
+  /** @param {boolean} isSending */
+  #setSending(isSending) {
+    this.#isSending = isSending;
+    if (isSending) this.button.setAttribute("aria-disabled", "true");
+    else this.button.removeAttribute("aria-disabled");
+  }
+
+  /** Wait, or until the browser is online again. @param {number} seconds */
+  #pause(seconds) {
+    return new Promise((done) => {
+      const waiting = setTimeout(done, 1000 * seconds);
+      this.#wake = () => {
+        clearTimeout(waiting);
+        done(undefined);
+      };
+    });
+  }
+
+  /** @param {Error & { status?: number }} error */
+  async #refused(error) {
+    this.#tell(`Not handed in: ${error.message}`);
+    if (error.status === 401) {
+      // With a new token, `resume` sends it again; a site whose tokens are all refused is not asked without end.
+      if (Date.now() - this.#askedAt > ASKED_AGAIN) this.#dispatch("token-needed", null);
+      this.#askedAt = Date.now();
+      return;
+    }
+    this.pending.set(null);
+    await this.refresh();
+  }
+
+  /** @param {Api.AttemptResponse} answer @param {Api.HandInRequest} body */
+  async #handedIn({ attempt, report }, { answers }) {
+    await this.refresh();
+    const { exercise } = this.own;
+    const name = exercise.attempts.some(({ id }) => id === attempt.id) ? attemptName(exercise, attempt.id) : "Points";
+    this.#tell(`Handed in. ${name}: ${attemptPoints(attempt, exercise)}.`);
+    this.channel.postMessage("handed in");
+    this.#dispatch("submitted", attempt);
+    // The report marks the cells only if they still have the answers that were handed in.
+    if (JSON.stringify(answers) === JSON.stringify(this.host.answers)) this.host.showReport(report);
+    this.#dispatch("graded", { ...report, answers, attempt });
+  }
+
+  /** @param {string} name @param {unknown} detail */
+  #dispatch(name, detail) {
+    this.host.dispatchEvent(new CustomEvent(name, { bubbles: true, composed: true, detail }));
+  }
+
+  /** @param {string} text */
+  #tell(text) {
+    this.told.textContent = visible(text);
+  }
+
+  /** Another tab has saved other answers: the student chooses. */
+  #changedElsewhere() {
+    const take = () => {
+      this.host.texts = this.store.load() ?? { unit: this.host.angleUnit, parts: {} };
+    };
+    const keep = () => {
+      this.store.keepMine();
+      this.host.edited();
+    };
+    offer(this.host.received, ELSEWHERE, { "Show those answers": take, "Keep these answers": keep });
+    this.host.announce(ELSEWHERE);
+  }
+}
+
+/**
+ * Ask the site for a token. When it sets one, the element begins again; if it does not, this throws an Error.
+ *
+ * @param {HTMLElement} host
+ * @returns {Promise<never>}
+ */
+function tokenNeeded(host) {
+  host.dispatchEvent(new CustomEvent("token-needed", { bubbles: true, composed: true }));
+  return new Promise((_, fail) => setTimeout(() => fail(new Error(TOKEN_NEEDED)), PATIENCE));
+}

@@ -1,0 +1,117 @@
+// The forms of the pages of courses. Each posts its fields as JSON to the route in its attribute data-post.
+
+import { h } from "../../shared/dom.js";
+import { failed, tell } from "../records/records.js";
+import { address, send } from "../tutor_service.js";
+
+/** @typedef {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} Field */
+
+/**
+ * Return the value of a field for JSON; null if the field is empty.
+ *
+ * @param {string} kind
+ * @param {string} text
+ */
+export function valueOf(kind, text) {
+  const trimmed = text.trim();
+  if (trimmed === "") return null;
+  if (kind === "number") return Number(trimmed);
+  if (kind === "words") return trimmed.split(/[\s,;]+/u).filter(Boolean);
+  if (kind === "list") return [text];
+  return kind === "text" ? trimmed : text;
+}
+
+/** @param {HTMLFormElement} form */
+function bodyOf(form) {
+  /** @type {Record<string, unknown>} */
+  const body = {};
+  /** @type {NodeListOf<Field>} */
+  const fields = form.querySelectorAll("[name][data-as]");
+  for (const field of fields) body[field.name] = valueOf(field.dataset.as ?? "", field.value);
+  for (const list of form.querySelectorAll("fieldset[data-list]")) body.exercises = exercisesOf(list);
+  return body;
+}
+
+/** @param {Element} list */
+function exercisesOf(list) {
+  const chosen = [...list.querySelectorAll(".exercise-row")].map((row) => {
+    const [exercise, points] = fieldsOf(row);
+    return { exercise: exercise.value, points: Number(points.value) };
+  });
+  return chosen.filter(({ exercise }) => exercise);
+}
+
+/** @param {Element} row @returns {[HTMLSelectElement, HTMLInputElement]} */
+function fieldsOf(row) {
+  const exercise = row.querySelector("select");
+  const points = row.querySelector("input");
+  if (!exercise || !points) throw new Error("The row has no fields.");
+  return [exercise, points];
+}
+
+/** @param {HTMLFormElement} form */
+async function post(form) {
+  const state = form.querySelector("[role=status]") ?? form.appendChild(h("p", { role: "status" }));
+  const button = form.querySelector("button[type=submit]");
+  if (!(state instanceof HTMLElement)) return;
+  const body = bodyOf(form);
+  button?.setAttribute("disabled", "");
+  try {
+    await send(form.dataset.post ?? "", body);
+    if (form.dataset.done) return tell(state, form.dataset.done);
+    if (form.dataset.then) location.assign(address(form.dataset.then + String(body.id)));
+    else location.reload();
+  } catch (error) {
+    failed(error, state);
+  } finally {
+    button?.removeAttribute("disabled");
+  }
+}
+
+/**
+ * Propose the points that the exercise has in the catalogue.
+ *
+ * @param {Event} event
+ */
+function proposePoints({ target }) {
+  if (!(target instanceof HTMLSelectElement) || !target.closest(".exercise-row")) return;
+  const [, points] = fieldsOf(/** @type {Element} */ (target.parentElement));
+  points.value = target.selectedOptions[0]?.dataset.points ?? "";
+}
+
+/** @param {Element} list */
+function growing(list) {
+  list.addEventListener("change", proposePoints);
+  const template = list.querySelector("template");
+  const button = list.querySelector("[data-add]");
+  button?.addEventListener("click", () => {
+    const row = template?.content.firstElementChild?.cloneNode(true);
+    if (!(row instanceof Element)) return;
+    button.parentElement?.before(row);
+    fieldsOf(row)[0].focus();
+  });
+}
+
+/** @param {HTMLInputElement} input */
+function filling(input) {
+  input.addEventListener("change", async () => {
+    const place = document.getElementById(input.dataset.fills ?? "");
+    const file = input.files?.[0];
+    if (file && place instanceof HTMLTextAreaElement) place.value = await file.text();
+  });
+}
+
+if (typeof document !== "undefined") {
+  /** @type {NodeListOf<HTMLFormElement>} */
+  const forms = document.querySelectorAll("form[data-post]");
+  for (const form of forms) {
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      post(form);
+    });
+  }
+  document.querySelectorAll("fieldset[data-list]").forEach(growing);
+  /** @type {NodeListOf<HTMLInputElement>} */
+  const files = document.querySelectorAll("input[data-fills]");
+  files.forEach(filling);
+}

@@ -1,0 +1,218 @@
+"""Backup, restore, doctor, and the data of one learner."""
+
+import json
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import insert
+from typer.testing import CliRunner, Result
+
+from service.attempts.learner_data import months_before
+from service.attempts.storage.database import in_transaction, open_database
+from service.attempts.storage.tables import attempts, outcomes, overrides
+from service.cli.program import program
+from service.contract.courses import NewAssignment, NewCourse, NewLearner
+from service.courses import roll
+from service.courses.assignments import add_assignment
+from service.server.installed import installed_app
+from service.settings import load_settings
+
+NOW = datetime.now(UTC)
+SECRET = "0123456789abcdef" * 4
+
+
+def run(*words: object) -> Result:
+    return CliRunner().invoke(program, list(map(str, words)))
+
+
+def record(connection: Any, learner: str, at: datetime, number: int) -> None:
+    values = {
+        "number": number, "id": f"{number:032x}", "exercise": "scara", "learner": learner,
+        "ordinal": 1, "at": at, "is_late": False, "worth": 1.0, "answers_digest": "",
+        "submission": '{"answers": {"table": "a1"}}', "report": '{"points": 1}', "version": "1",
+        "grader": "1", "points": 1.0, "max_points": 2.0, "outcome": 1, "owner": "",
+        "request_digest": "", "assignment": 1,
+    }  # fmt: skip
+    connection.execute(insert(attempts).values(values))
+
+
+@pytest.fixture
+def database(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A database with a course, in which ada's attempt is new and grace's is two years old."""
+    path = tmp_path / "attempts.db"
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(path))
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+
+    def fill(connection: Any) -> None:
+        roll.add_course(connection, NewCourse(id="robots", title="R", zone="Europe/Berlin"), NOW)
+        people = [
+            NewLearner(learner=each, name=each.title(), email=f"{each}@example.edu")
+            for each in ("ada", "grace", "emmy")
+        ]
+        roll.add_learners(connection, "robots", people)
+        fields = {"id": "hw", "title": "H", "exercises": [{"exercise": "scara", "points": 10}]}
+        add_assignment(connection, "robots", NewAssignment.model_validate(fields), {"scara"})
+        connection.execute(insert(outcomes).values(id=1, exercise="scara", digest="", content=""))
+        record(connection, "ada", NOW, 1)
+        record(connection, "grace", NOW - timedelta(days=730), 2)
+        given = {"attempt": 2, "points": 2.0, "reason": "x", "author": "y", "at": NOW}
+        connection.execute(insert(overrides).values(given))
+
+    engine = open_database(str(path))
+    in_transaction(engine, fill)
+    engine.dispose()
+    return path
+
+
+def learners(path: Path) -> list[str]:
+    with closing(sqlite3.connect(path)) as connection:
+        rows = connection.execute("SELECT learner FROM attempts ORDER BY number").fetchall()
+    return [learner for [learner] in rows]
+
+
+def test_a_backup_comes_back(database: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.db"
+    assert run("backup", copy).exit_code == 0
+    assert copy.stat().st_mode & 0o777 == 0o600
+    again = run("backup", copy)
+    assert (again.exit_code, "is there already" in again.output) == (2, True)
+    assert run("attempts", "forget", "ada", "--yes").exit_code == 0
+    assert learners(database) == ["grace"]
+    content = copy.read_bytes()
+    assert "--replace" in run("restore", copy).output
+    with closing(sqlite3.connect(database)) as service:
+        service.execute("SELECT * FROM attempts").fetchone()
+        refused = run("restore", copy, "--replace")
+        assert (refused.exit_code, "Stop the service" in refused.output) == (2, True)
+    assert run("restore", copy, "--replace").exit_code == 0
+    assert learners(database) == ["ada", "grace"]
+    assert learners(tmp_path / "attempts.db.before") == ["grace"]
+    assert database.stat().st_mode & 0o777 == 0o600
+    assert copy.read_bytes() == content
+    (tmp_path / "broken.db").write_bytes(content[:5000])
+    (tmp_path / "attempts.db.before").unlink()
+    assert run("restore", tmp_path / "broken.db", "--replace").exit_code == 2
+    assert learners(database) == ["ada", "grace"]
+
+
+def test_old_attempts_are_deleted_and_no_others(
+    database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert run("attempts", "expire").exit_code == 2
+    monkeypatch.setenv("DH_GRADER_KEEP_MONTHS", "12")
+    assert run("attempts", "expire").output.startswith("1 attempts are from before")
+    assert learners(database) == ["ada", "grace"]
+    assert run("attempts", "expire", "--apply").exit_code == 0
+    assert learners(database) == ["ada"]
+    assert months_before(datetime(2026, 3, 31, 8, tzinfo=UTC), 1).isoformat()[:10] == "2026-02-28"
+    assert months_before(datetime(2026, 1, 5, 8, tzinfo=UTC), 13).isoformat()[:10] == "2024-12-05"
+
+
+def test_the_service_deletes_old_attempts_at_its_start(
+    database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed_app(load_settings())
+    assert learners(database) == ["ada", "grace"]
+    monkeypatch.setenv("DH_GRADER_KEEP_MONTHS", "12")
+    installed_app(load_settings())
+    assert learners(database) == ["ada"]
+
+
+def test_everything_known_of_a_learner_is_exported_and_forgotten(database: Path) -> None:
+    found = json.loads(run("learners", "export", "grace").output)
+    assert found["courses"] == [
+        {"course": "robots", "learner": "grace", "name": "Grace", "email": "grace@example.edu"}
+    ]
+    [attempt] = found["attempts"]
+    assert attempt["submission"] == {"answers": {"table": "a1"}}
+    assert (attempt["course"], attempt["in_assignment"]) == ("robots", "hw")
+    assert [each["reason"] for each in attempt["overrides"]] == ["x"]
+    assert "ada" not in json.dumps(found)
+    # Emmy is in the course, and has handed nothing in.
+    for learner in ("grace", "emmy"):
+        assert run("attempts", "forget", learner, "--yes").exit_code == 0
+        assert run("learners", "export", learner).exit_code == 2
+        assert learner.encode() not in database.read_bytes()
+
+
+Spoil = Callable[[Path, pytest.MonkeyPatch], None]
+
+
+def unset_secret(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run("keys", "create", "Ada", "--scope", "tutor")
+    monkeypatch.delenv("DH_GRADER_SECRET")
+
+
+def other_secret(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run("keys", "create", "Ada", "--scope", "tutor")
+    monkeypatch.setenv("DH_GRADER_SECRET", "f" * 64)
+
+
+def only_course_site(_: Path, __: pytest.MonkeyPatch) -> None:
+    run("keys", "create", "Site", "--scope", "record")
+
+
+def readable(database: Path, _: pytest.MonkeyPatch) -> None:
+    database.chmod(0o644)
+
+
+def damaged(database: Path, _: pytest.MonkeyPatch) -> None:
+    database.write_bytes(b"no database" * 1000)
+
+
+def typo(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DH_GRADER_KEEP_MONTH", "12")
+
+
+def open_to_all(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DH_GRADER_HOST", "0.0.0.0")
+
+
+def no_folder(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", "/nowhere/attempts.db")
+
+
+def no_exercises(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(database.parent / "nothing"))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (unset_secret, "no secret"),
+        (other_secret, "not the secret"),
+        (only_course_site, "no tutor can sign in"),
+        (readable, "chmod 600"),
+        (damaged, "database"),
+        (typo, "did you mean DH_GRADER_KEEP_MONTHS?"),
+        (open_to_all, "there are no keys"),
+        (no_folder, "is no folder"),
+        (no_exercises, "exercises"),
+    ],
+)
+def test_the_doctor_says_what_is_wrong(
+    database: Path, monkeypatch: pytest.MonkeyPatch, spoil: Spoil, said: str
+) -> None:
+    spoil(database, monkeypatch)
+    result = run("doctor")
+    wrong = [line for line in result.output.splitlines() if line.startswith("WRONG")]
+    assert result.exit_code == 1
+    assert any(said in line for line in wrong), result.output
+    assert SECRET not in result.output
+
+
+def test_the_doctor_finds_nothing_wrong(
+    database: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    healthy = run("doctor")
+    assert healthy.exit_code == 0, healthy.output
+    assert "its tables are those of this version" in healthy.output
+    assert "1 courses" in healthy.output
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "new.db"))
+    assert run("doctor").exit_code == 0
+    assert not (tmp_path / "new.db").exists()

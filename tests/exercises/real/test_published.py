@@ -1,0 +1,120 @@
+"""The tables of the real robots against other published tables of the same robots.
+
+Frames, signs and home configurations differ between sources, but not the distances and angles
+between neighbouring joint axes: |a| and α (modulo 180°) of two axes, and |d| along an axis between
+the common normals to its neighbours. Each table below was typed from its source, not from the
+exercise. The first and the last row have further freedom in d, α and θ.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from service.catalogue import Exercise
+from tests.shipped import REAL_ROBOTS, shipped_exercises
+
+Numbers = NDArray[np.float64]
+
+
+class Published(NamedTuple):
+    """A standard table: lengths in metres, α in degrees."""
+
+    source: str
+    a: Sequence[float]
+    alpha: Sequence[float]
+    d: Sequence[float]
+
+
+def universal_robots(d1: float, a2: float, a3: float, d4: float, d5: float, d6: float) -> Published:
+    """Return the table of all arms of Universal Robots, with lengths from a configuration file."""
+    return Published(
+        "UniversalRobots/Universal_Robots_ROS2_Description",
+        (0, a2, a3, 0, 0, 0), (90, 0, 0, 90, -90, 0), (d1, 0, 0, d4, d5, d6),
+    )  # fmt: skip
+
+
+PUMA = Published(
+    "Paul 1981, with the lengths of Corke 1994",
+    (0, 0.4318, 0.0203, 0, 0, 0), (-90, 0, 90, -90, 90, 0), (0, 0, 0.15005, 0.4318, 0, 0),
+)  # fmt: skip
+PUBLISHED: Mapping[str, Published] = {
+    "ur3e": universal_robots(0.15185, 0.24355, 0.2132, 0.13105, 0.08535, 0.0921),
+    "ur5e": universal_robots(0.1625, 0.425, 0.3922, 0.1333, 0.0997, 0.0996),
+    "ur10e": universal_robots(0.1807, 0.6127, 0.57155, 0.17415, 0.11985, 0.11655),
+    "ur16e": universal_robots(0.1807, 0.4784, 0.36, 0.17415, 0.11985, 0.11655),
+    "ur20": universal_robots(0.2363, 0.862, 0.7287, 0.201, 0.1593, 0.1543),
+    "puma-560": PUMA,
+    "franka-research-3": Published(
+        "Robotics Toolbox, models/DH/Panda.py",
+        (0, 0, 0.0825, 0.0825, 0, 0.088, 0), (90, 90, 90, 90, 90, 90, 0),
+        (0.333, 0, 0.316, 0, 0.384, 0, 0.107),
+    ),
+    "kuka-lbr-iiwa-7": Published(
+        "LBR iiwa 14 R820 of ARTE, with the lengths of the R800",
+        (0,) * 7, (-90, 90, -90, 90, -90, 90, 0), (0.34, 0, 0.4, 0, 0.4, 0, 0.126),
+    ),
+    "kinova-gen3": Published(
+        "Kinova Gen3 user guide",
+        (0,) * 7, (90,) * 6 + (180,), (0.2848, 0.0118, 0.4208, 0.0128, 0.3143, 0, 0.1674),
+    ),
+    "xarm6": Published(
+        "UFACTORY manual, a2 from the sides of its triangle",
+        (0, (0.2845**2 + 0.0535**2) ** 0.5, 0.0775, 0, 0.076, 0),
+        (-90, 0, -90, 90, -90, 0), (0.267, 0, 0, 0.3425, 0, 0.097),
+    ),
+    "abb-irb-120": Published(
+        "pybotics, predefined_models.py",
+        (0, 0.27, 0.07, 0, 0, 0), (90, 0, 90, 90, 90, 0), (0.29, 0, 0, 0.302, 0, 0.072),
+    ),
+    "abb-irb-140": Published(
+        "Robotics Toolbox, models/DH/IRB140.py",
+        (0.07, 0.36, 0, 0, 0, 0), (-90, 0, -90, 90, -90, 0), (0.352, 0, 0, 0.38, 0, 0.065),
+    ),
+    "kuka-kr-5-arc": Published(
+        "Robotics Toolbox, models/DH/KR5.py",
+        (0.18, 0.6, 0.12, 0, 0, 0), (-90, 0, 90, -90, 90, 180), (0.4, 0, 0, -0.62, 0, -0.115),
+    ),
+    "sawyer": Published(
+        "Robotics Toolbox, models/DH/Sawyer.py",
+        (0.081, 0, 0, 0, 0, 0, 0), (-90,) * 6 + (0,),
+        (0.317, 0.1925, 0.4, 0.1685, 0.4, 0.1363, 0.13375),
+    ),
+    "adept-cobra-600": Published(
+        "Robotics Toolbox, models/DH/Cobra600.py",
+        (0.325, 0.275, 0, 0), (0, 180, 0, 0), (0.387, 0, 0, 0),
+    ),
+}  # fmt: skip
+
+
+def mechanism(a: Numbers, alpha: Numbers, d: Numbers) -> Numbers:
+    """Return |a|, α as an angle of 0 to 90°, and |d| of each row, ``(rows, 3)``."""
+    angle = np.abs((np.rad2deg(alpha) + 90) % 180 - 90)
+    return np.stack([np.abs(a), angle, np.abs(d)], axis=1)
+
+
+def written(exercise: Exercise) -> Numbers:
+    """Return the mechanism of an exercise's standard table, with all joint variables 0."""
+    values = {v.name: np.zeros(1) for v in exercise.variables}
+    robot = exercise.robot
+    rows = robot.tables[robot.convention].values(values, 1)[..., 0]
+    a, alpha, d = rows[:, 0], rows[:, 1], rows[:, 2]
+    if robot.convention.value == "modified":
+        # Row i has a and α of the link before it; an additional row has the tool's.
+        a, alpha = np.append(a[1:], 0.0), np.append(alpha[1:], 0.0)
+        if len(rows) > len(robot.joints):
+            a, alpha, d = a[:-1], alpha[:-1], np.append(d[:-2], d[-2] + d[-1])
+    return mechanism(a, alpha, d)
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_a_robot_has_the_axes_that_another_source_gives_it(name: str) -> None:
+    other = PUBLISHED[name]
+    expected = mechanism(np.array(other.a), np.deg2rad(other.alpha), np.array(other.d))
+    np.testing.assert_allclose(written(shipped_exercises()[name]), expected, rtol=0, atol=1e-5)
+
+
+def test_only_real_robots_are_compared() -> None:
+    assert set(PUBLISHED) <= set(REAL_ROBOTS)
