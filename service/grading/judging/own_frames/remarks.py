@@ -31,9 +31,9 @@ def remarks_on(
     """
     error = np.abs(relative_poses - np.eye(4)).max(axis=1)
     error[:, :3, 3] /= exercise.length_scale
-    departs: NDArray[np.bool_] = np.asarray(error.max(axis=(1, 2)) > SAME_POSE)
+    departs = error.max(axis=(1, 2)) > SAME_POSE
     if rows_right is not None:
-        departs = _chosen(departs, rows_right.all(axis=1))
+        departs = _chosen(departs, rows_right)
     findings = []
     joints = compress(exercise.robot.joints, departs)
     for pose, joint in zip(relative_poses[departs], joints, strict=True):
@@ -50,11 +50,11 @@ def remarks_on(
     return tuple(findings)
 
 
-def _chosen(departs: NDArray[np.bool_], right: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _chosen(departs: NDArray[np.bool_], rows_right: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the frames that differ in runs of frames between right rows."""
     runs = np.cumsum(~departs)
-    implied = set(runs[departs & ~right].tolist())
-    return departs & ~np.isin(runs, list(implied))
+    implied = runs[departs & ~rows_right.all(axis=1)]
+    return departs & ~np.isin(runs, implied)
 
 
 def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -> list[str]:
