@@ -17,7 +17,7 @@ PART: Final = "part"
 # The sentence of each code, as it follows "−0.5: ".
 _SENTENCES: Final = {
     CELLS: "{cells} in row {row}",
-    WHOLE: "one mistake in the whole answer",
+    WHOLE: "mistakes that run through the answer, each counted once",
     OUTSIDE: "an extra row, or rows that do not lead to the end effector",
     NO_JOINT_MOVES: "no joint moves this answer",
     ALL_OR_NOTHING: "only a right answer earns points here",

@@ -248,7 +248,9 @@ def judged_by_intended(
     """Judge the table by the ``intended`` one, ``(rows, 4, SAMPLES)``; all roles have rows."""
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
-    return _judged_by(nearest, roles, convention, grading)
+    judgement = _judged_by(nearest, roles, convention, grading)
+    # The rows that the slip makes wrong do not imply the frames: the intended rows do.
+    return replace(judgement, findings=remarks_on(frames, convention, grading.exercise))
 
 
 def _judged_by(
@@ -269,7 +271,12 @@ def _judged_by(
         cell_matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         cell_matches = _matches_of(judged, grading)
-    findings = remarks_on(nearest.frames, convention, grading.exercise)
+    findings = remarks_on(
+        nearest.frames,
+        convention,
+        grading.exercise,
+        _rows_right(judged, cell_matches, convention),
+    )
     handed_in = [row.row is not None for row in judged]
     if not all(handed_in) and (cell_matches[handed_in] < Match.ROUNDED).any():
         # If a row is missing, a wrong row may imply any frames.
@@ -283,6 +290,19 @@ def _judged_by(
         # The search tolerates rounding, so it may have found nothing wrong.
         lost=nearest.lost or np.inf,
     )
+
+
+def _rows_right(
+    judged: Sequence[JudgedRow], cell_matches: NDArray[np.int_], convention: Convention
+) -> NDArray[np.bool_]:
+    """Return, for each joint axis, if the rows before and after it are right, ``(joints, 2)``.
+
+    An end of the table is right.
+    """
+    right = np.pad((cell_matches >= Match.ROUNDED).all(axis=1), 1, constant_values=True)
+    places = np.array([i for i, row in enumerate(judged) if row.joint], dtype=np.int_)
+    before = places + (convention is not Convention.STANDARD)
+    return np.stack([right[before], right[before + 1]], axis=1)
 
 
 def _is_as_written(nearest: NearestTable) -> bool:

@@ -90,3 +90,14 @@ def test_the_statement_is_not_cut(visit: Opening, service: str) -> None:
     last = page.locator(".symbols dd").last.bounding_box()
     assert last is not None
     assert last["y"] + last["height"] <= 800
+
+
+def test_forced_colours_show_which_matrix_is_open(visit: Opening, service: str) -> None:
+    page = visit(forced_colors="active").page
+    open_exercise(page, service, "planar-rr")
+    lines = (
+        part(page, 1)
+        .get_by_role("tab")
+        .evaluate_all("tabs => tabs.map(each => getComputedStyle(each).borderBottomColor)")
+    )
+    assert len(lines) == len(set(lines)) == 2

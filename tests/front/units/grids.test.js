@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { target, undoKey } from "../../../service/web/static/shared/keyboard.js";
 import { blockOf, placedFrom } from "../../../service/web/static/shared/pasted_block.js";
-import { cellName } from "../../../service/web/static/student/messages.js";
+import { cellsInWords } from "../../../service/web/static/student/report/places.js";
 import { cellsOf } from "../../../service/web/static/student/handin/answer_cells.js";
 
 test("a block from a spreadsheet has rows and columns", () => {
@@ -93,5 +93,5 @@ test("an answer that does not fit its cells fills none", () => {
 });
 
 test("cells are named as the student sees them", () => {
-  assert.deepEqual(["alpha", "d", "3"].map(cellName), ["α", "d", "column 3"]);
+  assert.deepEqual(["alpha", "d", "3"].map((label) => cellsInWords([label])), ["α", "d", "column 3"]);
 });

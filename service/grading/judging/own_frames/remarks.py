@@ -4,6 +4,7 @@ from itertools import compress
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from service.catalogue import Exercise, Joint
 from service.grading.feedback import Finding
@@ -16,16 +17,23 @@ OWN_FRAME_CHOICE: Final = "own_frame_choice"
 
 
 def remarks_on(
-    relative_poses: Matrices, convention: Convention, exercise: Exercise
+    relative_poses: Matrices,
+    convention: Convention,
+    exercise: Exercise,
+    rows_right: NDArray[np.bool_] | None = None,
 ) -> tuple[Finding, ...]:
     """Return one finding for each frame that differs from the reference's.
 
     ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes in the
-    reference's.
+    reference's. ``rows_right`` ``(joints, 2)`` is true if the row before an axis is right, and the
+    row after it. Neighbouring frames that differ are one choice; there are no findings on a choice
+    that a wrong row implies.
     """
     error = np.abs(relative_poses - np.eye(4)).max(axis=1)
     error[:, :3, 3] /= exercise.length_scale
     departs = error.max(axis=(1, 2)) > SAME_POSE
+    if rows_right is not None:
+        departs = _chosen(departs, rows_right)
     findings = []
     joints = compress(exercise.robot.joints, departs)
     for pose, joint in zip(relative_poses[departs], joints, strict=True):
@@ -40,6 +48,13 @@ def remarks_on(
                 )
             )
     return tuple(findings)
+
+
+def _chosen(departs: NDArray[np.bool_], rows_right: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the frames that differ in runs of frames between right rows."""
+    runs = np.cumsum(~departs)
+    implied = runs[departs & ~rows_right.all(axis=1)]
+    return departs & ~np.isin(runs, implied)
 
 
 def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -> list[str]:

@@ -3,9 +3,8 @@
 import { h, visible } from "../shared/dom.js";
 import { SIGNS } from "../shared/cell.js";
 import { typesetMessage } from "../typeset/names.js";
+import { placesInWords } from "./report/places.js";
 
-/** @type {Record<string, string>} */
-const NAMES = { alpha: "α", theta: "θ" };
 const YOURS = "yours";
 const EXPECTED = "expected";
 
@@ -19,9 +18,11 @@ const EXPECTED = "expected";
  *   repair?: ((suggestion: string) => HTMLElement) | null,
  *   action?: HTMLElement | null,
  *   symbols?: Set<string>,
- * }} [options] `symbols` are the names that the exercise declares
+ *   rows?: Api.RowReport[],
+ * }} [options] `symbols` are the names that the exercise declares; `rows` those of the part
  */
-export function item(feedback, { place = "", verdict = "incorrect", repair = null, action = null, symbols } = {}) {
+export function item(feedback, options = {}) {
+  const { place = "", verdict = "incorrect", repair = null, action = null, symbols, rows } = options;
   const maths = (/** @type {string} */ each) => typesetMessage(each, symbols);
   const isError = feedback.severity === "error";
   const kind = isError ? verdict : "note";
@@ -31,7 +32,7 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
     isError ? h("span", { "aria-hidden": "true" }, SIGNS[verdict]) : feedback.severity,
     isError ? h("span", { class: "aloud" }, verdict) : null,
   );
-  const where = [place, feedback.places ? placesInWords(feedback.places) : ""].filter(Boolean).join(": ");
+  const where = [place, feedback.places ? placesInWords(feedback.places, rows) : ""].filter(Boolean).join(": ");
   const text = h("p", {}, where ? h("strong", {}, ...maths(where), ": ") : null, ...maths(feedback.message));
   const correction = feedback.correction;
   if (correction) {
@@ -42,38 +43,18 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
         : ["It should be ", h("code", {}, visible(correction.text)), "."]),
     );
   }
-  if (feedback.values) text.append(" ", h("span", { class: "quiet" }, ...maths(counterexample(feedback.values))));
+  const example = feedback.values ? counterexample(feedback.values) : "";
+  if (example) text.append(" ", h("span", { class: "quiet" }, ...maths(example)));
   if (feedback.suggestion && repair) text.append(" ", repair(feedback.suggestion));
   if (action) text.append(" ", action);
   return h("li", {}, badge, text);
 }
 
-/**
- * Return places in words, such as "row 1 d, θ; row 2".
- *
- * @param {Api.Place[]} places
- */
-function placesInWords(places) {
-  const rows = new Map();
-  for (const { row, cell } of places) {
-    if (!rows.has(row)) rows.set(row, []);
-    if (cell !== undefined) rows.get(row).push(cellName(cell));
-  }
-  return [...rows].map(([row, cells]) => `row ${row}${cells.length ? ` ${cells.join(", ")}` : ""}`).join("; ");
-}
-
-/**
- * Return the name of a cell with this label in a report.
- *
- * @param {string} label
- */
-export function cellName(label) {
-  return NAMES[label] ?? (/^\d+$/.test(label) ? `column ${label}` : label);
-}
-
 /** @param {Record<string, string | number>} values */
 function counterexample(values) {
   const given = Object.entries(values).filter(([name]) => name !== YOURS && name !== EXPECTED);
+  // "with l2 = 0.4, yours gives 0.4" tells nothing.
+  if (!(EXPECTED in values) && given.length === 1 && given[0][1] === values[YOURS]) return "";
   const told = [];
   if (given.length) told.push(`with ${given.map(([name, value]) => `${name} = ${value}`).join(", ")}`);
   if (YOURS in values) told.push(`yours gives ${values[YOURS]}`);

@@ -3,8 +3,9 @@
 import { h, points, visible } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
 import { html } from "../shared/markup.js";
-import { lostItems } from "./lost_points.js";
-import { cellName, item } from "./messages.js";
+import { lostItems } from "./report/lost_points.js";
+import { item } from "./messages.js";
+import { cellsInWords } from "./report/places.js";
 import { PartGrids } from "./form/part_grids.js";
 import { pasteBox } from "./form/paste_box.js";
 import { Pasting } from "./form/pasting.js";
@@ -292,7 +293,7 @@ export class PartView {
     }
     const more = [...rows.values()].flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]);
     const items = [...report.feedback, ...more].map((each) =>
-      this.#item(each, this.#at(each), { verdict: report.verdict })
+      this.#item(each, this.#at(each), { verdict: report.verdict, rows: report.rows })
     );
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
@@ -336,12 +337,21 @@ export class PartView {
   #items(row, view) {
     const { symbols } = this;
     const own = row.feedback.map((each) => item(each, { verdict: row.verdict, symbols }));
-    const ofCells = row.cells.flatMap((cell) => {
-      const target = view.cells.find((each) => each.place.label === cell.label);
-      const repair = target ? (/** @type {string} */ suggestion) => target.repair(suggestion) : null;
-      const place = view.cells.length > 1 ? cellName(cell.label) : "";
-      const cells = target ? [target] : [];
-      return cell.feedback.map((each) => this.#item(each, cells, { place, verdict: cell.verdict, repair }));
+    /** @type {Map<string, [Api.Feedback, Api.CellReport[]]>} */
+    const told = new Map();
+    for (const cell of row.cells) {
+      for (const each of cell.feedback) {
+        // A suggestion is the repaired text of one cell.
+        const key = JSON.stringify([cell.verdict, { ...each, span: null }, each.suggestion ? cell.label : ""]);
+        told.set(key, [each, [...(told.get(key)?.[1] ?? []), cell]]);
+      }
+    }
+    const ofCells = [...told.values()].map(([each, reports]) => {
+      const labels = reports.map(({ label }) => label);
+      const cells = view.cells.filter(({ place }) => labels.includes(place.label));
+      const repair = cells.length === 1 ? (/** @type {string} */ suggestion) => cells[0].repair(suggestion) : null;
+      const place = view.cells.length > 1 ? cellsInWords(labels) : "";
+      return this.#item(each, cells, { place, verdict: reports[0].verdict, repair });
     });
     return [...own, ...ofCells];
   }

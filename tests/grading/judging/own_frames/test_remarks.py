@@ -75,3 +75,42 @@ def test_a_table_of_zeros_gets_no_remarks_on_frames(catalogue: Mapping[str, Exer
     codes = {message.code for message in report.feedback}
     assert "no_joint_variable" in codes
     assert "own_frame_choice" not in codes
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        # The unknown d1 would move origins 2 and 3; with d4 = 0 this is the nearest valid table.
+        (
+            ("a1", "0", "0", "q1"),
+            ("a2", "180deg", "d1", "q2"),
+            ("0", "0", "d3", "0"),
+            ("0", "0", "0", "q4"),
+        ),
+        # Origins 1 and 2 are moved by 0.3 in row 1, and nothing moves them back.
+        (
+            ("a1", "0", "0.3", "q1"),
+            ("a2", "180deg", "0", "q2"),
+            ("0", "0", "d3", "0"),
+            ("0", "0", "d4", "q4"),
+        ),
+    ],
+    ids=["an unknown symbol", "a shift that is not undone"],
+)
+def test_a_choice_that_a_wrong_row_implies_is_not_called_valid(
+    rows: tuple[Row, ...], catalogue: Mapping[str, Exercise]
+) -> None:
+    report = graded_table(catalogue["scara"], rows)
+    assert not full_marks(report)
+    assert "own_frame_choice" not in {message.code for message in report.feedback}
+
+
+def test_a_choice_between_right_rows_is_named_beside_a_wrong_row(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    rows = [*DEPARTURES[3][2][:5], ("0", "90deg", "d6", "theta6")]
+    report = graded_table(catalogue["stanford-arm"], rows)
+    assert not full_marks(report)
+    assert [m.message for m in report.feedback if m.code == "own_frame_choice"] == [
+        DEPARTURES[3][1]
+    ]

@@ -38,8 +38,10 @@ export class ReadingLine {
   /** @param {Front.PartCell} cell */
   #show(cell, aloud = false) {
     const reading = cell.text.trim() ? cell.reading : null;
-    this.element.classList.toggle("unread", Boolean(reading?.error));
-    if (!reading) return this.element.replaceChildren(HELP);
+    const isTold = cell.messages.length > 0;
+    this.element.classList.toggle("unread", Boolean(reading?.error) && !isTold);
+    // The report below the row says why the cell is not read.
+    if (!reading || (reading.error && isTold)) return this.element.replaceChildren(HELP);
     const name = h("strong", {}, ...typeset(visible(`${cell.place.spoken || this.title}: `)));
     if (reading.error) {
       const { suggestion, message: why } = reading.error;

@@ -2,7 +2,7 @@
 
 import { h, points, visible } from "../../shared/dom.js";
 import { cellsOf } from "../../student/handin/answer_cells.js";
-import { lostItems } from "../../student/lost_points.js";
+import { lostItems } from "../../student/report/lost_points.js";
 import { item } from "../../student/messages.js";
 import { PartView } from "../../student/part_view.js";
 import { Previewer } from "../../student/previewer.js";

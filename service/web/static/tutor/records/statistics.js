@@ -4,7 +4,7 @@ import { byId, h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
 import { pair } from "../../shared/pasted_block.js";
 import { layoutOf } from "../../student/kinds.js";
-import { cellName } from "../../student/messages.js";
+import { cellsInWords } from "../../student/report/places.js";
 import { count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
 import { regradeForm } from "./regrade.js";
 import { address, get } from "../tutor_service.js";
@@ -70,7 +70,7 @@ const titleOf = (part) => visible(names.get(part)?.title ?? part);
 /** @param {string} part @param {string} label */
 const rowName = (part, label) => visible(names.get(part)?.rows.get(label) || label);
 /** @param {string} part @param {string} label */
-const columnName = (part, label) => visible(names.get(part)?.columns.get(label) ?? cellName(label));
+const columnName = (part, label) => visible(names.get(part)?.columns.get(label) ?? cellsInWords([label]));
 
 /** @param {Api.ExerciseStatistics} statistics */
 function draw({ attempts, learners, parts, misconceptions, identical }) {

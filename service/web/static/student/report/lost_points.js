@@ -1,7 +1,8 @@
 // The points that a part has lost, and where, as list items.
 
-import { h, number } from "../shared/dom.js";
-import { typesetMessage } from "../typeset/names.js";
+import { h, number } from "../../shared/dom.js";
+import { typesetMessage } from "../../typeset/names.js";
+import { matrixOf } from "./places.js";
 
 // A message of the report says this already.
 const NOTHING_READ = new Set(["no_answer", "not_read"]);
@@ -15,11 +16,29 @@ const NOTHING_READ = new Set(["no_answer", "not_read"]);
  */
 export function lostItems({ lost = [], little_worth: little }, symbols) {
   const told = lost.filter(({ code }) => !NOTHING_READ.has(code));
-  const places = told.length === 1 ? told[0].message : told.map(lostAt).join("; ");
+  const entries = byMatrix(told);
+  const places = entries.length === 1 ? entries[0].message : entries.map(lostAt).join("; ");
   return [
     ...(told.length ? [note(`−${number(sum(told))}`, places, symbols)] : []),
     ...(little ? [note("info", little.message, symbols)] : []),
   ];
+}
+
+/**
+ * Return one entry for each matrix in place of those of its rows.
+ *
+ * @param {Api.LostPoints[]} lost
+ */
+function byMatrix(lost) {
+  /** @type {Map<string, Api.LostPoints>} */
+  const found = new Map();
+  lost.forEach((each, i) => {
+    const matrix = each.row ? matrixOf(each.row) : null;
+    const key = matrix ?? `${i}`;
+    const before = found.get(key)?.points ?? 0;
+    found.set(key, matrix ? { ...each, points: before + each.points, message: matrix } : each);
+  });
+  return [...found.values()];
 }
 
 /** @param {Api.LostPoints} lost */

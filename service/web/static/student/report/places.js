@@ -1,0 +1,71 @@
+// The places of a message in words.
+
+/** @type {Record<string, string>} */
+const NAMES = { alpha: "α", theta: "θ" };
+// The label of a row of a matrix in a list of matrices, such as A2.1.
+const OF_MATRIX = /^(?<matrix>.+)\.(?<row>\d+)$/;
+
+/**
+ * Return places in words, such as "row 1 d, θ; rows 2, 3", "A2 rows 1, 3 columns 1, 2" or "A3". If the places include
+ * all cells of a row, or all rows of a matrix but the last, only the row or the matrix is named.
+ *
+ * @param {Api.Place[]} places
+ * @param {Api.RowReport[]} [rows] of the part
+ */
+export function placesInWords(places, rows = []) {
+  const sizes = new Map(rows.map(({ label, cells }) => [label, cells.length]));
+  /** @type {Map<string, string[]>} */
+  const named = new Map();
+  for (const { row, cell } of places) {
+    named.set(row, [...(named.get(row) ?? []), ...(cell === undefined ? [] : [cell])]);
+  }
+  /** @type {Map<string, string[]>} */
+  const alike = new Map();
+  for (const [label, cells] of named) {
+    const { matrix = "" } = OF_MATRIX.exec(label)?.groups ?? {};
+    const key = JSON.stringify([matrix, cells.length > 1 && cells.length === sizes.get(label) ? [] : cells]);
+    alike.set(key, [...(alike.get(key) ?? []), label]);
+  }
+  return [...alike].map(([key, labels]) => inWords(JSON.parse(key), labels, sizes)).join("; ");
+}
+
+/** @param {[string, string[]]} place @param {string[]} labels @param {Map<string, number>} sizes */
+function inWords([matrix, cells], labels, sizes) {
+  if (!matrix) return `${rowsInWords(labels)}${columns(cells)}`;
+  if (!cells.length && isWhole(matrix, labels, [...sizes.keys()])) return matrix;
+  return `${matrix} ${rowsInWords(labels.map((label) => label.slice(matrix.length + 1)))}${columns(cells)}`;
+}
+
+/** @param {string} matrix @param {string[]} labels @param {string[]} all */
+function isWhole(matrix, labels, all) {
+  return labels.length > 1 && labels.length >= all.filter((label) => matrixOf(label) === matrix).length - 1;
+}
+
+/** @param {string[]} labels */
+function rowsInWords(labels) {
+  return `row${labels.length > 1 ? "s" : ""} ${labels.join(", ")}`;
+}
+
+/** @param {string[]} labels */
+function columns(labels) {
+  return labels.length ? ` ${cellsInWords(labels)}` : "";
+}
+
+/**
+ * Return the cells of a row with these labels in words, such as "a, α" or "columns 1, 2".
+ *
+ * @param {string[]} labels
+ */
+export function cellsInWords(labels) {
+  const noun = /^\d+$/.test(labels[0]) ? `column${labels.length > 1 ? "s" : ""} ` : "";
+  return `${noun}${labels.map((label) => NAMES[label] ?? label).join(", ")}`;
+}
+
+/**
+ * Return the matrix that a row belongs to; null for a row of a table or of a single matrix.
+ *
+ * @param {string} label
+ */
+export function matrixOf(label) {
+  return OF_MATRIX.exec(label)?.groups?.matrix ?? null;
+}
