@@ -4,7 +4,7 @@ from tests.attack.hostile import Case, Found, Reading, group, groups, sample
 
 
 def test_hostile_texts_grids_and_requests() -> None:
-    found = sample(250, "suite")
+    found = sample(250, "hostile")
     assert found.escaped == []
     assert found.differing == []
     kinds = {name.split()[0] for name in found.outcomes}

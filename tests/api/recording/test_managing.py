@@ -140,7 +140,7 @@ def test_a_learner_is_deleted_only_with_apply(
 ) -> None:
     for learner in ("ada-4711", "grace"):
         recorded(store, catalogue["scara"], learner, NO_TWIST)
-    counts = {"attempts": 1, "earlier_reports": 0, "overrides": 0}
+    counts = {"attempts": 1, "earlier_reports": 0, "overrides": 0, "courses": 0}
     told = tutor.post("/v1/learners/forget", learner="ada-4711")
     assert told == {"learner": "ada-4711", "deleted": False, **counts}
     assert len(tutor.ask("GET", "/v1/attempts").json()["attempts"]) == 2
