@@ -89,7 +89,7 @@ def test_without_scripts_the_catalogue_is_a_plain_list(visit: Opening, service: 
     page = opened.page
     page.goto(service)
     expect(page.get_by_role("search")).to_be_hidden()
-    expect(page.locator(".exercises > li:visible")).to_have_count(24)
+    expect(page.locator(".exercises > li:visible")).to_have_count(50)
     page.get_by_role("link", name="Planar RR arm", exact=True).click()
     expect(page.get_by_text("Source: MEAM 520")).to_be_visible()
     page.get_by_role("link", name="Next exercise: Planar RRR arm and its task space").click()

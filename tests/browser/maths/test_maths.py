@@ -11,7 +11,7 @@ from tests.browser.steps import cells, open_exercise
 
 PLAIN = re.compile(
     r"(?<![A-Za-z])(?:alpha|beta|gamma|theta|phi|psi|omega)(?![a-z])"
-    r"|[A-Za-z]_\w|(?<![A-Za-z0-9.])[A-Za-z][0-9](?![A-Za-z0-9])|\{\w\}|[$^θαφ]|```"
+    r"|(?<![A-Za-z0-9])[A-Za-z]_\w(?!\w)|(?<![A-Za-z0-9.])[A-Za-z][0-9](?![A-Za-z0-9])|\{\w\}|[$^θαφ]|```"
 )
 # The texts of the element outside of formulas and code; what only screen readers read is spoken.
 TEXTS = """() => {
