@@ -23,7 +23,7 @@ COMMANDS: Final = {
     "keys": "API keys of the service: create, list, revoke.",
     "learners": "Learners: export all that is known of one.",
     "backup": "Copy the database to a file, also while the service runs.",
-    "restore": "Put a backup in the place of the database.",
+    "restore": "Put a backup in the place of the database, while no service runs.",
     "doctor": "Check this installation, and say how to mend it.",
     "bundle": "Write a zip file for a grading platform.",
 }
@@ -31,13 +31,19 @@ COMMANDS: Final = {
 _OPERATIONS: Final = {"learners", "backup", "restore", "doctor"}
 
 
+def commands_of(name: str | None) -> typer.Typer:
+    """Return the commands in the file of a name of ``COMMANDS``."""
+    room = "operations" if name in _OPERATIONS else "commands"
+    found: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
+    return found
+
+
 class _Commands(TyperGroup):
     """Loads and runs commands; prints the reason of an error and ends with its exit code."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name, _, rest = super().resolve_command(ctx, args)
-        room = "operations" if name in _OPERATIONS else "commands"
-        commands: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
+        commands = commands_of(name)
         if not gc.isenabled():
             gc.freeze()
             gc.enable()

@@ -5,13 +5,12 @@ import json
 import os
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 import typer
 
-from service.cli.program import COMMANDS
+from service.cli.program import COMMANDS, commands_of
 
 ROOT = Path(__file__).parents[2]
 DATABASES = {"sqlalchemy", "alembic", "psycopg", "sqlite3"}
@@ -86,7 +85,7 @@ def test_grading_imports_no_unneeded_packages(answer: Path) -> None:
 def test_the_program_help_repeats_the_help_of_each_command() -> None:
     assert len(COMMANDS) >= 3
     for name, line in COMMANDS.items():
-        command = typer.main.get_command(import_module(f"service.cli.commands.{name}").commands)
+        command = typer.main.get_command(commands_of(name))
         assert (command.help or "").partition("\n")[0] == line
         assert "completion" not in command.get_help(typer.Context(command))
 
