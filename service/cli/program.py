@@ -24,7 +24,7 @@ COMMANDS: Final = {
     "learners": "Learners: export all that is known of one.",
     "backup": "Copy the database to a file, also while the service runs.",
     "restore": "Put a backup in the place of the database, while no service runs.",
-    "doctor": "Check this installation, and say how to mend it.",
+    "doctor": "Check this installation, and say how to mend it. Nothing is changed.",
     "bundle": "Write a zip file for a grading platform.",
 }
 # Those whose file is in ``operations/`` instead.
