@@ -64,6 +64,7 @@ def _content(problem: ProblemError, assets: Assets, root: str) -> bytes:
         heading=heading,
         advice=_FOR_TUTORS.get(name, "").format(detail=problem.detail),
         links_to_exercises=name == "other-exercise",
+        needs_database=name == "attempts-not-recorded",
         links_to_catalogue=is_missing,
         detail=problem.detail,
     )
