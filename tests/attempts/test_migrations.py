@@ -5,6 +5,7 @@ import os
 import random
 import shutil
 import signal
+import sqlite3
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -154,6 +155,21 @@ def test_several_processes_migrate_at_once(old: OldDatabase, killable: Any) -> N
         process.join(ANSWER)
     assert [process.exitcode for process in processes] == [0, 0, 0]
     check_whole(url)
+
+
+def test_a_start_waits_for_another_process_that_migrates_sqlite(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "attempts.db"
+    open_database(str(path)).dispose()
+    monkeypatch.setattr(database, "_LOCK_WAIT", 0.05)
+    other = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+    other.execute("BEGIN IMMEDIATE")
+    ending = threading.Timer(0.5, lambda: other.execute("COMMIT"))
+    ending.start()
+    open_database(str(path)).dispose()
+    ending.join()
+    other.close()
 
 
 def test_an_older_program_goes_on_recording_while_a_newer_one_migrates(

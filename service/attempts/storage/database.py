@@ -1,6 +1,7 @@
 """Open the database of attempts by its URL, and migrate its tables."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -20,6 +21,8 @@ R = TypeVar("R")
 _MIGRATIONS: Final = Path(__file__).parent / "migrations"
 # How long a statement waits for another process that is writing (seconds).
 _LOCK_WAIT: Final = 5.0
+# How long a starting process waits for another one that migrates SQLite (milliseconds).
+_MIGRATION_WAIT: Final = 600_000
 # The PostgreSQL advisory lock that lets only one of several starting processes migrate.
 _MIGRATION_LOCK: Final = 0x6468_6772
 # The most tries of a transaction after deadlocks (PostgreSQL, appendix A, "deadlock_detected").
@@ -141,7 +144,7 @@ def _begin_sqlite(connection: Connection) -> None:
 def _migrate(connection: Connection) -> None:
     """Migrate the tables to the newest version, or create them in an empty database."""
     connection = connection.execution_options(writes=True)
-    with connection.begin():
+    with _patient(connection), connection.begin():
         without_time_limit(connection)
         if connection.dialect.name == "postgresql":
             lock = text("SELECT pg_advisory_xact_lock(:key)")
@@ -150,6 +153,21 @@ def _migrate(connection: Connection) -> None:
         config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
+
+
+@contextmanager
+def _patient(connection: Connection) -> Iterator[None]:
+    """Let SQLite wait long for its lock: another process may be migrating a large table."""
+    driver = connection.connection.driver_connection
+    if connection.dialect.name != "sqlite" or driver is None:
+        yield
+        return
+    # Not by SQLAlchemy, which would begin a transaction and so wait for the lock.
+    driver.execute(f"PRAGMA busy_timeout = {_MIGRATION_WAIT}")
+    try:
+        yield
+    finally:
+        driver.execute(f"PRAGMA busy_timeout = {_LOCK_WAIT * 1000:.0f}")
 
 
 def without_time_limit(connection: Connection) -> None:
