@@ -180,7 +180,9 @@ def application(
     for router in (
         exercises.routes(seen, feedback),
         grading.routes(seen, feedback, access, monitor, PracticeGate(store)),
-        attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
+        attempts.routes(
+            catalogue, feedback, store, access, PracticeGate(store).check, monitor, cors_origins
+        ),
         # Before the next router, for which the "export" of /v1/attempts/export is an attempt's id.
         tutoring.routes(catalogue, feedback, store, access),
         recorded.routes(catalogue, store, access),

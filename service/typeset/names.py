@@ -26,7 +26,7 @@ _WORDS: Final = {"a", "A", "I", "delta", "iota"}
 _SPELLED: Final = [name for name in greek.LETTERS if name.islower() and name not in _WORDS]
 _INDEX: Final = rf"[0-9A-Za-z{greek.CLASS}]+|\{{[^{{}}\s]{{1,8}}\}}"
 _NAME: Final = re.compile(
-    r"\w+://\S+"
+    r"(?<!\w)\w{1,20}://\S+"
     r"|(?<![\w\\@#$'’}])(?:"
     r"(?P<frame>\{[0-9A-Za-z](?:[-−+]?[0-9])?\})"
     rf"|(?P<stem>[A-Za-z{greek.CLASS}]+)(?P<digits>[0-9₀-₉]*)"
@@ -41,7 +41,7 @@ _AXIS: Final = re.compile(r"[xyz](?=[\s-]+ax[ei]s(?![A-Za-z]))")
 # A formula, an argument in brackets, and the signs that must stay in one line with them.
 _FORMULA: Final = r'(?:<span class="math inline">)?<math[^>]*>(?:(?!</math>).)*</math>(?:</span>)?'
 _RUN: Final = re.compile(
-    rf"[(\[−]+{_FORMULA}(?:\({_FORMULA})?[),.;:!?\]²³]*|{_FORMULA}(?:\({_FORMULA}[),.;:!?\]²³]*|[),.;:!?\]²³]+)"
+    rf"(?<![(\[−])[(\[−]{{1,20}}{_FORMULA}(?:\({_FORMULA})?[),.;:!?\]²³]*|{_FORMULA}(?:\({_FORMULA}[),.;:!?\]²³]*|[),.;:!?\]²³]+)"
 )
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _PLAIN: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")

@@ -4,7 +4,7 @@ import re
 from datetime import UTC, datetime, timedelta
 from http import HTTPStatus
 from typing import Final
-from urllib.parse import parse_qs, quote
+from urllib.parse import parse_qs, quote, unquote
 
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
@@ -91,7 +91,7 @@ def sign_in_address(path: str, query: str) -> str:
 
 def own_path(path: str) -> str:
     """Return the path if it is that of a tutor's page; else that of the first one."""
-    is_ours = len(path) <= _LONGEST and _OURS.fullmatch(path) and ".." not in path
+    is_ours = len(path) <= _LONGEST and _OURS.fullmatch(path) and ".." not in unquote(path)
     return path if is_ours else HOME
 
 

@@ -2,11 +2,16 @@
 
 import asyncio
 import json
+from dataclasses import replace
+from datetime import timedelta
 from functools import partial
 from typing import Any
 
 import pytest
 
+from service.access.caller import Scope
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
 from service.attempts.tutoring import forget
 from service.contract.courses import AssignmentChange, Extension, LinksRequest
 from service.courses import roll
@@ -103,6 +108,19 @@ def test_no_practice_while_an_exercise_counts(class_: Class) -> None:
     assert practised() == [200, "report", 200]
     # Another exercise may be practised all the time.
     assert class_.ask("POST", "/v1/exercises/planar-rr/grade", answers={}).status_code == 200
+
+
+def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class) -> None:
+    class_.assign(limit=1, practice="none")
+    text, scopes, until = new_key_text(), {Scope.GRADE, Scope.RECORD}, NOW + timedelta(days=1)
+    digest = SECRET.key_digest(text)
+    class_.do(lambda it: add_key(it, "site", digest, scopes, None, NOW, until))
+    site = replace(class_, keys={"site": text})
+    token = site.ask("POST", "/v1/tokens", "site", learner="ada").json()["token"]
+    ada = replace(class_, keys={"ada": token})
+    for exercise, status in (("scara", 403), ("planar-rr", 201)):
+        path = f"/v1/exercises/{exercise}/attempts"
+        assert ada.ask("POST", path, answers={}, learner="ada").status_code == status
 
 
 @BOTH

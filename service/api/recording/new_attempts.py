@@ -1,11 +1,12 @@
 """The route that records attempts."""
 
-from collections.abc import Collection
+from collections.abc import Awaitable, Callable, Collection
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 
+from service.access.caller import Caller
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
@@ -37,11 +38,13 @@ def routes(
     feedback: FeedbackLevel,
     store: "AttemptStore | None",
     access: Access,
+    practice: Callable[[Caller, str], Awaitable[None]],
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
     """Return the route that records; reports have at most the level ``feedback``.
 
+    ``practice`` refuses a learner for whom the exercise counts in an assignment now.
     Pages of the service and of ``origins`` may record.
     """
     router = APIRouter(prefix="/v1", tags=["attempts"])
@@ -79,6 +82,7 @@ def routes(
         caller = access.caller(request)
         if caller.learner not in (None, body.learner):
             raise access_problem("other-learner")
+        await practice(caller, exercise.id)
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
         terms = AttemptTerms(exercise.attempts, exercise.feedback_at)
         recorder = Recorder(store, feedback, monitor)

@@ -78,6 +78,9 @@ def is_in_use(path: Path) -> bool:
             connection.execute("COMMIT")
         except sqlite3.OperationalError:
             return True
+        except sqlite3.DatabaseError:
+            # The file is damaged, so no program can have it open.
+            return False
     return False
 
 

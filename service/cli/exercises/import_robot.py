@@ -7,6 +7,7 @@ import numpy as np
 import typer
 
 from service.authoring import UnusableIdError, template
+from service.catalogue.files.regular_file import read_regular
 from service.cli.terminal import give_up, stdout
 from service.importing.axes import UnclearAxesError, home_axes
 from service.importing.exercise_text import Draft, exercise_text, letters_for
@@ -52,13 +53,13 @@ def command(
     name = exercise_id or file.stem
     try:
         template(name)
-        data = file.read_bytes() if file.stat().st_size <= MOST_BYTES else b""
+        data = read_regular(file, MOST_BYTES)
     except UnusableIdError as error:
         give_up(str(error))
     except OSError as error:
         give_up(f"{file}: cannot be read: {error.strerror}")
     if not data:
-        give_up(f"{file}: empty, or larger than 1 MiB")
+        give_up(f"{file}: the file is empty")
     remarks: list[str] = []
     try:
         if table:

@@ -163,21 +163,25 @@ export class HandIn {
     if (this.#isSending) return;
     this.#setSending(true);
     for (let tries = 0; !this.#isClosed; tries += 1) {
+      let answer;
       try {
-        const answer = await this.host.service.handIn(this.path, pending.key, pending.body);
-        this.pending.set(null);
-        await this.#handedIn(answer, pending.body);
-        break;
+        answer = await this.host.service.handIn(this.path, pending.key, pending.body);
       } catch (error) {
         if (error.kind === "refused" || error.kind === undefined) {
-          await this.#refused(error);
+          await this.#refused(error, pending.key);
           break;
         }
         this.#tell(TRYING);
         await this.#pause(pauseAfter(tries));
+        continue;
       }
+      this.pending.clear(pending.key);
+      // From here on it is recorded: no fault of the page may say otherwise.
+      this.#setSending(false);
+      return this.#handedIn(answer, pending.body);
     }
     this.#setSending(false);
+    return undefined;
   }
 
   /** @param {boolean} isSending */
@@ -198,8 +202,8 @@ export class HandIn {
     });
   }
 
-  /** @param {Error & { status?: number }} error */
-  async #refused(error) {
+  /** @param {Error & { status?: number }} error @param {string} key */
+  async #refused(error, key) {
     this.#tell(`Not handed in: ${error.message}`);
     if (error.status === 401) {
       // With a new token, `resume` sends it again; a site whose tokens are all refused is not asked without end.
@@ -207,7 +211,7 @@ export class HandIn {
       this.#askedAt = Date.now();
       return;
     }
-    this.pending.set(null);
+    this.pending.clear(key);
     await this.refresh();
   }
 

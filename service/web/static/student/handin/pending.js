@@ -38,14 +38,24 @@ export class PendingHandIn {
     }
   }
 
-  /** @param {Front.Pending | null} pending */
+  /** @param {Front.Pending} pending */
   set(pending) {
     this.#inMemory = pending;
     try {
-      if (pending) localStorage.setItem(this.name, JSON.stringify(pending));
-      else localStorage.removeItem(this.name);
+      localStorage.setItem(this.name, JSON.stringify(pending));
     } catch {
       // Without storage, a reload forgets it.
+    }
+  }
+
+  /** Forget the hand-in with this key; that of another tab stays. @param {string} key */
+  clear(key) {
+    if (this.get()?.key !== key) return;
+    this.#inMemory = null;
+    try {
+      localStorage.removeItem(this.name);
+    } catch {
+      // There is no storage.
     }
   }
 }
