@@ -1,5 +1,6 @@
 """`dh-grader backup`: copy the database while the service runs."""
 
+import sqlite3
 from pathlib import Path
 from typing import Annotated
 
@@ -27,5 +28,9 @@ def command(
             give_up(USE_POSTGRESQL)
         if file.exists():
             give_up(f"{file} is there already. Choose another name.")
-        copy_into(Path(engine.url.database or ""), file)
+        try:
+            copy_into(Path(engine.url.database or ""), file)
+        except (OSError, sqlite3.Error) as error:
+            file.unlink(missing_ok=True)
+            give_up(f"{file}: cannot be written: {error}")
     typer.echo(f"{file}: {file.stat().st_size} bytes. Only you can read it. Keep it safe.")

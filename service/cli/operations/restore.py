@@ -39,18 +39,32 @@ def command(
             give_up(f"{before} is there already. Move it away first.")
         if is_in_use(target):
             give_up(f"{target} is in use. Stop the service first.")
-    new = target.with_name(f"{target.name}.new")
-    new.unlink(missing_ok=True)
-    copy_into(file, new)
-    try:
-        open_database(str(new), create=False)
-    except UnusableDatabaseError as error:
-        new.unlink()
-        give_up(f"{file}: {error}")
-    if target.exists():
-        target.rename(before)
+    new = _copy(file, target)
+    # SQLite would replay an old log over the new file.
+    for old, kept in zip((target, *_logs(target)), (before, *_logs(before)), strict=True):
+        if old.exists():
+            old.rename(kept)
     new.rename(target)
     typer.echo(f"{target} has the content of {file}.")
+
+
+def _copy(file: Path, target: Path) -> Path:
+    """Copy the backup beside the database, with the newest tables, and return the copy."""
+    new = target.with_name(f"{target.name}.new")
+    for each in (new, *_logs(new)):
+        each.unlink(missing_ok=True)
+    try:
+        copy_into(file, new)
+        open_database(str(new), create=False)
+    except (UnusableDatabaseError, sqlite3.Error) as error:
+        new.unlink(missing_ok=True)
+        give_up(f"{file}: {error}")
+    return new
+
+
+def _logs(file: Path) -> list[Path]:
+    """Return the files beside a database in which SQLite keeps changes."""
+    return [file.with_name(f"{file.name}{end}") for end in ("-wal", "-shm", "-journal")]
 
 
 def _target() -> Path:

@@ -75,6 +75,37 @@ def learners(path: Path) -> list[str]:
     return [learner for [learner] in rows]
 
 
+def test_a_backup_replaces_a_damaged_database_and_its_log(database: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.db"
+    assert run("backup", copy).exit_code == 0
+    database.write_bytes(bytes(range(256)) * 32)
+    log = database.with_name(f"{database.name}-wal")
+    log.write_bytes(b"an old log")
+    assert run("restore", copy, "--replace").exit_code == 0
+    assert learners(database) == ["ada", "grace"]
+    assert database.with_name(f"{database.name}.before-wal").exists() or not log.exists()
+
+
+def test_the_log_of_a_deleted_database_is_not_replayed(database: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.db"
+    assert run("backup", copy).exit_code == 0
+    log = database.with_name(f"{database.name}-wal")
+    with closing(sqlite3.connect(database)) as service:
+        service.execute("DELETE FROM overrides")
+        service.execute("DELETE FROM attempts")
+        service.commit()
+        left = log.read_bytes()
+    database.unlink()
+    log.write_bytes(left)
+    assert run("restore", copy).exit_code == 0
+    assert learners(database) == ["ada", "grace"]
+
+
+def test_a_backup_that_cannot_be_written_is_named(database: Path, tmp_path: Path) -> None:
+    told = run("backup", tmp_path / "no" / "copy.db")
+    assert (told.exit_code, "cannot be written" in told.output) == (2, True)
+
+
 def test_a_backup_comes_back(database: Path, tmp_path: Path) -> None:
     copy = tmp_path / "copy.db"
     assert run("backup", copy).exit_code == 0
