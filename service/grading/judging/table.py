@@ -271,12 +271,9 @@ def _judged_by(
         cell_matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         cell_matches = _matches_of(judged, grading)
-    findings = remarks_on(
-        nearest.frames,
-        convention,
-        grading.exercise,
-        _rows_right(judged, cell_matches, convention),
-    )
+    is_wrong = (cell_matches < Match.ROUNDED).any()
+    rows_right = _rows_right(judged, cell_matches, convention) if is_wrong else None
+    findings = remarks_on(nearest.frames, convention, grading.exercise, rows_right)
     handed_in = [row.row is not None for row in judged]
     if not all(handed_in) and (cell_matches[handed_in] < Match.ROUNDED).any():
         # If a row is missing, a wrong row may imply any frames.
