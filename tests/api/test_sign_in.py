@@ -179,4 +179,5 @@ def test_only_tutors_sign_in(browser: Browser) -> None:
 )  # fmt: skip
 def test_the_way_back_is_to_a_page_of_tutors(path: str) -> None:
     assert own_path(path) == "/tutor"
+    assert own_path("/tutor/%2e%2e/x") == "/tutor"
     assert own_path("/tutor/courses/robots?x=1") == "/tutor/courses/robots?x=1"

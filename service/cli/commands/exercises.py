@@ -15,6 +15,7 @@ from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise, by_level
 from service.catalogue.robots.robot import Robot
 from service.cli.exercises import check, export_robot, import_robot
+from service.cli.exercises.new_file import write_new
 from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
 from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, reference_figure
@@ -120,15 +121,7 @@ def new_exercise(
         text = template(exercise_id, None if like is None else installed_file(like))
     except UnusableIdError as error:
         give_up(str(error))
-    file = output / f"{exercise_id}.toml"
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-        with file.open("x", encoding="utf-8") as new:
-            new.write(text)
-    except FileExistsError:
-        give_up(f"{file} already exists and was not changed; choose another id or folder")
-    except OSError as error:
-        give_up(f"{file}: cannot be written: {error.strerror}")
+    file = write_new(output, exercise_id, text)
     stdout().print(
         f"{file} is written. Edit it, then: dh-grader exercises check {file}", soft_wrap=True
     )

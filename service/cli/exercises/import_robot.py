@@ -8,6 +8,7 @@ import typer
 
 from service.authoring import UnusableIdError, template
 from service.catalogue.files.regular_file import read_regular
+from service.cli.exercises.new_file import write_new
 from service.cli.terminal import give_up, stdout
 from service.importing.axes import UnclearAxesError, home_axes
 from service.importing.exercise_text import Draft, exercise_text, letters_for
@@ -72,15 +73,7 @@ def command(
         give_up(f"{file}: {error}")
     except UnevenLettersError:
         give_up(f"{file}: with these angles, letters give no readable statement; omit --letters")
-    made = output / f"{name}.toml"
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-        with made.open("x", encoding="utf-8") as new:
-            new.write(text)
-    except FileExistsError:
-        give_up(f"{made} already exists and was not changed; choose another --id or --output")
-    except OSError as error:
-        give_up(f"{made}: cannot be written: {error.strerror}")
+    made = write_new(output, name, text)
     for remark in remarks:
         stdout().print(remark, soft_wrap=True)
     stdout().print(

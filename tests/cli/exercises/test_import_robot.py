@@ -71,6 +71,11 @@ def test_an_unusable_file_is_named(run: Run, tmp_path: Path) -> None:
     assert "cannot be an exercise's id" in run("exercises", "import", empty, "--id", "../x").stderr
 
 
+def test_a_device_is_no_file_to_import(run: Run) -> None:
+    made = run("exercises", "import", "/dev/zero")
+    assert (made.exit_code, "cannot be read" in made.stderr) == (2, True)
+
+
 def test_an_exported_robot_can_be_imported_again(run: Run, tmp_path: Path) -> None:
     exported = run("exercises", "export", "stanford-arm")
     assert exported.exit_code == 0
