@@ -89,6 +89,7 @@ load: $(dev) ## 200 clients for SECONDS= (60), graded and recorded, on SQLite an
 	$(python) -m tests.load --seconds "$(SECONDS)"
 	$(python) -m tests.load --seconds "$(SECONDS)" --database postgresql --replicas 2 --workers 1
 	$(python) -m tests.load.wrong_answers
+	$(python) -m tests.courses.hand_ins.last_minute
 	$(python) -m pytest -m campaign tests/load
 
 worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)
@@ -100,6 +101,7 @@ campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and con
 rows: $(dev) ## grade tables with one wrong row; leave rows and cells of wrong tables empty (SEED=)
 	$(python) -m tests.frame_choice.rows.one_row --tables 5000 --seed "$(SEED)"
 	$(python) -m tests.frame_choice.rows.blanking --tries 20000 --seed "$(SEED)"
+	$(python) -m tests.frame_choice.rows.careless --seed "$(SEED)"
 
 policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
 	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"
@@ -115,8 +117,8 @@ slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip
 	$(python) -m tests.pose_slips --show
 	$(python) -m tests.pose_slips.unseen --arms 200 --show
 
-durability: $(dev) ## kill the service while it records attempts, and migrations, 20 times on each database
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_migrations.py
+durability: $(dev) ## kill the service while it records attempts and hand-ins, and migrations, 20 times on each database
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/test_hand_ins.py tests/attempts/test_migrations.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"

@@ -28,8 +28,8 @@ class Caller:
     course: str | None = None
 
     def reaches(self, exercise: str) -> bool:
-        """True if the caller may use this exercise."""
-        return self.exercises is None or exercise in self.exercises
+        """True if the caller may use this exercise, or the exercise of this variant."""
+        return self.exercises is None or exercise.partition("~")[0] in self.exercises
 
     @property
     def reaches_all(self) -> bool:

@@ -74,6 +74,10 @@ class KeyRing:
                 self.has_keys = await self._in_thread(lambda: self._read(any_key))
         return self.has_keys
 
+    def expect_keys(self) -> None:
+        """Note that a key was created just now: keys are needed from now on."""
+        self.has_keys = True
+
     async def caller(self, credential: str) -> Caller:
         """Return the holder of a key or token.
 

@@ -71,6 +71,9 @@ class Keys(Protocol):
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
 
+    def expect_keys(self) -> None:
+        """Note that a key was created just now."""
+
     def token(self, caller: Caller, expires_at: datetime) -> str:
         """Return a token with the rights of ``caller``."""
 
@@ -119,6 +122,11 @@ class Secret:
     def session_secret(self) -> bytes:
         """The key that signs the sessions of tutors."""
         return self._derived("sessions")
+
+    @property
+    def lti_secret(self) -> bytes:
+        """The key that encrypts our private keys for LTI, and makes pseudonyms and tickets."""
+        return self._derived("lti")
 
     def _derived(self, purpose: str) -> bytes:
         return hmac.digest(self._text, f"dh-grader {purpose}".encode(), "sha256")

@@ -10,7 +10,8 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api.courses import assignments, gradebook, handing_in, links, rolls
+from service.api.courses import assignments, deletion, gradebook, handing_in, links, rolls, scores
+from service.api.courses.own_variant import OwnVariants
 from service.api.courses.practice import PracticeGate
 from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, fill_body_schemas
 from service.api.http import problems
@@ -37,6 +38,8 @@ from service.api.routes import (
     frames,
     grading,
     health,
+    hints,
+    practice,
     preview,
     reference,
     tokens,
@@ -46,10 +49,12 @@ from service.api.web_pages import WebPages
 from service.catalogue import FeedbackLevel
 from service.catalogue.drafts import CatalogueWithDrafts
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.variants.robots.practice_catalogue import CatalogueWithPractice
 from service.version import VERSION
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
+    from service.lti.scores.sending import ScoreSending
 
 # Puts a layer around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
@@ -66,6 +71,17 @@ def _freeze_gc() -> None:
         gc.collect()
     gc.freeze()
     gc.enable()
+
+
+def _score_sending(store: "AttemptStore", access: Access) -> "ScoreSending | None":
+    """Start the thread that sends scores to platforms, which needs the service's secret."""
+    secret = None if access.keys is None else access.keys.secret
+    if secret is None:
+        return None
+    # Imported only here, because it imports the database drivers.
+    from service.lti.scores.sending import ScoreSending
+
+    return ScoreSending(store.engine, secret)
 
 
 class _Api(FastAPI):
@@ -102,10 +118,14 @@ class _Api(FastAPI):
 
     @asynccontextmanager
     async def _lifespan(self, _: FastAPI) -> AsyncIterator[None]:
+        sending = None
         if self._store is not None:
             self._store.start()
+            sending = _score_sending(self._store, self._access)
         _freeze_gc()
         yield
+        if sending is not None:
+            sending.close()
         if self._pages is not None:
             self._pages.close()
         self._access.close()
@@ -175,27 +195,31 @@ def application(
     app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
     permitted = [Depends(access.permit)]
     problems.install(app, None if pages is None else pages.of_problem)
-    # What is recorded, and every other list, has no drafts.
-    seen = catalogue if pages is None else CatalogueWithDrafts(catalogue, pages.drafts)
+    # What is recorded, and every other list, has no drafts and no generated robots.
+    practised = CatalogueWithPractice(catalogue)
+    seen = practised if pages is None else CatalogueWithDrafts(practised, pages.drafts)
+    own, gate = OwnVariants(store, access), PracticeGate(store)
     for router in (
-        exercises.routes(seen, feedback),
-        grading.routes(seen, feedback, access, monitor, PracticeGate(store)),
-        attempts.routes(
-            catalogue, feedback, store, access, PracticeGate(store).check, monitor, cors_origins
-        ),
+        exercises.routes(seen, feedback, own),
+        practice.routes(),
+        grading.routes(seen, feedback, access, monitor, gate, own),
+        hints.routes(seen, feedback, access, gate, own),
+        attempts.routes(catalogue, feedback, store, access, gate.check, monitor, cors_origins),
         # Before the next router, for which the "export" of /v1/attempts/export is an attempt's id.
         tutoring.routes(catalogue, feedback, store, access),
         recorded.routes(catalogue, store, access),
-        preview.routes(seen, access),
-        figures.routes(seen),
-        frames.routes(seen, access),
+        preview.routes(seen, access, own),
+        figures.routes(seen, own),
+        frames.routes(seen, access, own),
         health.routes(catalogue, store),
-        model_solutions.routes(catalogue),
+        model_solutions.routes(practised),
         tokens.routes(catalogue, access),
         rolls.routes(store, access),
         links.routes(store, access),
+        deletion.routes(store),
         assignments.routes(catalogue, store),
         gradebook.routes(catalogue, store),
+        scores.routes(store),
         handing_in.routes(catalogue, feedback, store, access, monitor, cors_origins),
     ):
         app.include_router(router, responses=OTHER_FAILURES, dependencies=permitted)

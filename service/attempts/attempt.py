@@ -31,7 +31,7 @@ class NewAttempt:
 
     ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent it;
     idempotency keys are unique for each owner. ``assignment`` is the number of an assignment of a
-    course, or None.
+    course, or None. ``variant`` is the seed of a variant of the exercise, or None.
     """
 
     exercise: str
@@ -51,6 +51,7 @@ class NewAttempt:
     idempotency_key: str | None
     request_digest: str
     assignment: int | None = field(default=None, kw_only=True)
+    variant: str | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +80,8 @@ class Standing:
 class AttemptFilter:
     """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not.
 
-    ``assignment`` is the id of an assignment of ``course``.
+    ``assignment`` is the id of an assignment of ``course``. ``exercise`` may be that of a variant;
+    without a seed, it means all variants.
     """
 
     exercise: str | None = None
@@ -107,6 +109,7 @@ class ListedAttempt:
     awarded: float | None
     version: str
     grader: str
+    variant: str | None = None
 
     @property
     def earned(self) -> float:

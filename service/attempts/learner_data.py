@@ -5,12 +5,24 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, Connection, Row, Table, delete, select
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Row,
+    Table,
+    and_,
+    delete,
+    exists,
+    func,
+    or_,
+    select,
+)
 
 from service.attempts.storage.tables import (
     assignments,
     attempts,
     course_learners,
+    deals,
     earlier_reports,
     extensions,
     keys,
@@ -18,8 +30,9 @@ from service.attempts.storage.tables import (
     regrade_queue,
 )
 
-# Columns that are about the database and not about the learner, and columns of JSON.
-_INNER: Final = {"number", "attempt", "assignment", "outcome", "digest"}
+# Columns that are about the database and not about the learner, and columns of JSON. A learner does
+# not see the seed of a variant.
+_INNER: Final = {"number", "attempt", "assignment", "outcome", "digest", "variant"}
 _JSON: Final = {"submission", "report", "exercises"}
 
 
@@ -42,26 +55,52 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
         .where(attempts.c.learner == learner)
         .order_by(attempts.c.number)
     ).all()
-    extended = connection.execute(
-        select(extensions, assignments.c.course, assignments.c.id.label("in_assignment"))
-        .join_from(extensions, assignments)
-        .where(extensions.c.learner == learner)
-    ).all()
+
+    def assigned(table: Table) -> list[dict[str, Any]]:
+        found = connection.execute(
+            select(table, assignments.c.course, assignments.c.id.label("in_assignment"))
+            .join_from(table, assignments)
+            .where(table.c.learner == learner)
+        )
+        return [_known(row) for row in found]
+
     return {
         "learner": learner,
         "courses": rows(course_learners, course_learners.c.learner == learner),
-        "extensions": [_known(row) for row in extended],
+        "extensions": assigned(extensions),
+        "deals": assigned(deals),
         "links": rows(keys, keys.c.learner == learner),
         "attempts": [attempt(row) for row in recorded],
     }
 
 
+def is_older(before: datetime) -> ColumnElement[bool]:
+    """Return the condition of attempts whose time to be kept began before a moment.
+
+    It begins with the attempt, or, in an assignment, when nobody can hand in there any more.
+    Without a due date this never happens.
+    """
+    later = and_(
+        extensions.c.assignment == assignments.c.number,
+        func.coalesce(extensions.c.closes, extensions.c.due) >= before,
+    )
+    is_over = func.coalesce(assignments.c.closes, assignments.c.due) < before
+    over = select(assignments.c.number).where(is_over, ~exists().where(later))
+    of_none = attempts.c.assignment.is_(None)
+    return and_(attempts.c.at < before, or_(of_none, attempts.c.assignment.in_(over)))
+
+
 def delete_older(connection: Connection, before: datetime) -> int:
-    """Delete all attempts before a moment, with their reports; return their number."""
-    old = select(attempts.c.number).where(attempts.c.at < before)
+    """Delete the attempts of ``is_older``, with their reports; return their number."""
+    return delete_attempts(connection, is_older(before))
+
+
+def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
+    """Delete attempts with all that is recorded about them; return their number."""
+    numbers = select(attempts.c.number).where(chosen)
     for table in (regrade_queue, earlier_reports, overrides):
-        connection.execute(delete(table).where(table.c.attempt.in_(old)))
-    return connection.execute(delete(attempts).where(attempts.c.at < before)).rowcount
+        connection.execute(delete(table).where(table.c.attempt.in_(numbers)))
+    return connection.execute(delete(attempts).where(chosen)).rowcount
 
 
 def months_before(now: datetime, months: int) -> datetime:

@@ -29,7 +29,7 @@ class Outcome:
 def outcome_of(report: Report) -> Outcome:
     """Return the outcome of a report, which must have rows (feedback level above ``score``)."""
     content = {part.part: _part(part) for part in report.parts}
-    return Outcome(report.exercise, json.dumps(content, separators=(",", ":")))
+    return Outcome(report.exercise.partition("~")[0], json.dumps(content, separators=(",", ":")))
 
 
 def _part(part: PartReport) -> dict[str, object]:

@@ -9,6 +9,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.outcome import Outcome
+from service.attempts.storage.score_queue import Priority, queue_score
 from service.attempts.storage.tables import attempts, outcomes
 
 # Build the statements once: building one takes longer than running it.
@@ -22,7 +23,9 @@ _EARLIER: Final = select(
 _OF_LEARNER: Final = and_(
     attempts.c.exercise == bindparam("exercise"), attempts.c.learner == bindparam("learner")
 )
-_LAST: Final = select(func.max(attempts.c.ordinal)).where(_OF_LEARNER)
+_LAST: Final = select(
+    func.max(attempts.c.ordinal).label("last"), func.count(attempts.c.ordinal).label("number")
+).where(_OF_LEARNER)
 _ASSIGNED: Final = (
     select(attempts.c.assignment, func.count(attempts.c.ordinal).label("tried"))
     .where(_OF_LEARNER, attempts.c.assignment.is_not(None))
@@ -70,11 +73,12 @@ def standing(
         found = connection.execute(_EARLIER, key).one_or_none()
         earlier = RecordedAttempt(**found._mapping) if found else None
     which = {"exercise": exercise, "learner": learner}
-    last = connection.scalar(_LAST, which) or 0
+    # Deleted attempts leave gaps in the ordinals.
+    all_ = connection.execute(_LAST, which).one()
     assigned = {row.assignment: row.tried for row in connection.execute(_ASSIGNED, which)}
-    outside = last - sum(assigned.values())
+    outside = all_.number - sum(assigned.values())
     counted = outside if assignment is None else assigned.get(assignment, 0)
-    return Standing(counted, earlier, last)
+    return Standing(counted, earlier, all_.last or 0)
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
@@ -85,7 +89,11 @@ def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> Recorde
         _NEW_ATTEMPT[connection.dialect.name],
         values | {"outcome": _outcome_id(connection, outcome)},
     )
-    return None if number is None else RecordedAttempt(**values, number=number)
+    if number is None:
+        return None
+    if new.ordinal is not None:
+        queue_score(connection, new.assignment, new.learner, Priority.HAND_IN)
+    return RecordedAttempt(**values, number=number)
 
 
 # Returns the next attempt after a standing, or None if none is allowed or prepared.

@@ -8,9 +8,12 @@ from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
+from service.attempts.storage import lti_tables
+from service.attempts.storage.score_queue import forget_scores, queue_scores
 from service.attempts.storage.tables import (
     attempts,
     course_learners,
+    deals,
     earlier_reports,
     extensions,
     keys,
@@ -49,6 +52,7 @@ def override(
     connection.execute(
         update(attempts).where(attempts.c.number == found.number).values(awarded=points)
     )
+    queue_scores(connection, attempts.c.number == found.number)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +95,7 @@ def _forget(connection: Connection, learner: str) -> LearnerData:
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     for table in (regrade_queue, earlier_reports, overrides):
         connection.execute(delete(table).where(table.c.attempt.in_(mine)))
-    for table in (attempts, extensions, course_learners, keys):
+    forget_scores(connection, learner)
+    for table in (attempts, extensions, deals, course_learners, keys, lti_tables.learners):
         connection.execute(delete(table).where(table.c.learner == learner))
     return data

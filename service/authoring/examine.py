@@ -6,6 +6,7 @@ from service.authoring.answers import duplicate_parts, failed_checks, missing_ch
 from service.authoring.freedom import lost_freedom
 from service.authoring.lazy import lazy_answers
 from service.authoring.remarks import Remark
+from service.authoring.slips import unfit_slips
 from service.authoring.symbols import ambiguous_symbols, badly_scaled, bare_degrees, unused_symbols
 from service.catalogue import Exercise
 
@@ -13,6 +14,7 @@ EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
     # First, because it is the cause of what the other checks find.
     bare_degrees,
     model_answer,
+    unfit_slips,
     failed_checks,
     missing_checks,
     ambiguous_symbols,

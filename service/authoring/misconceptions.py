@@ -15,7 +15,7 @@ from service.solutions import solve
 
 # Answers of these kinds have cells of the same sort, in which the same mistakes are searched.
 _FAMILIES: Final = (
-    frozenset({"dh_table", "dh_row"}),
+    frozenset({"dh_table", "dh_row", "find_slip"}),
     frozenset({"link_transforms", "transform", "rotation", "matrix"}),
     frozenset({"position", "vector", "euler_angles"}),
     frozenset({"screw_axes"}),

@@ -13,6 +13,7 @@ from service.catalogue.robots.formulas import FormulaField, FormulaGrid, fields_
 from service.catalogue.robots.robot import Joint, Robot
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.robots.variables import Variable
+from service.catalogue.varying.vary import Vary
 from service.expressions import Vocabulary
 from service.kinematics.dh import Convention
 
@@ -28,7 +29,9 @@ class Exercise:
     ``keywords``) and ``feedback_by_attempt``, the highest feedback level of each attempt (the last
     one is for all later attempts). ``reference`` is the robot, if any; ``formulas`` has the answers
     in the file by part id. ``length_scale`` is the longest length, to which small differences are
-    compared. ``view`` is the viewpoint of the figure.
+    compared. ``view`` is the viewpoint of the figure. ``vary`` has the values of the variants, if
+    the exercise has some; ``seed`` is that of a variant, whose ``id`` is ``<exercise>~<seed>``
+    unless the seed is hidden.
     """
 
     id: str
@@ -51,6 +54,13 @@ class Exercise:
     minutes: int | None = None
     summary: str = ""
     keywords: tuple[str, ...] = ()
+    vary: Vary | None = None
+    seed: str = ""
+
+    @property
+    def plain_id(self) -> str:
+        """The id of the exercise without the seed of a variant."""
+        return self.id.partition("~")[0]
 
     @property
     def conventions(self) -> tuple[Convention, ...]:

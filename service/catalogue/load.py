@@ -3,13 +3,10 @@
 import re
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from service.catalogue.compile import compile_exercise
 from service.catalogue.exercise import Exercise
 from service.catalogue.files.fields import IDENTIFIER
 from service.catalogue.files.refusals import exercise_table
-from service.catalogue.files.schema import ExerciseSpec
 from service.catalogue.files.toml_file import (
     CatalogueError,
     Fault,
@@ -18,6 +15,7 @@ from service.catalogue.files.toml_file import (
     read_toml,
 )
 from service.catalogue.order import in_order
+from service.catalogue.varying.build import exercise_of
 
 ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
 _LONGEST_ID = 60
@@ -83,23 +81,19 @@ def is_exercise_id(name: str) -> bool:
 def load_exercise(file: Path) -> Exercise:
     """Load the exercise of a file; its id is the file's name. Raises CatalogueError."""
     _require_id(file)
-    return load_toml(file, partial(_compiled, file.stem), exercise_table)
+    return load_toml(file, partial(exercise_of, file.stem), exercise_table)
 
 
 def read_exercise(file: Path, text: str) -> Exercise:
     """Read an exercise from a text as if it were the content of ``file``. Raises CatalogueError."""
     _require_id(file)
-    return read_toml(file, text, partial(_compiled, file.stem), exercise_table)
+    return read_toml(file, text, partial(exercise_of, file.stem), exercise_table)
 
 
 def _require_id(file: Path) -> None:
     if not is_exercise_id(file.stem):
         reason = f"the name of the file is the exercise's id: {ID_ADVICE}"
         raise CatalogueError([Fault(file, "", reason)])
-
-
-def _compiled(exercise_id: str, content: dict[str, Any]) -> Exercise:
-    return compile_exercise(exercise_id, ExerciseSpec.model_validate(content))
 
 
 def _folder_reason(error: OSError) -> str:

@@ -20,6 +20,7 @@ COMMANDS: Final = {
     "merge": "Merge the shards that `grade --shard` has written into the JSON lines of one run.",
     "attempts": "Recorded attempts: read, export, regrade, forget.",
     "courses": "Courses: learners, links, assignments, gradebook.",
+    "lti": "LTI 1.3: platforms that launch courses, and the keys for them.",
     "keys": "API keys of the service: create, list, revoke.",
     "learners": "Learners: export all that is known of one.",
     "backup": "Copy the database to a file, also while the service runs.",
@@ -33,7 +34,7 @@ _OPERATIONS: Final = {"learners", "backup", "restore", "doctor"}
 
 def commands_of(name: str | None) -> typer.Typer:
     """Return the commands in the file of a name of ``COMMANDS``."""
-    room = "operations" if name in _OPERATIONS else "commands"
+    room = "operations" if name in _OPERATIONS else "lti" if name == "lti" else "commands"
     found: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
     return found
 

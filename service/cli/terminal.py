@@ -52,11 +52,13 @@ def installed() -> Mapping[str, Exercise]:
 
 
 def installed_exercise(exercise_id: str) -> Exercise:
-    """Return the exercise of this installation with this id; read no other exercise files.
+    """Return the exercise or variant of this installation; read no other exercise files.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """
-    return load_exercise(installed_file(exercise_id))
+    plain_id = exercise_id.partition("~")[0]
+    plain = load_exercise(installed_file(plain_id))
+    return find_exercise({plain_id: plain}, exercise_id)
 
 
 def installed_file(exercise_id: str) -> Path:

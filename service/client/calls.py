@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 from uuid import uuid4
 
 from pydantic import BaseModel, ValidationError
@@ -15,12 +15,18 @@ from pydantic import BaseModel, ValidationError
 from service.catalogue import FeedbackLevel
 from service.client.answers import HttpAnswer, error_in
 from service.client.errors import UnexpectedAnswerError
-from service.contract.exercises import ExerciseList, ExerciseSummary, ExerciseView
+from service.contract.exercises import (
+    ExerciseList,
+    ExerciseSummary,
+    ExerciseView,
+    PracticeRobot,
+)
 from service.contract.grading import GradeManyResponse, GradeResult
 from service.contract.preview import PreviewAnswer, PreviewRequest
 from service.expressions import AngleUnit, Kind
 from service.formats.documents.json import read_report
 from service.grading import Report
+from service.kinematics.dh import Convention
 from service.submissions.body import MAX_SUBMISSIONS, ExerciseSubmission, GradeRequest
 from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS, MAX_COMMAS
 
@@ -75,6 +81,15 @@ def exercises() -> HttpCall[list[ExerciseSummary]]:
 def exercise(exercise: str) -> HttpCall[ExerciseView]:
     """Return the exercise with this id as students see it."""
     return HttpCall(_path(exercise), ExerciseView.model_validate_json)
+
+
+def next_robot(
+    level: int = 1, convention: Convention = Convention.STANDARD, after: str | None = None
+) -> HttpCall[PracticeRobot]:
+    """Return a generated robot to practise with; ``after`` is the id of the last one."""
+    given = {"level": level, "convention": convention.value, "after": after}
+    query = urlencode({name: value for name, value in given.items() if value is not None})
+    return HttpCall(f"v1/practice/next?{query}", PracticeRobot.model_validate_json)
 
 
 def grade(

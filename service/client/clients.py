@@ -48,6 +48,7 @@ class _Methods:
 
     exercises = _Method(calls.exercises)
     exercise = _Method(calls.exercise)
+    next_robot = _Method(calls.next_robot)
     grade = _Method(calls.grade)
     preview = _Method(calls.preview)
     courses = _Method(course_calls.courses)
@@ -60,10 +61,24 @@ class _Methods:
     create_assignment = _Method(course_calls.create_assignment)
     change_assignment = _Method(course_calls.change_assignment)
     extend = _Method(course_calls.extend)
+    variants = _Method(course_calls.variants)
+    deal_variant = _Method(course_calls.deal_variant)
     missing = _Method(course_calls.missing)
+    scores = _Method(course_calls.scores)
+    send_scores = _Method(course_calls.send_scores)
     gradebook = _Method(course_calls.gradebook)
     hand_in = _Method(course_calls.hand_in)
     own_courses = _Method(course_calls.own_courses)
+    course = _Method(course_calls.course)
+    change_course = _Method(course_calls.change_course)
+    delete_course = _Method(course_calls.delete_course)
+    remove_learner = _Method(course_calls.remove_learner)
+    assignment = _Method(course_calls.assignment)
+    delete_assignment = _Method(course_calls.delete_assignment)
+    gradebook_file = _Method(course_calls.gradebook_file)
+    learner_view = _Method(course_calls.learner_view)
+    assigned_solution = _Method(course_calls.assigned_solution)
+    regrade = _Method(course_calls.regrade)
 
 
 class GraderClient(_Methods):

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter
 
 from service.client.calls import HttpCall
 from service.contract.attempts import AttemptResponse
@@ -14,21 +14,31 @@ from service.contract.courses import (
     Course,
     CourseAssignment,
     CourseAssignmentList,
+    CourseChange,
     CourseList,
+    DealRequest,
+    DeletedData,
+    DeletionRequest,
     Extension,
     Gradebook,
-    HandInRequest,
+    GradebookFormat,
     LearnerList,
     LearnersRequest,
+    LearnerVariant,
+    LearnerVariants,
     LinkList,
     LinksRequest,
     MissingList,
     NewAssignment,
     NewCourse,
-    OwnCourses,
+    RemovalRequest,
     RevokedLinks,
     RevokeLinksRequest,
 )
+from service.contract.own_courses import HandInRequest, OwnCourses
+from service.contract.scores import PlatformScores, SendAgainRequest, SentAgain
+from service.contract.tutoring import RegradeAnswer, RegradeRequest
+from service.solutions import ModelSolution
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -41,6 +51,33 @@ def courses() -> HttpCall[CourseList]:
 def create_course(new: NewCourse) -> HttpCall[Course]:
     """Create a course."""
     return _sending("v1/courses", new, Course)
+
+
+def course(course_id: str) -> HttpCall[Course]:
+    """Return a course."""
+    return HttpCall(_path(course_id), Course.model_validate_json)
+
+
+def change_course(course: str, change: CourseChange) -> HttpCall[Course]:
+    """Change the title or the time zone of a course."""
+    return _sending(_path(course), change, Course)
+
+
+def delete_course(course: str, wanted: DeletionRequest) -> HttpCall[DeletedData]:
+    """Delete a course if ``apply`` is true; return what is deleted, or would be."""
+    return _sending(_path(course, "delete"), wanted, DeletedData)
+
+
+def delete_assignment(
+    course: str, assignment: str, wanted: DeletionRequest
+) -> HttpCall[DeletedData]:
+    """Delete an assignment if ``apply`` is true; return what is deleted, or would be."""
+    return _sending(_path(course, "assignments", assignment, "delete"), wanted, DeletedData)
+
+
+def remove_learner(course: str, wanted: RemovalRequest) -> HttpCall[DeletedData]:
+    """Remove a learner if ``apply`` is true; return what is deleted, or would be."""
+    return _sending(_path(course, "learners", "remove"), wanted, DeletedData)
 
 
 def learners(course: str) -> HttpCall[LearnerList]:
@@ -68,6 +105,12 @@ def assignments(course: str) -> HttpCall[CourseAssignmentList]:
     return HttpCall(_path(course, "assignments"), CourseAssignmentList.model_validate_json)
 
 
+def assignment(course: str, assignment_id: str) -> HttpCall[CourseAssignment]:
+    """Return an assignment with its extensions."""
+    path = _path(course, "assignments", assignment_id)
+    return HttpCall(path, CourseAssignment.model_validate_json)
+
+
 def create_assignment(course: str, new: NewAssignment) -> HttpCall[CourseAssignment]:
     """Add an assignment to a course."""
     return _sending(_path(course, "assignments"), new, CourseAssignment)
@@ -86,15 +129,77 @@ def extend(course: str, assignment: str, extension: Extension) -> HttpCall[Cours
     return _sending(path, extension, CourseAssignment)
 
 
+def variants(course: str, assignment: str, learner: str) -> HttpCall[LearnerVariants]:
+    """Return which variants a learner has in an assignment."""
+    path = _path(course, "assignments", assignment, "variants") + _query(learner=learner)
+    return HttpCall(path, LearnerVariants.model_validate_json)
+
+
+def deal_variant(course: str, assignment: str, wanted: DealRequest) -> HttpCall[LearnerVariant]:
+    """Give a learner another variant of an exercise."""
+    return _sending(_path(course, "assignments", assignment, "variants"), wanted, LearnerVariant)
+
+
 def missing(course: str, assignment: str) -> HttpCall[MissingList]:
     """Return the learners who have not handed in."""
     path = _path(course, "assignments", assignment, "missing")
     return HttpCall(path, MissingList.model_validate_json)
 
 
-def gradebook(course: str) -> HttpCall[Gradebook]:
-    """Return the points that count, of each learner at each exercise."""
-    return HttpCall(_path(course, "gradebook"), Gradebook.model_validate_json)
+def scores(
+    course: str,
+    assignment: str | None = None,
+    learner: str | None = None,
+    *,
+    failed: bool = False,
+) -> HttpCall[PlatformScores]:
+    """Return the scores that go to learning platforms."""
+    given = {"assignment": assignment, "learner": learner, "failed": "true" if failed else None}
+    query = urlencode({name: value for name, value in given.items() if value is not None})
+    return HttpCall(f"{_path(course, 'scores')}?{query}", PlatformScores.model_validate_json)
+
+
+def send_scores(course: str, wanted: SendAgainRequest) -> HttpCall[SentAgain]:
+    """Send scores to learning platforms again."""
+    return _sending(_path(course, "scores", "send"), wanted, SentAgain)
+
+
+def gradebook(course: str, assignment: str | None = None) -> HttpCall[Gradebook]:
+    """Return the points that count, of each learner at each exercise, or in one assignment."""
+    path = _path(course, "gradebook") + _query(assignment=assignment)
+    return HttpCall(path, Gradebook.model_validate_json)
+
+
+def gradebook_file(
+    course: str, form: GradebookFormat, assignment: str | None = None
+) -> HttpCall[bytes]:
+    """Return the gradebook as a file: ``csv``, ``moodle``, ``canvas`` or ``xlsx``."""
+    path = _path(course, "gradebook") + _query(assignment=assignment, format=form)
+    return HttpCall(path, bytes)
+
+
+def learner_view(course: str, learner: str) -> HttpCall[OwnCourses]:
+    """Return a course as one of its learners sees it."""
+    return HttpCall(_path(course, "learners", learner, "view"), OwnCourses.model_validate_json)
+
+
+def assigned_solution(course: str, assignment: str, exercise: str) -> HttpCall[ModelSolution]:
+    """Return the solution of an exercise, for the learner whose link or token is the key."""
+    path = _path(course, "assignments", assignment, "solutions", exercise)
+    return HttpCall(path, _solution)
+
+
+def regrade(
+    exercise: str,
+    *,
+    course: str | None = None,
+    apply: bool = False,
+    cursor: str | None = None,
+) -> HttpCall[RegradeAnswer]:
+    """Regrade some attempts at an exercise, or in one course; repeat it with ``next`` as cursor."""
+    body = RegradeRequest(apply=apply, cursor=cursor)
+    path = f"v1/exercises/{quote(exercise, safe='')}/regrade{_query(course=course)}"
+    return _sending(path, body, RegradeAnswer)
 
 
 def hand_in(
@@ -123,9 +228,18 @@ def own_courses() -> HttpCall[OwnCourses]:
     return HttpCall("v1/me", OwnCourses.model_validate_json)
 
 
+_solution = TypeAdapter(ModelSolution).validate_json
+
+
 def _path(course: str, *rest: str) -> str:
     names = (quote(each, safe="").replace(".", "%2E") for each in (course, *rest))
     return "/".join(("v1/courses", *names))
+
+
+def _query(**given: str | None) -> str:
+    """Return the query of the parameters that are given, with its question mark."""
+    query = urlencode({name: value for name, value in given.items() if value is not None})
+    return f"?{query}" if query else ""
 
 
 def _sending(path: str, body: BaseModel, model: type[M]) -> HttpCall[M]:

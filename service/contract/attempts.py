@@ -68,6 +68,9 @@ class AttemptSummary(Attempt):
     )
     version: str = Field(description="The version of the exercise that graded the attempt.")
     grader: str = Field(description="The version of the program that graded the attempt.")
+    variant: str | None = Field(
+        None, description="The seed of the variant, for tutors; absent for an exercise without."
+    )
 
 
 class AttemptList(BaseModel):

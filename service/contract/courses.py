@@ -3,11 +3,10 @@
 from datetime import datetime
 from typing import Annotated, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, StringConstraints
 
 from service.catalogue import FeedbackLevel
-from service.contract.attempts import Attempt, Learner
-from service.submissions.body import GradeRequest
+from service.contract.attempts import Learner
 
 MOST_LEARNERS: Final = 5000
 MOST_EXERCISES: Final = 100
@@ -16,7 +15,7 @@ LONGEST_LINK_DAYS: Final = 730
 Practice = Literal["open", "after", "none"]
 ShowSolution = Literal["never", "after_full", "after_due"]
 AssignmentState = Literal["not_open", "open", "late", "closed"]
-GradebookFormat = Literal["json", "csv", "moodle", "canvas"]
+GradebookFormat = Literal["json", "csv", "moodle", "canvas", "xlsx"]
 
 CourseName = Annotated[
     str,
@@ -204,6 +203,11 @@ class AssignmentChange(_Request):
         description="When a learner sees the solution: never, after full marks, or when no more "
         "attempts are accepted. Default: `never`.",
     )
+    variants: bool | None = Field(
+        None,
+        description="Whether each learner gets a variant of their own of each exercise that has "
+        "variants. Default: false. If it becomes false, all learners get the same exercise.",
+    )
 
 
 class NewAssignment(AssignmentChange):
@@ -239,6 +243,7 @@ class CourseAssignment(BaseModel):
     )
     practice: Practice
     solution: ShowSolution
+    variants: bool = Field(description="True if each learner gets a variant of their own.")
     extensions: list[Extension] = Field(description="The learners with other dates or limits.")
 
 
@@ -246,6 +251,29 @@ class CourseAssignmentList(BaseModel):
     """The assignments of a course, in the order in which they were added."""
 
     assignments: list[CourseAssignment]
+
+
+class LearnerVariant(BaseModel):
+    """A learner's variant of an exercise in an assignment, for tutors."""
+
+    exercise: str
+    variant: str = Field(description="The id of the variant: `<exercise>~<seed>`.")
+    seed: str
+    deals: int = Field(description="The number of this deal; 1 is the learner's first variant.")
+
+
+class LearnerVariants(BaseModel):
+    """The variants of a learner in an assignment."""
+
+    learner: str
+    variants: list[LearnerVariant]
+
+
+class DealRequest(_Request):
+    """A request for another variant of an exercise for a learner."""
+
+    learner: Learner
+    exercise: Annotated[str, StringConstraints(min_length=1, max_length=100)]
 
 
 class GradebookColumn(BaseModel):
@@ -290,67 +318,32 @@ class MissingList(BaseModel):
     missing: list[MissingLearner]
 
 
-class HandInRequest(GradeRequest):
-    """Answers to an exercise of an assignment, to be recorded."""
+class DeletionRequest(_Request):
+    """A request to delete a course or an assignment."""
 
-    exercise: Annotated[str, StringConstraints(min_length=1, max_length=100)]
-    learner: Learner | None = Field(
-        None, description="The learner. With a token or link of a learner, it may be left out."
+    apply: Annotated[
+        StrictBool, Field(description="If true, delete; otherwise only say what would be deleted.")
+    ] = False
+    with_attempts: Annotated[
+        StrictBool,
+        Field(description="If true, delete the attempts, too, with their answers and reports."),
+    ] = False
+
+
+class RemovalRequest(DeletionRequest):
+    """A request to remove a learner from a course."""
+
+    learner: Learner
+
+
+class DeletedData(BaseModel):
+    """The numbers of what a deletion deletes; `deleted` is true after it was done."""
+
+    deleted: bool
+    assignments: int
+    learners: int
+    extensions: int
+    keys: int = Field(description="The valid keys and personal links that end.")
+    attempts: int = Field(
+        description="The recorded attempts. They are deleted only with `with_attempts`."
     )
-
-
-class OwnAttempt(Attempt):
-    """One of the learner's attempts in an assignment."""
-
-    counts: bool = Field(description="True if this attempt counts.")
-
-
-class OwnExercise(BaseModel):
-    """The learner's state at one exercise of an assignment."""
-
-    exercise: str
-    title: str
-    points: float = Field(description="The points of the exercise in the assignment.")
-    earned: float | None = Field(
-        None, description="The points of the attempt that counts, of these points."
-    )
-    best: float | None = Field(
-        None, description="The points of the best attempt before any deduction for lateness."
-    )
-    attempts_left: int | None = Field(None, description="Absent if attempts are not limited.")
-    may_practise: bool = Field(description="True if answers may be graded without being recorded.")
-    shows_solution: bool = Field(description="True if the learner may see the solution now.")
-    attempts: list[OwnAttempt] = Field(description="The learner's attempts, oldest first.")
-
-
-class OwnAssignment(BaseModel):
-    """An assignment as one learner sees it. Dates are in the time zone of the course."""
-
-    id: str
-    title: str
-    state: AssignmentState
-    opens: datetime | None = Field(None, description="From when on attempts are accepted.")
-    due: datetime | None = Field(None, description="The learner's due date.")
-    closes: datetime | None = Field(None, description="Until when late attempts are accepted.")
-    late_worth: float
-    limit: int | None = Field(None, description="The learner's most attempts at each exercise.")
-    is_extended: bool = Field(description="True if this learner has other dates or limits.")
-    exercises: list[OwnExercise]
-
-
-class OwnCourse(BaseModel):
-    """A course as one learner sees it."""
-
-    id: str
-    title: str
-    zone: str
-    name: str = Field(description="The name of the learner.")
-    assignments: list[OwnAssignment]
-
-
-class OwnCourses(BaseModel):
-    """The courses of one learner."""
-
-    learner: str
-    now: datetime = Field(description="The time of the service.")
-    courses: list[OwnCourse]

@@ -1,4 +1,4 @@
-"""The bodies that list and describe exercises, without their answers."""
+"""The bodies that list and describe exercises and generated robots, without their answers."""
 
 from pydantic import BaseModel, Field
 
@@ -93,3 +93,15 @@ class ExerciseView(CatalogueEntry):
     )
     symbols: list[SymbolView]
     parts: list[PartView]
+
+
+class PracticeRobot(BaseModel):
+    """A generated robot. Its exercise is found by its id like any other."""
+
+    id: str = Field(description="The id of the exercise.", examples=["practice-2-standard~k3f9"])
+    level: int
+    convention: Convention
+    difficulty: int = Field(
+        description="Counted: joints, changes of direction, offsets, sliding joints, free choices, "
+        "twists other than 90°."
+    )

@@ -42,6 +42,15 @@ class TableToDraw(BaseModel):
     )
 
 
+class PlacedToDraw(BaseModel):
+    """Frames as in the submission of a part of the kind `frames`, right or wrong."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    part: str = Field(description="The part of the exercise.")
+    rows: Any = Field(description='The rows, `[{"axis", "z", "origin", "x"}, …]`, or pasted text.')
+
+
 class FramesRequest(BaseModel):
     """A request to draw a table, the mechanism of an exercise, or both."""
 
@@ -51,6 +60,9 @@ class FramesRequest(BaseModel):
         None, description="The exercise whose mechanism is drawn, and whose symbols a table uses."
     )
     table: TableToDraw | None = Field(None, description="The table whose frames are drawn.")
+    placed: PlacedToDraw | None = Field(
+        None, description="The placed frames that are drawn. Only with an exercise."
+    )
     joints: Configurations | None = Field(
         None,
         description="Values of all joint variables in order, radians and lengths, for each "
@@ -158,6 +170,22 @@ class FramesOfTable(BaseModel):
     formulas: TableInFormulas | None = Field(None, description="Only if requested.")
 
 
+class FramesAsPlaced(BaseModel):
+    """The placed frames that have numbers. They move with the links on which they are.
+
+    The x axis is as the student wrote it, even if it is not perpendicular to z.
+    """
+
+    labels: list[str] = Field(description="The numbers of these frames.")
+    frames: list[list[Matrix]] = Field(
+        description="For each picture, these frames in the base frame, 4×4 by rows."
+    )
+    left_out: list[UnreadCell] = Field(
+        description="Of each other frame that was begun, the first cell without a number."
+    )
+    error: PreviewError | None = Field(None, description="The reason if there are no rows at all.")
+
+
 class DrawnConfiguration(BaseModel):
     """The mechanism in one picture, in the base frame.
 
@@ -200,6 +228,7 @@ class FramesAnswer(BaseModel):
     )
     joints: list[MovingJoint]
     table: FramesOfTable | None = None
+    placed: FramesAsPlaced | None = None
     mechanism: DrawnMechanism | None = None
     figure: str | None = Field(
         None,

@@ -1,9 +1,84 @@
-"""The results of grading many submissions at once."""
+"""The bodies of requests around a grading: many at once, hints, and other choices of frames."""
 
-from pydantic import BaseModel, Field
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
 
 from service.contract.problems import ProblemDocument
 from service.grading import Report
+from service.hints.steps import STEPS
+from service.submissions.body import GradeRequest
+
+_Label = Annotated[str, Field(max_length=40)]
+
+
+class HintRequest(GradeRequest):
+    """Answers, a message of their report, and the step of its hint."""
+
+    part: _Label = Field(description="The id of the part that the message is on.")
+    code: _Label = Field(description="The code of the message.")
+    row: _Label | None = Field(
+        None, description="The row of the message or of one of its places; absent if it has none."
+    )
+    cell: _Label | None = Field(
+        None, description="The cell of the message or of one of its places; absent if it has none."
+    )
+    step: Annotated[int, Field(strict=True, ge=1, le=STEPS)] = Field(
+        description="1: what to look at. 2: the rule, with its picture. 3: the rule on this row."
+    )
+
+
+class Hint(BaseModel):
+    """One step of a hint."""
+
+    step: int
+    steps: int = Field(description="The number of steps of each hint.")
+    title: str = Field(description="The name of the rule.")
+    text: str
+    picture: str | None = Field(
+        None,
+        description="The path of the picture of the rule, an SVG, from the address of the service. "
+        "`text` says the same in words. Absent in other steps, and if the rule has no picture.",
+    )
+
+
+_Formula = Annotated[str, Field(max_length=200)]
+
+
+class TableRow(BaseModel):
+    """A row of a table: the formulas of its cells."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    a: _Formula
+    alpha: _Formula
+    d: _Formula
+    theta: _Formula
+
+
+class ChoicesRequest(BaseModel):
+    """A right table of the robot."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    part: _Label = Field(description="The id of the part that the table answers.")
+    rows: Annotated[list[TableRow], Field(max_length=12)]
+    angle_unit: Literal["radians", "degrees"] = Field(
+        "radians", description="The unit of angles without a unit."
+    )
+
+
+class ValidTable(BaseModel):
+    """Another valid table."""
+
+    change: str = Field(description="What is different in it, as a sentence.")
+    rows: list[TableRow]
+
+
+class FrameChoices(BaseModel):
+    """Other valid tables, at most three; none if the frames are given or the table is not right."""
+
+    choices: list[ValidTable]
 
 
 class GradeResult(BaseModel):

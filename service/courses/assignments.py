@@ -1,6 +1,7 @@
 """The assignments of a course and the extensions of learners: functions on a connection."""
 
 import json
+import secrets
 from collections.abc import Collection, Mapping
 from datetime import datetime
 from typing import Any
@@ -9,6 +10,7 @@ from zoneinfo import ZoneInfo
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
 from service.attempts.recording import insert_or_ignore
+from service.attempts.storage.score_queue import Priority, queue_scores
 from service.attempts.storage.tables import assignments, attempts, course_learners, extensions
 from service.contract.courses import (
     AssignmentChange,
@@ -51,11 +53,18 @@ def change_assignment(
     """
     zone = _zone(connection, course)
     row = _row(connection, course, assignment)
-    if values := _values(change, zone, known):
+    values = dict(_values(change, zone, known))
+    if row.variants is not None and change.variants:
+        # Another secret would change the variants of all learners.
+        del values["variants"]
+    if values:
         mine = assignments.c.number == row.number
         connection.execute(update(assignments).where(mine).values(values))
     changed = _checked(connection, course, assignment)
     _excuse(connection, _row(connection, course, assignment), zone)
+    if change.exercises is not None:
+        handed_in = attempts.c.assignment == row.number
+        queue_scores(connection, handed_in, Priority.REGRADE)
     return changed
 
 
@@ -126,6 +135,7 @@ def assignments_of(connection: Connection, course: str) -> list[CourseAssignment
             feedback=None if row.feedback is None else json.loads(row.feedback),
             practice=row.practice,
             solution=row.solution,
+            variants=row.variants is not None,
             extensions=extensions_of.get(row.number, []),
         )
         for row in rows
@@ -160,6 +170,8 @@ def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) ->
                 values["max_attempts"] = value
             case "feedback":
                 values[name] = None if value is None else json.dumps(value)
+            case "variants" if value is not None:
+                values[name] = secrets.token_hex(32) if value else None
             case "exercises" if value is not None:
                 _check_exercises([each["exercise"] for each in value], known)
                 values[name] = json.dumps(value)
@@ -194,6 +206,7 @@ def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
     )
     given = select(extensions).where(extensions.c.assignment == row.number)
     own = {each.learner: each for each in connection.execute(given)}
+    excused = []
     for attempt in connection.execute(late).all():
         mine = own.get(attempt.learner)
         due = extended(row, zone, None if mine is None else mine.due).due
@@ -204,3 +217,6 @@ def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
                 .where(attempts.c.number == attempt.number)
                 .values(is_late=False, worth=1.0, points=points)
             )
+            excused.append(attempt.number)
+    if excused:
+        queue_scores(connection, attempts.c.number.in_(excused))

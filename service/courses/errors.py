@@ -8,6 +8,7 @@ CourseFault = Literal[
     "unknown-learner",
     "not-assigned",
     "already-there",
+    "has-attempts",
     "unusable",
 ]
 

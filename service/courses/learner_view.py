@@ -1,30 +1,55 @@
 """The courses and assignments of one learner, as this learner sees them."""
 
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, case, select
 
 from service.attempts.attempt import ListedAttempt
 from service.attempts.results.listing import LISTED
 from service.attempts.storage.tables import attempts, course_learners, courses
 from service.catalogue import Exercise
-from service.contract.courses import (
+from service.contract.own_courses import (
     OwnAssignment,
     OwnAttempt,
     OwnCourse,
     OwnCourses,
     OwnExercise,
 )
+from service.courses.dealing import own_variant
 from service.courses.terms import LearnerTerms, learner_terms
 from service.courses.times import local
 
 # Full marks, but for rounding.
 _FULL = 1 - 1e-9
 
+
+@dataclass(frozen=True, slots=True)
+class _Done:
+    """An attempt, and its points before any deduction for lateness."""
+
+    attempt: ListedAttempt
+    whole_points: float
+
+    @property
+    def share(self) -> float:
+        """The points that count, as a share of 1."""
+        return self._share(self.attempt.earned)
+
+    @property
+    def whole_share(self) -> float:
+        """The points before a deduction for lateness as a share of 1; a tutor's points if given."""
+        return self.share if self.attempt.awarded is not None else self._share(self.whole_points)
+
+    def _share(self, points: float) -> float:
+        return points / self.attempt.max_points if self.attempt.max_points else 0.0
+
+
 # The attempts of a learner by the numbers of their assignments and by exercise, oldest first.
-_Attempts = Mapping[tuple[int, str], list[tuple[ListedAttempt, float]]]
+_Attempts = Mapping[tuple[int, str], list[_Done]]
 
 
 def own_view(
@@ -49,6 +74,14 @@ def own_view(
         course: [each for _, each in found]
         for course, found in groupby(learner_terms(connection, learner, only), lambda it: it[0])
     }
+
+    def titles(terms: LearnerTerms) -> dict[str, str]:
+        known = {name: catalogue[name] for name in terms.exercises if name in catalogue}
+        return {
+            name: own_variant(connection, terms, learner, exercise).title
+            for name, exercise in known.items()
+        }
+
     return OwnCourses(
         learner=learner,
         now=now,
@@ -56,7 +89,7 @@ def own_view(
             OwnCourse(
                 **row._mapping,
                 assignments=[
-                    _assignment(each, done, catalogue, now) for each in terms.get(row.id, ())
+                    _assignment(each, done, titles(each), now) for each in terms.get(row.id, ())
                 ],
             )
             for row in rows
@@ -84,20 +117,23 @@ def has_full_marks(connection: Connection, learner: str, number: int, exercise: 
 
 
 def _attempts(connection: Connection, learner: str) -> _Attempts:
-    found: dict[tuple[int, str], list[tuple[ListedAttempt, float]]] = {}
+    found: dict[tuple[int, str], list[_Done]] = {}
+    # Dividing the points by the worth would lose them if it is 0, and digits if it is small.
+    reduced = case((attempts.c.worth != 1, attempts.c.report))
     rows = connection.execute(
-        select(*LISTED, attempts.c.assignment, attempts.c.worth)
+        select(*LISTED, attempts.c.assignment, reduced)
         .where(attempts.c.learner == learner, attempts.c.assignment.is_not(None))
         .order_by(attempts.c.number)
     )
-    for *listed, assignment, worth in rows:
+    for *listed, assignment, report in rows:
         attempt = ListedAttempt(*listed)
-        found.setdefault((assignment, attempt.exercise), []).append((attempt, worth))
+        whole = attempt.points if report is None else float(json.loads(report)["points"])
+        found.setdefault((assignment, attempt.exercise), []).append(_Done(attempt, whole))
     return found
 
 
 def _assignment(
-    terms: LearnerTerms, done: _Attempts, catalogue: Mapping[str, Exercise], now: datetime
+    terms: LearnerTerms, done: _Attempts, titles: Mapping[str, str], now: datetime
 ) -> OwnAssignment:
     rules = terms.rules
     return OwnAssignment(
@@ -111,7 +147,7 @@ def _assignment(
         limit=rules.limit,
         is_extended=terms.is_extended,
         exercises=[
-            _exercise(name, terms, done.get((terms.number, name), []), catalogue.get(name), now)
+            _exercise(name, terms, done.get((terms.number, name), []), titles.get(name, name), now)
             for name in terms.exercises
         ],
     )
@@ -120,28 +156,32 @@ def _assignment(
 def _exercise(
     name: str,
     terms: LearnerTerms,
-    done: list[tuple[ListedAttempt, float]],
-    exercise: Exercise | None,
+    done: list[_Done],
+    title: str,
     now: datetime,
 ) -> OwnExercise:
-    counted = [each for each in done if each[0].ordinal is not None or each[0].awarded is not None]
-    best = max(counted, key=_share, default=None)
+    counted = [
+        each
+        for each in done
+        if each.attempt.ordinal is not None or each.attempt.awarded is not None
+    ]
+    best = max(counted, key=lambda it: it.share, default=None)
     points, is_full, limit = terms.exercises[name], _is_full(done), terms.rules.limit
-    tried = sum(attempt.ordinal is not None for attempt, _ in done)
+    tried = sum(each.attempt.ordinal is not None for each in done)
     return OwnExercise(
         exercise=name,
-        title=exercise.title if exercise else name,
+        title=title,
         points=points,
-        earned=None if best is None else round(_share(best) * points, 6),
-        best=max((round(_whole_share(each) * points, 6) for each in counted), default=None),
+        earned=None if best is None else round(best.share * points, 6),
+        best=max((round(each.whole_share * points, 6) for each in counted), default=None),
         attempts_left=None if limit is None else max(0, limit - tried),
         may_practise=terms.may_practise(now, is_full=is_full),
         shows_solution=terms.shows_solution(now, is_full=is_full),
         attempts=[
             OwnAttempt(
-                **{field: getattr(each[0], field) for field in _SHOWN},
-                at=each[0].at.astimezone(terms.zone),
-                points=each[0].earned,
+                **{field: getattr(each.attempt, field) for field in _SHOWN},
+                at=each.attempt.at.astimezone(terms.zone),
+                points=each.attempt.earned,
                 counts=each is best,
             )
             for each in done
@@ -152,18 +192,5 @@ def _exercise(
 _SHOWN = ("id", "exercise", "learner", "ordinal", "is_late", "max_points")
 
 
-def _share(done: tuple[ListedAttempt, float]) -> float:
-    attempt, _ = done
-    return attempt.earned / attempt.max_points if attempt.max_points else 0.0
-
-
-def _whole_share(done: tuple[ListedAttempt, float]) -> float:
-    """Return the share of an attempt's points before a deduction for lateness."""
-    attempt, worth = done
-    if attempt.awarded is not None or not worth:
-        return _share(done)
-    return _share(done) / worth
-
-
-def _is_full(done: list[tuple[ListedAttempt, float]]) -> bool:
-    return any(_whole_share(each) >= _FULL for each in done)
+def _is_full(done: list[_Done]) -> bool:
+    return any(each.whole_share >= _FULL for each in done)

@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import Any, Final
 from zoneinfo import ZoneInfo
 
-from sqlalchemy import Connection, Row, and_, select
+from sqlalchemy import Connection, Row, and_, bindparam, select
 
 from service.attempts.storage.tables import assignments, course_learners, courses, extensions
 from service.catalogue import Exercise, FeedbackLevel, least
@@ -16,12 +16,35 @@ from service.contract.courses import AssignmentState, Practice, ShowSolution
 from service.courses.errors import CourseError
 from service.courses.times import local
 
+_EXTENDED: Final = ("due", "closes", "max_attempts")
+_OWN: Final = and_(
+    extensions.c.assignment == assignments.c.number,
+    extensions.c.learner == bindparam("learner"),
+)
+# Build the statements once: building one takes longer than running it.
+_OF_LEARNER: Final = (
+    select(
+        assignments,
+        courses.c.zone,
+        extensions.c.learner.label("extended"),
+        *(extensions.c[name].label(f"own_{name}") for name in _EXTENDED),
+    )
+    .join_from(course_learners, courses)
+    .join(assignments)
+    .join(extensions, _OWN, isouter=True)
+    .where(course_learners.c.learner == bindparam("learner"))
+    .order_by(assignments.c.course, assignments.c.number)
+)
+_OF_COURSE: Final = _OF_LEARNER.where(course_learners.c.course == bindparam("course"))
+_OF_ASSIGNMENT: Final = _OF_COURSE.where(assignments.c.id == bindparam("assignment"))
+
 
 @dataclass(frozen=True, slots=True)
 class LearnerTerms:
     """The terms of an assignment for one learner, with an extension if there is one.
 
     ``number`` is that of the row of the assignment; ``exercises`` are the points of each exercise.
+    ``variants`` is the secret of the learners' variants, or None if there are none.
     """
 
     number: int
@@ -34,6 +57,7 @@ class LearnerTerms:
     practice: Practice
     solution: ShowSolution
     is_extended: bool
+    variants: str | None = field(default=None, repr=False)
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
         """The highest level of the learner's attempt; never more than the exercise allows."""
@@ -75,9 +99,10 @@ class LearnerTerms:
 
 def terms_of(connection: Connection, course: str, assignment: str, learner: str) -> LearnerTerms:
     """Return the terms of an assignment for a learner of the course. Raises CourseError."""
-    for _, each in learner_terms(connection, learner, course):
-        if each.id == assignment:
-            return each
+    which = {"learner": learner, "course": course, "assignment": assignment}
+    found = connection.execute(_OF_ASSIGNMENT, which).one_or_none()
+    if found is not None:
+        return _terms(found)
     enrolled = and_(course_learners.c.course == course, course_learners.c.learner == learner)
     if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
         raise CourseError("unknown-course", f"There is no course {course}.")
@@ -93,28 +118,12 @@ def learner_terms(
 
     The assignments of a course are in the order in which they were added.
     """
-    mine = course_learners.c.learner == learner
-    if only is not None:
-        mine &= course_learners.c.course == only
-    own = and_(extensions.c.assignment == assignments.c.number, extensions.c.learner == learner)
-    rows = connection.execute(
-        select(
-            assignments,
-            courses.c.zone,
-            extensions.c.learner.label("extended"),
-            *(extensions.c[name].label(f"own_{name}") for name in _EXTENDED),
-        )
-        .join_from(course_learners, courses)
-        .join(assignments)
-        .join(extensions, own, isouter=True)
-        .where(mine)
-        .order_by(assignments.c.course, assignments.c.number)
-    )
+    if only is None:
+        rows = connection.execute(_OF_LEARNER, {"learner": learner})
+    else:
+        rows = connection.execute(_OF_COURSE, {"learner": learner, "course": only})
     for row in rows:
         yield row.course, _terms(row)
-
-
-_EXTENDED = ("due", "closes", "max_attempts")
 
 
 def _terms(row: Row[Any]) -> LearnerTerms:
@@ -132,6 +141,7 @@ def _terms(row: Row[Any]) -> LearnerTerms:
         practice=row.practice,
         solution=row.solution,
         is_extended=row.extended is not None,
+        variants=row.variants,
     )
 
 

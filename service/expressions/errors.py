@@ -23,7 +23,8 @@ Cause = Literal[
     "ambiguous_number", "ambiguous_shorthand", "ambiguous_star", "ambiguous_unit", "argument",
     "arguments", "beyond", "boolean", "character", "command", "cube_root", "degrees", "empty",
     "function_power", "grammar", "index", "invalid_shorthand", "invisible", "look_alike",
-    "mismatch", "mixed_number", "name", "not_finite", "plus_minus", "raised_zero", "subscript",
+    "mismatch", "mixed_number", "name", "not_finite", "plus_minus", "quantity", "raised_zero",
+    "subscript",
     "transpose", "two_units", "unclosed", "unit_on_variable", "values",
 ]  # fmt: skip
 

@@ -80,7 +80,8 @@ def subject_of(exercise: Exercise) -> Subject:
         raise LookupError(f"exercise {exercise.id!r} has no robot to draw")
     seen = exercise.view
     return Subject(
-        exercise.id,
+        # Ids inside the SVG have no "~", which separates the seed of a variant.
+        exercise.id.replace("~", "-"),
         exercise.title,
         exercise.reference,
         exercise.variables,

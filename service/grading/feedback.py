@@ -13,6 +13,7 @@ from service.grading.report import (
     PartReport,
     Place,
     RowReport,
+    RuleName,
     Severity,
     Verdict,
 )
@@ -29,7 +30,7 @@ class Finding:
     ``code`` is stable, so that mistakes of a class can be counted. ``correction`` is a formula, an
     instruction in words, or empty. ``values`` is a counterexample. ``reading`` is true for a
     finding on how a text was read; it reveals nothing and is visible at every level. ``suggestion``
-    is the repaired text of an unreadable one.
+    is the repaired text of an unreadable one. ``rule`` is the rule that a hint explains.
     """
 
     code: str
@@ -40,6 +41,7 @@ class Finding:
     values: dict[str, float | str] | None = None
     reading: bool = False
     suggestion: str | None = None
+    rule: RuleName | None = None
 
     def message(self, places: tuple[Place, ...] = (), *, corrects: bool) -> Feedback:
         """Return the message, with the correction only if ``corrects`` is true."""
@@ -57,6 +59,7 @@ class Finding:
             correction=Correction(correction) if isinstance(correction, str) else correction,
             values=values,
             reading=self.reading or None,
+            rule=self.rule,
         )
 
 

@@ -50,6 +50,9 @@ def lost_in_row(row: RowReport, points: float) -> LostPoints:
     cells = tuple(cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT)
     sentence = _SENTENCES[CELLS] if 0 < len(cells) < len(row.cells) else _WHOLE_ROW
     message = sentence.format(cells=_named(cells), row=row.label)
+    # A row that is a single thing of its own, such as the mark on a slip, is no row of a table.
+    if cells == (row.label,):
+        message = row.label
     return LostPoints(CELLS, rounded_points(points), message, row.label, cells)
 
 

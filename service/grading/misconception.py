@@ -7,6 +7,7 @@ hypotheses: numbers to compare with the answer, each with the words of its messa
         of=WrongPosition,
         rank=20,
         code="reversed_position",
+        rule="position_vector",
         means="all signs are wrong: the vector leads from the point to the origin",
         example=("planar-rr", "position", "[-a1 c1 - a2 c12, -a1 s1 - a2 s12]"),
         unlike="[a1 c1 + a2 c12, -a1 s1 - a2 s12]",
@@ -31,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.grading.feedback import Finding
-from service.grading.report import Severity
+from service.grading.report import RuleName, Severity
 from service.time_slices import checkpoint
 
 Answer = TypeVar("Answer")
@@ -49,6 +50,7 @@ class Record:
 
     The engine asks it about each answer that is an instance of ``of`` and meets ``when``, in the
     order of ``rank``. Its findings have the first of ``codes`` unless they name another of them.
+    ``rule`` is the rule of DH or of kinematics that hints about its findings explain.
     ``means`` is the text in docs: one for all codes, or one for each code. ``example`` is an answer
     that the record explains, ``unlike`` an answer to the same part that it does not explain. Such
     an answer is what a student sends, or the model answer with some cells changed:
@@ -59,6 +61,7 @@ class Record:
     rank: int
     codes: tuple[str, ...] = ()
     means: str | tuple[str, ...] = ""
+    rule: RuleName | None = None
     example: Example | None = None
     unlike: Any = None
     when: Callable[[Any], bool] | None = None
@@ -79,7 +82,7 @@ class Record:
         self, hint: str, correction: str = "", severity: Severity = Severity.ERROR
     ) -> Finding:
         """Return a finding with the code, for a record without a function."""
-        return Finding(self.code, hint, correction, severity)
+        return Finding(self.code, hint, correction, severity, rule=self.rule)
 
     def hypotheses(self, source: object) -> Iterable["Hypothesis[Any]"]:
         """Return the hypotheses about a wrong answer; each is built on demand."""
@@ -180,7 +183,8 @@ class Hypothesis(Generic[Answer]):
         if self.record is None or not self.record.codes:
             return several
         record = self.record
-        return tuple(each if each.code else replace(each, code=record.code) for each in several)
+        coded = (each if each.code else replace(each, code=record.code) for each in several)
+        return tuple(replace(each, rule=each.rule or record.rule) for each in coded)
 
 
 @dataclass(slots=True)

@@ -140,7 +140,8 @@ class Content:
     all groups are worth the same. ``most`` is the largest number of cells that count, because a
     student's own choices may add content cells. With ``empty_is_wrong``, an empty cell costs as
     much as a wrong one, so that leaving a cell empty gains nothing. ``usual`` are the numbers of
-    rows and content cells of the reference, if those of an answer may differ.
+    rows and content cells of the reference, if those of an answer may differ. ``given`` marks the
+    rows that the exercise gives, which earn nothing; empty if there are none.
     """
 
     known: tuple[tuple[bool, ...], ...]
@@ -150,6 +151,12 @@ class Content:
     most: int | None = None
     empty_is_wrong: bool = False
     usual: tuple[int, int] | None = None
+    given: tuple[bool, ...] = ()
+
+    @property
+    def earning(self) -> tuple[bool, ...]:
+        """True for each row that can earn points."""
+        return tuple(not given for given in self.given) or (True,) * len(self.known)
 
     @property
     def count(self) -> int:
@@ -165,9 +172,10 @@ class Judged:
     of slips that no cell shows, such as an extra row. ``whole_cost`` is the share of the points
     that a slip of the whole answer costs, if one explains all wrong cells. Cells that are also
     wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is true if no
-    joint moves an answer that must move. ``at_most`` is a judgement that limits the points of this
-    one. ``lost`` is an upper limit of the lost units of content. ``chain`` returns the answer as a
-    chain, or None; it is called only if another part follows this one.
+    joint moves an answer that must move. The points of ``at_most`` are an upper limit for this
+    judgement, those of ``at_least`` a lower one. ``lost`` is an upper limit of the lost units of
+    content. ``chain`` returns the answer as a chain, or None; it is called only if another part
+    follows this one.
     """
 
     rows: tuple[RowReport, ...]
@@ -178,6 +186,7 @@ class Judged:
     beside: "Judged | None" = None
     stands_still: bool = False
     at_most: "Judged | None" = None
+    at_least: "Judged | None" = None
     lost: float = math.inf
     chain: Callable[[], StudentChain | None] = _no_chain
 

@@ -6,11 +6,39 @@ Plain frozen dataclasses. A field that is None is left out where a report is sen
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
 from service.catalogue import FeedbackLevel
+
+# The rules that ``service/hints`` explains. ``of_column`` is the rule of the column of a DH table.
+RuleName: TypeAlias = Literal[
+    "of_column",
+    "link_length",
+    "link_twist",
+    "link_offset",
+    "joint_angle",
+    "joint_variable",
+    "rows",
+    "convention",
+    "angle_unit",
+    "product",
+    "rotation_columns",
+    "position_vector",
+    "frame_z",
+    "frame_origin",
+    "frame_x",
+    "inverse",
+    "sine_and_cosine",
+    "angle_sum",
+    "atan2",
+    "euler_sequence",
+    "elementary_turn",
+    "screw_axis",
+    "exponentials",
+    "dependence",
+]
 
 
 class Verdict(StrEnum):
@@ -64,7 +92,8 @@ class Feedback:
     of an unreadable one. ``correction`` is only in reports at the level full. ``values`` is a
     counterexample for the first place: the values of the symbols, and "yours", the value of the
     entry there; at the level full, "expected" is the right value. ``reading`` is true if the
-    message is on how a text was read; it is not part of a report.
+    message is on how a text was read, and ``rule`` is the rule that a hint explains; neither is
+    part of a report.
     """
 
     code: str
@@ -76,6 +105,7 @@ class Feedback:
     correction: Correction | None = None
     values: dict[str, float | str] | None = None
     reading: Annotated[bool | None, Field(exclude=True)] = field(default=None, compare=False)
+    rule: Annotated[RuleName | None, Field(exclude=True)] = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

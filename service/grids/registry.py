@@ -7,21 +7,27 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats import columns, csv, html, latex, markdown, semicolons, tsv
-from service.grids.matrices import bracketed, drawn_matrix, matlab_rows
+from service.grids.formats.data_frame import without_frame
+from service.grids.matrices import bracketed, drawn_matrix, matlab_rows, word
 from service.grids.scripts.given_values import without_given_values
 from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.robot_table import RobotTable
 from service.grids.scripts.session import session_outputs
+from service.grids.scripts.titles import without_fence, without_titles
+from service.grids.scripts.toolbox_print import describes_print, read_print
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
-    html.FORMAT, latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT,
+    html.FORMAT, word.FORMAT, latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT,
     matlab_rows.FORMAT, tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
 )  # fmt: skip
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
+
+# Separators and signs of Chinese keyboards.
+_FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］｛｝＆＠　", ",;()|=-+:[]{}&@ ")
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"
@@ -32,7 +38,9 @@ def read_grid(text: str) -> Grid:
 
     Takes linear time. The length of the text is bounded by ``GRID_LIMITS``.
     """
-    source, notes = without_given_values(without_title(pasted_source(text)))
+    source, titles = without_titles(without_frame(without_title(pasted_source(text))))
+    source, values = without_given_values(source)
+    notes = (*titles, *values)
     found = grid_of(source)
     return replace(found, notes=(*notes, *found.notes)) if notes else found
 
@@ -42,6 +50,8 @@ def read_robot(text: str) -> RobotTable | None:
 
     Raises GridError if the text is such a script but its table is not certain. Takes linear time.
     """
+    if describes_print(text) and not describes_robot(text):
+        return read_print(_limited(text))
     if describes_robot(text):
         return read_script(_limited(text))
     return read_columns(_limited(text)) if describes_columns(text) else None
@@ -63,7 +73,9 @@ def _limited(text: str) -> SourceText:
         most = GRID_LIMITS.characters
         message = f"A pasted text has at most {most:,} characters; yours has {len(text):,}."
         raise GridError("too_long", message, (most, len(text)))
-    source = SourceText.of(text).strip("\ufeff")
+    plain = SourceText.of(text)
+    plain = SourceText(text.translate(_FULL_WIDTH), plain.starts, plain.ends)
+    source = without_fence(plain.strip("\ufeff"))
     if not source.text.strip():
         raise GridError("empty", "Nothing is written here.", (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:

@@ -6,7 +6,13 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from service.importing.home_statement import HomeRobot, Letters, home_statement, number_text
+from service.importing.home_statement import (
+    HomeRobot,
+    Letters,
+    home_statement,
+    number_text,
+    tool_label,
+)
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Row, Table, modified_rows
 from service.kinematics.dh import Convention
 
@@ -41,11 +47,11 @@ def letters_for(table: Table) -> Letters:
 
 def exercise_text(robot: HomeRobot, draft: Draft) -> str:
     """Return an exercise file that asks for the table and the pose of the robot."""
-    robot = replace(robot, letters=_without_clashes(robot))
+    robot = replace(robot, letters=without_clashes(robot))
     statement = home_statement(robot, draft.convention)
-    rows = _rows_in(robot, draft.convention)
-    joints = _variables(robot.structure)
-    joint_count, tool = len(robot.structure), len(robot.table)
+    rows = rows_in(robot, draft.convention)
+    joints = variable_names(robot.structure)
+    joint_count, tool = len(robot.structure), tool_label(robot, draft.convention)
     points = _POINTS_OF_A_ROW * len(rows)
     asked = "one row for each joint" + (
         ", and a row e for the tool frame" if len(rows) > joint_count else ""
@@ -108,7 +114,7 @@ def _equivalent_check(robot: HomeRobot, convention: Convention) -> str:
     table[0, [A, ALPHA]] *= -1
     table[0, THETA] += math.pi
     table[1, THETA] -= math.pi
-    rows = _rows_in(replace(robot, table=table), convention)
+    rows = rows_in(replace(robot, table=table), convention)
     return f"""
 [[checks]]
 title = "The same robot with x1 turned over"
@@ -117,7 +123,7 @@ answers.table = {_answer(rows)}
 """
 
 
-def _rows_in(robot: HomeRobot, convention: Convention) -> list[Row[str]]:
+def rows_in(robot: HomeRobot, convention: Convention) -> list[Row[str]]:
     """Return the cells of the table in a convention as texts."""
     rows = _rows(robot)
     if convention is Convention.MODIFIED:
@@ -136,11 +142,12 @@ def _summary(robot: HomeRobot) -> str:
     return f"{len(robot.structure)} joints ({robot.structure}), {lengths}."
 
 
-def _variables(structure: str) -> list[str]:
+def variable_names(structure: str) -> list[str]:
+    """Return the names of the joint variables, such as theta1 and d2 for RP."""
     return [f"{'d' if kind == 'P' else 'theta'}{i}" for i, kind in enumerate(structure, 1)]
 
 
-def _without_clashes(robot: HomeRobot) -> Letters:
+def without_clashes(robot: HomeRobot) -> Letters:
     """Return the letters; a constant in the d of a sliding joint is not called d, but h."""
     sliding = {i for i, kind in enumerate(robot.structure) if kind == "P"}
     return {
@@ -151,7 +158,7 @@ def _without_clashes(robot: HomeRobot) -> Letters:
 
 def _rows(robot: HomeRobot) -> list[Row[str]]:
     """Return the cells of the standard table as texts."""
-    variables = _variables(robot.structure)
+    variables = variable_names(robot.structure)
     rows = []
     for i, row in enumerate(robot.table):
         cells = [

@@ -3,12 +3,13 @@
 The words are complete: the axes and the tool frame can be computed from them alone.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from service.kinematics.chain import Table, frames
+from service.kinematics.chain import ALPHA, A, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -23,7 +24,8 @@ class HomeRobot:
 
     The table may have one row more than joints, for a fixed tool frame.
     ``letters`` has the letter of a cell by row and column. A minus sign in the table stays in
-    front of the letter.
+    front of the letter. A number as text may take the place of a letter: the statement then has
+    sums such as "0.2 + 0.35".
     """
 
     table: Table
@@ -53,9 +55,10 @@ def home_statement(robot: HomeRobot, convention: Convention) -> str:
 
     Raises UnevenLettersError if a coordinate is not a sum of letters.
     """
-    last = len(robot.table)
+    tool_frame = tool_label(robot, convention)
     wrapped = [*_joints_in_words(robot)]
-    units = "" if robot.letters else " All lengths are in metres."
+    lettered = any(name[0].isalpha() for name in robot.letters.values())
+    units = "" if lettered else " All lengths are in metres."
     at_home = (
         f"The robot has {_structure_in_words(robot.structure)}.{units} At home all joint variables "
         f"are 0. These are the axes at home, in the base frame {{0}}:"
@@ -63,13 +66,27 @@ def home_statement(robot: HomeRobot, convention: Convention) -> str:
     positive = "Each joint variable counts positive about or along the direction that is named."
     *_, tool = _origins(robot)
     end = robot.frames(**robot.lengths())[-1]
+    x, z = (
+        (f"x{tool_frame}", f"z{tool_frame}") if tool_frame != "e" else ("its x axis", "its z axis")
+    )
     given = (
-        f"The base frame {{0}} and the tool frame {{{last}}} are given. At home the origin of "
-        f"{{{last}}} is at {tool}, x{last} points {_way(end[:3, 0])} and z{last} points "
+        f"The base frame {{0}} and the tool frame {{{tool_frame}}} are given. At home the origin "
+        f"of {{{tool_frame}}} is at {tool}, {x} points {_way(end[:3, 0])} and {z} points "
         f"{_way(end[:3, 2])}. The frames on the joints are yours to choose by the "
         f"{convention.value} convention."
     )
     return "\n\n".join([at_home, "\n".join(wrapped), positive, given])
+
+
+def tool_label(robot: HomeRobot, convention: Convention) -> str:
+    """Return the label of the tool frame: the number of rows, or e for a fixed row in addition.
+
+    In the modified convention, frame n is on the last axis. If the tool frame is not, the table
+    has a row e.
+    """
+    last_a, last_alpha = robot.table[-1, [A, ALPHA]]
+    fixed = convention is Convention.MODIFIED and max(abs(last_a), abs(last_alpha)) > _SAME
+    return "e" if fixed or len(robot.table) > len(robot.structure) else str(len(robot.table))
 
 
 def _structure_in_words(structure: str) -> str:
@@ -96,7 +113,25 @@ def _way(direction: Numbers) -> str:
     for axis, name in enumerate(("x0", "y0", "z0")):
         if abs(direction[axis]) > 1 - _SAME:
             return f"along {name}" if direction[axis] > 0 else f"opposite to {name}"
-    return f"along ({', '.join(number_text(each) for each in direction)})"
+    return _tilted(direction) or f"along ({', '.join(number_text(each) for each in direction)})"
+
+
+def _tilted(direction: Numbers) -> str:
+    """Return a direction between two axes, 15°, 30° or 45° from one of them; else an empty text.
+
+    >>> _tilted(np.array([-0.5, 0, 0.75**0.5]))
+    '30° from z0 towards -x0'
+    """
+    signed = [
+        (abs(each), ("-" if each < 0 else "") + name)
+        for each, name in zip(direction, ("x0", "y0", "z0"), strict=True)
+    ]
+    (least, _), (side, towards), (main, start) = sorted(signed, key=lambda each: each[0])
+    angle = math.degrees(math.atan2(side, main))
+    steps = round(angle / 15)
+    if least > _SAME or abs(angle - 15 * steps) > _SAME:
+        return ""
+    return f"{15 * steps}° from {start} towards {towards}"
 
 
 def _origins(robot: HomeRobot) -> list[str]:

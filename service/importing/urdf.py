@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
-from xml.etree import ElementTree
+from xml.parsers import expat
 
 import numpy as np
 
@@ -94,7 +94,7 @@ class _Collector:
     _path: list[str] = field(default_factory=list)
     _elements: int = 0
 
-    def doctype(self, *_declaration: str | None) -> None:
+    def doctype(self, *_declaration: object) -> None:
         raise UnusableUrdfError("the file has a DOCTYPE; a URDF needs none")
 
     def start(self, tag: str, attributes: Mapping[str, str]) -> None:
@@ -137,23 +137,19 @@ class _Collector:
     def end(self, _tag: str) -> None:
         self._path.pop()
 
-    def close(self) -> None:
-        """Do nothing: the parser asks for this method."""
-
 
 def _collected(data: bytes) -> _Collector:
     if len(data) > MOST_BYTES:
         raise UnusableUrdfError(f"the file is larger than {MOST_BYTES // 2**10} KiB")
     collector = _Collector()
-    parser = ElementTree.XMLParser(target=collector)
+    # Without namespaces, because many files use prefixes such as drake: that they do not declare.
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = collector.doctype
+    parser.StartElementHandler = collector.start
+    parser.EndElementHandler = collector.end
     try:
-        parser.feed(data)
-        parser.close()
-    except ElementTree.ParseError as error:
-        if "unbound prefix" in str(error):
-            raise UnusableUrdfError(
-                "the file uses an undeclared XML prefix, such as xacro:; expand xacro files first"
-            ) from None
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
         raise UnusableUrdfError(f"the file is not well-formed XML: {error}") from None
     except (LookupError, ValueError) as error:
         if isinstance(error, UnusableUrdfError):

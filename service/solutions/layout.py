@@ -1,8 +1,9 @@
 """Lay out an answer as JSON, as text to paste, and as LaTeX."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
+from service.catalogue.parts.frames import FRAME_CELLS
 from service.expressions.printing.latex import to_latex
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Node
@@ -49,10 +50,57 @@ def table(
     return PrintedAnswer(_markdown(labels, cells), _tabular(labels, rows, convention), answer)
 
 
+@dataclass(frozen=True, slots=True)
+class PrintedFrame:
+    """A placed frame; z and x are the name of a base direction, or a vector."""
+
+    label: str
+    joint: str
+    z: str | Sequence[Node]
+    origin: Sequence[Node]
+    x: str | Sequence[Node]
+
+
+def frames(placed: Sequence[PrintedFrame]) -> PrintedAnswer:
+    """Return placed frames as rows with names, as a Markdown table, and as a LaTeX tabular."""
+    answer = [
+        {
+            "frame": each.label,
+            "axis": each.joint,
+            "z": _vector(each.z, to_text),
+            "origin": list(map(to_text, each.origin)),
+            "x": _vector(each.x, to_text),
+        }
+        for each in placed
+    ]
+    text = _lines([["frame", *FRAME_CELLS], *(_frame_cells(each, to_text) for each in placed)])
+    head = "frame & axis & $z$ & $o_x$ & $o_y$ & $o_z$ & $x$"
+    body = [" & ".join(f"${cell}$" for cell in _frame_cells(each, to_latex)) for each in placed]
+    lines = "\n".join([rf"{head} \\ \hline", *(rf"{line} \\" for line in body)])
+    return PrintedAnswer(text, f"\\begin{{tabular}}{{c|cccccc}}\n{lines}\n\\end{{tabular}}", answer)
+
+
+def _frame_cells(placed: PrintedFrame, write: Callable[[Node], str]) -> list[str]:
+    z, x = (_vector(direction, write) for direction in (placed.z, placed.x))
+    return [placed.label, placed.joint, z, *map(write, placed.origin), x]
+
+
+def _vector(direction: str | Sequence[Node], write: Callable[[Node], str]) -> str:
+    return direction if isinstance(direction, str) else f"[{', '.join(map(write, direction))}]"
+
+
 def row(nodes: Sequence[Node], convention: Convention) -> PrintedAnswer:
     """Return one row of a DH table, laid out as a table."""
     answer = dict(zip(COLUMNS, map(to_text, nodes), strict=True))
     return replace(table([nodes], ["1"], convention, named=False), answer=answer)
+
+
+def marked(marks: Sequence[str], printed: PrintedAnswer) -> PrintedAnswer:
+    """Return a table and the cells that are marked in another one."""
+    line = f"marked: {', '.join(marks)}"
+    latex = rf"\text{{{line}}}" + "\n" + printed.latex
+    answer = {"marked": list(marks), "table": printed.answer}
+    return PrintedAnswer(f"{line}\n{printed.text}", latex, answer)
 
 
 def no_row() -> PrintedAnswer:
@@ -73,7 +121,12 @@ def product(labels: Sequence[str]) -> Shown:
 
 
 def _markdown(labels: Sequence[str], cells: Sequence[Sequence[str]]) -> str:
-    lines = [["i", *COLUMNS], *([label, *row] for label, row in zip(labels, cells, strict=True))]
+    rows = ([label, *row] for label, row in zip(labels, cells, strict=True))
+    return _lines([["i", *COLUMNS], *rows])
+
+
+def _lines(lines: list[list[str]]) -> str:
+    """Return a Markdown table whose first line is its header."""
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     lines.insert(1, ["-" * width for width in widths])
     return "\n".join(f"| {' | '.join(map(str.ljust, line, widths))} |" for line in lines)

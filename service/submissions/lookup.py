@@ -2,7 +2,10 @@
 
 import difflib
 from collections.abc import Iterable, Mapping
-from typing import TypeVar
+from typing import TypeVar, cast
+
+from service.catalogue import Exercise
+from service.variants.variant import NoVariantError, variant_of
 
 _T = TypeVar("_T")
 
@@ -13,19 +16,29 @@ _LONGEST = 64
 class UnknownExerciseError(LookupError):
     """No exercise has this id; ``suggestion`` is the nearest known id, or None."""
 
-    def __init__(self, exercise_id: str, known: tuple[str, ...]) -> None:
+    def __init__(self, exercise_id: str, known: tuple[str, ...], reason: str = "") -> None:
         self.known = known
-        self.suggestion = nearest(exercise_id, known)
+        self.suggestion = None if reason else nearest(exercise_id, known)
         hint = f" Did you mean {self.suggestion!r}?" if self.suggestion else ""
-        super().__init__(f"There is no exercise {exercise_id[:_LONGEST]!r}.{hint}")
+        super().__init__(reason or f"There is no exercise {exercise_id[:_LONGEST]!r}.{hint}")
 
 
 def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
-    """Return the value for an exercise's id. Raises UnknownExerciseError."""
+    """Return the value for an exercise's id, or the variant ``<exercise>~<seed>``.
+
+    Raises UnknownExerciseError.
+    """
     try:
         return catalogue[exercise_id]
     except KeyError:
-        raise UnknownExerciseError(exercise_id, tuple(catalogue)) from None
+        plain_id, tilde, seed = exercise_id.partition("~")
+        exercise = catalogue.get(plain_id) if tilde else None
+    if not isinstance(exercise, Exercise):
+        raise UnknownExerciseError(plain_id, tuple(catalogue))
+    try:
+        return cast("_T", variant_of(exercise, seed))
+    except NoVariantError as error:
+        raise UnknownExerciseError(exercise_id, tuple(catalogue), str(error)) from error
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:

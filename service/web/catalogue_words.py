@@ -9,6 +9,8 @@ from service.kinematics.dh import Convention
 _KIND_NAMES: Final = {
     "dh_table": "DH table",
     "dh_row": "DH row",
+    "frames": "placing frames",
+    "find_slip": "finding the slip",
     "link_transforms": "link transforms",
     "euler_angles": "Euler angles",
     "screw_axes": "screw axes",

@@ -10,11 +10,12 @@ from service.api.routes.reference import SCRIPT, START, STYLE
 from service.catalogue import Exercise, by_level
 from service.formats.shared.html_templates import html, own_html
 from service.typeset.statement import statement_html
+from service.variants.robots.practice_id import practice_id
 from service.web.assets import Assets
 from service.web.catalogue_words import kinds_of, words_of
 
 # The entries of the menu: text, and address relative to the root.
-_MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
+_MENU: Final = (("Exercises", ""), ("Practice", "practice"), ("Free play", "play"), ("API", "docs"))
 _TUTORS_MENU: Final = (*_MENU, ("For tutors", "tutor"))
 
 
@@ -46,6 +47,7 @@ def exercise_page(
         tutor=tutor,
         exercise=exercise,
         next=following,
+        is_generated=practice_id(exercise.id) is not None,
         markdown=_markdown,
     )
 
@@ -53,6 +55,30 @@ def exercise_page(
 def play_page(assets: Assets, *, tutor: bool = False) -> bytes:
     """Return the page of free play, which accepts the table of any robot."""
     return page("web/templates/play.html", assets, "", ["page.js", "play.js"], tutor=tutor)
+
+
+def practice_page(assets: Assets, *, tutor: bool = False) -> bytes:
+    """Return the page of generated robots; the element deals them."""
+    return page(
+        "web/templates/practice.html",
+        assets,
+        "",
+        ["page.js", "embed.js", "practice.js"],
+        styles=["print.css"],
+        tutor=tutor,
+    )
+
+
+def ten_minutes_page(assets: Assets, *, tutor: bool = False) -> bytes:
+    """Return the page "DH in ten minutes"; it can be read without scripts."""
+    return page(
+        "web/templates/learn_dh.html",
+        assets,
+        "",
+        ["page.js", "ten_minutes.js"],
+        styles=["ten_minutes.css"],
+        tutor=tutor,
+    )
 
 
 def learner_page(assets: Assets) -> bytes:
@@ -63,6 +89,8 @@ def learner_page(assets: Assets) -> bytes:
         "",
         ["page.js", "embed.js", "learner.js"],
         styles=["learner.css"],
+        key="",
+        place="",
     )
 
 
@@ -93,6 +121,7 @@ def page(
     """Return the page of a template that extends ``site.html``.
 
     ``root`` is the relative address of the catalogue. The menu has one more entry for a ``tutor``.
+    With ``is_framed``, a page has no menu: no other page opens in a frame.
     ``values`` are the variables of the template.
     """
     static = f"{root}static/"
@@ -105,7 +134,7 @@ def page(
         root=root,
         scripts=list(scripts),
         styles=list(styles),
-        **values,
+        **{"is_framed": False, **values},
     )
 
 

@@ -12,15 +12,19 @@ from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
 from service.catalogue import exercise_after
-from service.web.assets import Asset, load_assets
+from service.variants.robots.practice_catalogue import CatalogueWithPractice
+from service.web.assets import Asset, Assets, load_assets
 from service.web.courses.course_routes import course_routes
+from service.web.lti.lti_routes import lti_routes
 from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
 from service.web.pages import (
     catalogue_page,
     exercise_page,
     learner_page,
     play_page,
+    practice_page,
     reference_page,
+    ten_minutes_page,
 )
 from service.web.problem_pages import problem_page
 from service.web.sign_in import sign_in_routes
@@ -43,18 +47,22 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     """
     router = APIRouter(include_in_schema=False)
     assets = load_assets()
+    # Robots are found, but not listed.
+    practised = CatalogueWithPractice(catalogue)
     files = assets.by_name
     tutoring = tutoring or Tutoring(Access())
+    router.include_router(_practice_routes(assets, tutoring.access))
     router.include_router(sign_in_routes(assets, tutoring.access))
-    router.include_router(tutor_routes(catalogue, assets, tutoring))
+    router.include_router(tutor_routes(practised, assets, tutoring))
     router.include_router(attempt_routes(catalogue, assets, tutoring))
     router.include_router(course_routes(catalogue, assets, tutoring))
+    router.include_router(lti_routes(catalogue, assets, tutoring))
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
         """Answer with the catalogue, or redirect to the exercise that the query names."""
         if exercise is not None:
-            known = exercise_or_404(catalogue, exercise)
+            known = exercise_or_404(practised, exercise)
             return RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
         return HTMLResponse(
             catalogue_page(catalogue, assets, tutor=tutoring.access.shows_solutions(request)),
@@ -64,7 +72,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     @router.get("/exercises/{exercise_id}")
     async def exercise(request: Request, exercise_id: str) -> Response:
         """Answer with the page of an exercise; statement and figure need no scripts."""
-        shown = exercise_or_404(catalogue, exercise_id)
+        shown = exercise_or_404(practised, exercise_id)
         shows_solutions = tutoring.access.shows_solutions(request)
         following = exercise_after(exercise_id, catalogue.values())
         return HTMLResponse(
@@ -102,6 +110,24 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         return _file(files[name], files[name].content, _FOR_EVER)
 
     return WebPages(router, problem_page(assets), tutoring.checking.close, tutoring.drafts)
+
+
+def _practice_routes(assets: Assets, access: Access) -> APIRouter:
+    router = APIRouter()
+
+    @router.get("/practice")
+    async def practice(request: Request) -> Response:
+        """Answer with the page of generated robots; the robot is in the fragment of the address."""
+        shown = practice_page(assets, tutor=access.shows_solutions(request))
+        return HTMLResponse(shown, headers=PAGE_HEADERS)
+
+    @router.get("/learn-dh")
+    async def learn_dh(request: Request) -> Response:
+        """Answer with the page "DH in ten minutes"; its progress stays in the browser."""
+        shown = ten_minutes_page(assets, tutor=access.shows_solutions(request))
+        return HTMLResponse(shown, headers=PAGE_HEADERS)
+
+    return router
 
 
 def _file(asset: Asset, content: bytes, caching: str) -> Response:

@@ -57,7 +57,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
     @router.post("/sign-in")
     async def begin(request: Request) -> Response:
         """Start a session, and open the page that the tutor wanted."""
-        fields = await _fields(request)
+        fields = await form_fields(request)
         following = own_path(fields.get("following", ""))
         if access.keys is None or not await access.keys.are_needed():
             return _see(following)
@@ -69,7 +69,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
         except CredentialError as error:
             return form(following, str(error))
         answer = _see(following)
-        _set_cookie(answer, request, session)
+        set_session_cookie(answer, request, session)
         return answer
 
     @router.post("/sign-out")
@@ -77,7 +77,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
         """End the session of this browser."""
         answer = _see(f"{HOME}/sign-in")
         if is_same_origin(request):
-            _set_cookie(answer, request, "")
+            set_session_cookie(answer, request, "")
         return answer
 
     return router
@@ -110,11 +110,11 @@ async def _session(keys: Keys, key: str, until: datetime) -> str:
     return keys.session(caller, until)
 
 
-async def _fields(request: Request) -> dict[str, str]:
+async def form_fields(request: Request, most: int = _MOST_FIELDS) -> dict[str, str]:
     """Return the fields of a form."""
     body = (await request.body()).decode(errors="replace")
     try:
-        return {name: each[0] for name, each in parse_qs(body, max_num_fields=_MOST_FIELDS).items()}
+        return {name: each[0] for name, each in parse_qs(body, max_num_fields=most).items()}
     except ValueError:
         return {}
 
@@ -125,7 +125,7 @@ def _see(path: str) -> Response:
     return RedirectResponse(f"..{path}", HTTPStatus.SEE_OTHER, headers)
 
 
-def _set_cookie(answer: Response, request: Request, session: str) -> None:
+def set_session_cookie(answer: Response, request: Request, session: str) -> None:
     """Set the cookie of the session; without one, remove the cookies.
 
     The browser knows whether it uses HTTPS; a service behind a proxy may not.

@@ -18,7 +18,7 @@ import httpx
 import pytest
 from fastapi import FastAPI, Request
 from fastapi.routing import iter_route_contexts
-from sqlalchemy import Connection
+from sqlalchemy import Connection, select, update
 from starlette.routing import Route
 
 from service.access.caller import Caller, Scope
@@ -34,6 +34,15 @@ from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.api.permissions.rights import RIGHTS
 from service.attempts.storage.database import in_transaction
+from service.attempts.storage.tables import (
+    assignments,
+    attempts,
+    course_learners,
+    courses,
+    extensions,
+    keys,
+    overrides,
+)
 from service.attempts.store import AttemptStore
 from service.attempts.tutoring import override
 from service.catalogue import Exercise, shipped_folder
@@ -60,9 +69,19 @@ MAKING = (
     "POST /v1/courses/{course_id}/assignments",
     "POST /tutor/files",
 )
+VARIANTS = "GET /v1/courses/robots/assignments/homework/variants"
 # The body of each route that has one.
 BODIES: Mapping[str, Any] = {
     "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
+    "POST /v1/exercises/{exercise_id}/hints": {
+        "answers": {"table": "0 0 0 θ1\na2 0 0 θ2"},
+        "part": "table",
+        "code": "distance_left_out",
+        "row": "1",
+        "cell": "a",
+        "step": 1,
+    },
+    "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
     "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},
     "POST /v1/previews": {"exercise": EXERCISE, "part": "table", "entries": [{"text": "a1"}]},
@@ -75,17 +94,27 @@ BODIES: Mapping[str, Any] = {
     "POST /v1/courses": {"title": "Robots", "zone": "Europe/Berlin"},
     "POST /v1/courses/{course_id}": {"title": "Robots"},
     "POST /v1/courses/{course_id}/learners": {"learners": [{"learner": "ada", "name": "Ada"}]},
+    "POST /v1/courses/{course_id}/delete": {"apply": False},
+    "POST /v1/courses/{course_id}/learners/remove": {"learner": "ada", "apply": False},
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}/delete": {"apply": False},
     "POST /v1/courses/{course_id}/links": {},
     "POST /v1/courses/{course_id}/links/revoke": {"learners": ["nobody"]},
+    "POST /v1/courses/{course_id}/scores/send": {},
     "POST /v1/courses/{course_id}/assignments": ASSIGNMENT,
     "POST /v1/courses/{course_id}/assignments/{assignment_id}": {"title": "Homework"},
     "POST /v1/courses/{course_id}/assignments/{assignment_id}/extensions": {"learner": "ada"},
+    # The exercise has no variants.
+    "POST /v1/courses/{course_id}/assignments/{assignment_id}/variants": {
+        "learner": "ada",
+        "exercise": EXERCISE,
+    },
     "POST /v1/courses/{course_id}/assignments/{assignment_id}/attempts": {
         "exercise": EXERCISE,
         "learner": "ada",
         **ANSWERS,
     },
     "POST /tutor/check": FILE,
+    "POST /tutor/import": {"kind": "table", "text": "0 | 0 | 0.3 | q1", "id": "arm"},
     "POST /tutor/drafts": FILE,
     "POST /tutor/files": {**FILE, "id": "my-arm", "before": ""},
     "POST /tutor/class": CLASS,
@@ -232,8 +261,12 @@ def guarded(
             "exercise_id": EXERCISE,
             "course_id": "robots",
             "assignment_id": "homework",
+            "convention": "standard",
+            "rule": "link_twist",
             "learner": "ada",
             "attempt_id": recorded.json()["attempt"]["id"],
+            "GET /tutor/courses/robots/learner": "GET /tutor/courses/robots/learner?learner=ada",
+            VARIANTS: f"{VARIANTS}?learner=ada",
             "GET /static/{name}": f"GET /static/{file}",
             "GET /docs/{name}": "GET /docs/start.js",
         }
@@ -247,7 +280,8 @@ def _add_course(course: str, connection: Connection) -> None:
     """Add a course with the learner ada and an assignment."""
     new = NewCourse(id=course, title="Robots", zone="Europe/Berlin")
     roll.add_course(connection, new, NOW)
-    roll.add_learners(connection, course, [NewLearner(learner="ada", name="Ada")])
+    people = [NewLearner(learner="ada", name="Ada"), NewLearner(learner="grace", name="Grace")]
+    roll.add_learners(connection, course, people)
     homework = NewAssignment.model_validate({"id": "homework", **ASSIGNMENT})
     add_assignment(connection, course, homework, {EXERCISE})
 
@@ -304,6 +338,88 @@ def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
         ]
 
     assert asyncio.run(wrong()) == []
+
+
+def _strangers(guarded: Guarded) -> dict[str, str]:
+    """Return credentials of callers who know nothing of the learner zora of the course robots."""
+
+    def made(connection: Connection) -> dict[str, str]:
+        found = {}
+        for heading, scopes in (("record", [Scope.RECORD, Scope.GRADE]), ("all", list(Scope))):
+            found[f"{heading}, another course"] = text = new_key_text()
+            digest = SECRET.key_digest(text)
+            add_key(connection, "", digest, scopes, None, NOW, NOW + YEAR, "others")
+        for heading, course in (("classmate", "robots"), ("expired link", "others")):
+            wanted = LinksRequest(learners=["grace"])
+            [link] = issue_links(connection, course, wanted, SECRET, HERE, NOW)
+            found[heading] = link.link.partition("#")[2]
+        expired = (keys.c.learner == "grace") & (keys.c.course == "others")
+        connection.execute(update(keys).where(expired).values(expires_at=NOW))
+        return found
+
+    headings = ("no key", "not valid", "other tutor", "other learner", "other exercise")
+    return in_transaction(guarded.store.engine, made) | {
+        f"{heading} {i}": credential
+        for heading in headings
+        for i, credential in enumerate(guarded.credentials[heading])
+    }
+
+
+def _state(store: AttemptStore) -> list[Any]:
+    """Return all rows of the course robots, its attempts and its keys, as they are now."""
+    wanted = (
+        select(courses).where(courses.c.id == "robots"),
+        select(course_learners).where(course_learners.c.course == "robots"),
+        select(assignments).where(assignments.c.course == "robots"),
+        select(attempts, assignments).join_from(attempts, assignments),
+        select(overrides),
+        select(extensions),
+        select(keys.c.id, keys.c.expires_at, keys.c.revoked_at).where(keys.c.course == "robots"),
+    )
+    with store.engine.connect() as connection:
+        return [[tuple(row) for row in connection.execute(each)] for each in wanted]
+
+
+async def _told(guarded: Guarded, credential: str, mark: str) -> list[str]:
+    """Return the routes whose answers to a caller contain a mark."""
+    found = []
+    # That route grades files of the request itself.
+    routes = sorted(RIGHTS.keys() - {"POST /tutor/class"})
+    async with guarded.client(credential) as client:
+        for route in routes:
+            body = json.dumps(BODIES[route]).encode() if route in BODIES else None
+            method, path = guarded.filled(route).split()
+            headers = {"Idempotency-Key": f"{next(_number)}"}
+            answer = await client.request(method, path, content=body, headers=headers)
+            if mark in answer.text:
+                found.append(route)
+    return found
+
+
+def test_nothing_of_another_course_or_learner_is_told_or_changed(guarded: Guarded) -> None:
+    mark = "zora9"
+    new = NewLearner(learner="zora", name=mark, email=f"{mark}@example.edu")
+    in_transaction(guarded.store.engine, lambda it: roll.add_learners(it, "robots", [new]))
+    [record], [tutor] = guarded.credentials["record"], guarded.credentials["course tutor"]
+    path = "/v1/courses/robots/assignments/homework/attempts"
+    answers = {"table": f"{mark} 0 0 θ1\na2 0 0 θ2"}
+    body = {"exercise": EXERCISE, "learner": "zora", "answers": answers}
+    handed_in = guarded.ask("POST", path, record, json=body, headers={"Idempotency-Key": mark})
+    names = {**guarded.names, "attempt_id": handed_in.json()["attempt"]["id"], "learner": "zora"}
+    names["GET /tutor/courses/robots/learner"] = "GET /tutor/courses/robots/learner?learner=zora"
+    asked, strangers = replace(guarded, names=names), _strangers(guarded)
+    before = _state(guarded.store)
+    told = {heading: asyncio.run(_told(asked, each, mark)) for heading, each in strangers.items()}
+    assert {heading: routes for heading, routes in told.items() if routes} == {}
+    assert _state(guarded.store) == before
+    # The same questions of the course's tutor are answered.
+    assert {
+        "GET /v1/attempts/{attempt_id}",
+        "GET /v1/courses/{course_id}/gradebook",
+        "GET /v1/courses/{course_id}/learners",
+        "GET /v1/courses/{course_id}/learners/{learner}/view",
+        "GET /tutor/courses/{course_id}/learner",
+    } <= set(asyncio.run(_told(asked, tutor, mark)))
 
 
 def test_a_learner_reads_what_is_the_learner_s_own(guarded: Guarded) -> None:

@@ -152,6 +152,28 @@ def test_a_session_ends_with_its_key_and_in_time(
     assert browser.status() == 401
 
 
+def test_over_https_only_the_secure_cookie_counts(browser: Browser) -> None:
+    key, _ = browser.key(Scope.TUTOR)
+    browser.sign_in(key)
+    [(name, text)] = browser.cookies.items()
+    plain, secure = {"dh-grader": text}, {name: text}
+    http = ADDRESS.replace("https:", "http:")
+    for address, cookies, headers, status in [
+        (ADDRESS, secure, {}, 200),
+        (ADDRESS, plain, {}, 401),
+        (ADDRESS, {**plain, "__Host-dh-grader": "x"}, {}, 401),
+        (http, plain, {}, 200),
+        # The proxy has not said that the browser uses HTTPS, but the browser has.
+        (http, secure, {}, 200),
+        (http, plain, {"Origin": ADDRESS, "Sec-Fetch-Site": "same-origin"}, 401),
+        (http, secure, {"Origin": ADDRESS, "Sec-Fetch-Site": "same-origin"}, 200),
+    ]:
+        cookie = "; ".join(f"{name}={value}" for name, value in cookies.items())
+        browser.cookies = httpx.Cookies()
+        answer = browser.ask("GET", "/tutor", address, headers={**headers, "Cookie": cookie})
+        assert answer.status_code == status, (address, cookies, headers)
+
+
 def session_of(key_id: str, until: datetime) -> str:
     claims = {"iss": "dh-grader session", "key": key_id, "exp": int(until.timestamp())}
     return jwt.encode(claims, SECRET.session_secret)

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from service.authoring import Level, examine
+from service.authoring.answers import failed_checks
 from service.catalogue import Exercise, shipped_folder
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 from tests.grading.support.bare_numbers import BARE, BareExercise
@@ -52,6 +53,11 @@ def test_the_shipped_exercises_have_no_failures(
     # The symbol l stays in this exercise, because it is in the course's notes.
     known = {("dh-conditions", "symbols.l")}
     assert {(exercise_id, remark.field) for remark in remarks} <= known
+
+
+def test_the_checks_of_all_shipped_exercises_hold(catalogue: Mapping[str, Exercise]) -> None:
+    failed = {name: [*failed_checks(exercise)] for name, exercise in catalogue.items()}
+    assert {name: remarks for name, remarks in failed.items() if remarks} == {}
 
 
 # A replacement, the number of the check that fails, and words of the remark.

@@ -149,15 +149,19 @@ def add_server_lines(printed: Table) -> None:
             "met" if share >= SHARES[what] else "missed",
             f"{1e3 / speed['graded']:.3f}",
         )
-    speed = server.recorded_per_second()
-    share = speed["recorded"] / speed["graded"]
-    printed.add_row(
-        f"POSTs recorded in SQLite of graded ones ({speed['graded']:.0f} /s)",
-        f"{share:.1%}",
-        f"≥ {RECORDED_SHARE:.0%}",
-        "met" if share >= RECORDED_SHARE else "missed",
-        f"{1e3 / speed['recorded']:.3f}",
-    )
+    for what, speed in (
+        ("POSTs recorded in SQLite", server.recorded_per_second()),
+        ("hand-ins in an assignment", server.handed_in_per_second()),
+    ):
+        graded, recorded = speed.values()
+        share = recorded / graded
+        printed.add_row(
+            f"{what} of graded ones ({graded:.0f} /s)",
+            f"{share:.1%}",
+            f"≥ {RECORDED_SHARE:.0%}",
+            "met" if share >= RECORDED_SHARE else "missed",
+            f"{1e3 / recorded:.3f}",
+        )
     one = server.graded_per_second(1)
     for workers in (2, 3):
         many = server.graded_per_second(workers)

@@ -6,13 +6,21 @@ All seconds are processor time of the server, so that other programs do not coun
 import asyncio
 import contextlib
 import json
+import secrets
 import statistics
 import tempfile
 import time
 import urllib.request
 from collections.abc import Callable, Iterator, Mapping
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from sqlalchemy import Connection
+
+from service.attempts.storage.database import in_transaction, open_database
+from service.contract.courses import NewAssignment, NewCourse, NewLearner
+from service.courses import roll
+from service.courses.assignments import add_assignment
 from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
 from tests.server.raw import service
 
@@ -24,6 +32,9 @@ ROUNDS = 20
 MOST = 900
 GRADE = "/v1/exercises/stanford-arm/grade"
 RECORD = "/v1/exercises/stanford-arm/attempts"
+HAND_IN = "/v1/courses/robots/assignments/homework/attempts"
+# The learners of the course, who hand in one after the other.
+LEARNERS = 1000
 TRIVIAL = "/trivial"
 CLOCK = "/processor-seconds"
 
@@ -50,6 +61,12 @@ def attempts(i: int) -> bytes:
     return json.dumps(json.loads(tables(i)) | {"learner": f"learner {i}"}).encode()
 
 
+def hand_ins(i: int) -> bytes:
+    """Return a body as ``tables`` does, of one of the learners of the course."""
+    learner = {"exercise": "stanford-arm", "learner": f"u{i % LEARNERS}"}
+    return json.dumps(json.loads(tables(i)) | learner).encode()
+
+
 BODIES: dict[str, Callable[[int], bytes]] = {
     "right tables": right_tables,
     "tables, one in three wrong": tables,
@@ -64,8 +81,10 @@ def _processor_seconds(port: int) -> float:
 
 def request(path: str, body: bytes) -> bytes:
     """Return the bytes of a POST request."""
+    # A hand-in needs a key of its own.
+    key = f"Idempotency-Key: {secrets.token_hex(8)}\r\n" if path == HAND_IN else ""
     head = (
-        f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n{key}"
         f"Content-Length: {len(body)}\r\n\r\n"
     )
     return head.encode() + body
@@ -125,6 +144,41 @@ def recorded_per_second() -> dict[str, float]:
         database = str(Path(folder) / "attempts.db")
         graded, recorded = _in_turn({GRADE: tables, RECORD: attempts}, DH_GRADER_DATABASE=database)
     return {"graded": graded, "recorded": recorded}
+
+
+def handed_in_per_second() -> dict[str, float]:
+    """Return the numbers of graded POSTs and of hand-ins in an assignment, with SQLite."""
+    with tempfile.TemporaryDirectory() as folder:
+        database = str(Path(folder) / "attempts.db")
+        _set_up_course(database)
+        graded, handed_in = _in_turn(
+            {GRADE: tables, HAND_IN: hand_ins}, DH_GRADER_DATABASE=database
+        )
+    return {"graded": graded, "handed in": handed_in}
+
+
+def _set_up_course(database: str) -> None:
+    """Add the course ``robots`` with an assignment to a new database."""
+    engine, now = open_database(database), datetime.now(UTC)
+    assigned = NewAssignment.model_validate(
+        {
+            "id": "homework",
+            "title": "Homework",
+            "exercises": [{"exercise": "stanford-arm", "points": 10}],
+            "due": (now + timedelta(days=1)).isoformat(),
+            "limit": 100,
+        }
+    )
+
+    def work(connection: Connection) -> None:
+        course = NewCourse(id="robots", title="Robots", zone="Europe/Berlin")
+        roll.add_course(connection, course, now)
+        learners = (NewLearner(learner=f"u{i}", name=f"Learner {i}") for i in range(LEARNERS))
+        roll.add_learners(connection, "robots", learners)
+        add_assignment(connection, "robots", assigned, {"stanford-arm"})
+
+    in_transaction(engine, work)
+    engine.dispose()
 
 
 def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> Iterator[float]:

@@ -2,9 +2,11 @@
 
 import asyncio
 import json
+import tomllib
 from dataclasses import replace
 from datetime import timedelta
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,14 +19,20 @@ from service.contract.courses import AssignmentChange, Extension, LinksRequest
 from service.courses import roll
 from service.courses.assignments import assignments_of, change_assignment, extend
 from service.courses.errors import CourseError
-from service.courses.gradebook import gradebook, missing, written_gradebook
 from service.courses.links import issue_links, revoke_links
+from service.courses.results.gradebook import gradebook, missing, written_gradebook
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, SECRET, Class, days
 
 
 def points(class_: Class) -> list[list[float | None]]:
     return [row.points for row in class_.do(lambda it: gradebook(it, "robots")).rows]
+
+
+def all_right() -> Any:
+    """Return the answers of the lecture to all parts of scara."""
+    file = Path(__file__).parents[2] / "exercises/scara.toml"
+    return tomllib.loads(file.read_text(encoding="utf-8"))["checks"][0]["answers"]
 
 
 def near(value: float) -> list[Any]:
@@ -121,6 +129,29 @@ def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class
     for exercise, status in (("scara", 403), ("planar-rr", 201)):
         path = f"/v1/exercises/{exercise}/attempts"
         assert ada.ask("POST", path, answers={}, learner="ada").status_code == status
+
+
+@pytest.mark.parametrize("late_worth", [0, 1e-7, 0.3, 1])
+def test_a_late_attempt_has_full_marks_before_the_deduction(
+    class_: Class, late_worth: float
+) -> None:
+    terms = {"solution": "after_full", "practice": "after", "late_worth": late_worth}
+    class_.assign(due=days(1), closes=days(3), **terms)
+    class_.do(
+        lambda it: change_assignment(
+            it, "robots", "homework", AssignmentChange.model_validate({"due": days(-1)}), {"scara"}
+        )
+    )
+    assert class_.hand_in("a").json()["attempt"]["is_late"]
+    own = class_.own()
+    assert not own["shows_solution"]
+    assert own["best"] > 1
+    class_.hand_in("b", all_right())
+    own = class_.own()
+    assert (own["earned"], own["best"]) == (pytest.approx(10 * late_worth, abs=1e-5), 10)
+    assert (own["shows_solution"], own["may_practise"]) == (True, True)
+    path = "/v1/courses/robots/assignments/homework/solutions/scara"
+    assert class_.ask("GET", path).status_code == 200
 
 
 @BOTH

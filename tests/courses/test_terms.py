@@ -47,6 +47,16 @@ def judged(now: datetime, closes: str | None, own: dict[str, str]) -> str:
         # The clocks of Berlin were put back on this day: New York is five hours behind, then six.
         ("2026-10-25T18:59", "America/New_York", 0, CLOSES, {}, "on time"),
         ("2026-10-25T19:00", "America/New_York", 0, CLOSES, {}, "late"),
+        # The hour that the clocks show twice: its first pass is before the second one.
+        ("2026-10-25T00:30", "UTC", 0, CLOSES, {"due": "2026-10-25T02:30"}, "on time"),
+        # A learner in Tokyo has the same moment eight hours later on the clock.
+        ("2026-10-26T07:59", "Asia/Tokyo", 0, CLOSES, {}, "on time"),
+        ("2026-10-26T07:59", "Asia/Tokyo", 1, CLOSES, {}, "late"),
+        # An extension with an earlier due date than the class's is the learner's own.
+        ("2026-10-24T12:00", "Europe/Berlin", 1, CLOSES, {"due": "2026-10-24T12:00"}, "late"),
+        # Dates of an extension hold to the very second, too.
+        ("2026-10-26T23:59", "Europe/Berlin", 0, None, {"due": "2026-10-26T23:59"}, "on time"),
+        ("2026-10-26T23:59", "Europe/Berlin", 1, None, {"due": "2026-10-26T23:59"}, "closed"),
         # An extension to the next day: on time, even though the assignment is closed to others.
         ("2026-10-26T12:00", "Europe/Berlin", 0, None, {"due": "2026-10-26T23:59"}, "on time"),
         ("2026-10-27T00:00", "Europe/Berlin", 0, None, {"due": "2026-10-26T23:59"}, "closed"),

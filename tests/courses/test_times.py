@@ -21,6 +21,11 @@ from service.courses.times import moment, zone_named
         ("Europe/Berlin", "2026-10-25T02:30", "2026-10-25T01:30"),
         ("Europe/Berlin", "2026-10-25T03:00", "2026-10-25T02:00"),
         ("America/New_York", "2026-11-01T01:30", "2026-11-01T06:30"),
+        # The last second that is shown twice, and the last one before it that is shown once.
+        ("Europe/Berlin", "2026-10-25T02:59:59", "2026-10-25T01:59:59"),
+        ("Europe/Berlin", "2026-10-25T01:59:59", "2026-10-24T23:59:59"),
+        # The clocks of Lord Howe Island are put back by half an hour.
+        ("Australia/Lord_Howe", "2026-04-05T01:45", "2026-04-04T15:15"),
         ("Asia/Kolkata", "2026-06-01T12:00", "2026-06-01T06:30"),
         ("Pacific/Auckland", "2026-01-01T00:00", "2025-12-31T11:00"),
         # With a zone of its own, the zone of the course does not matter.

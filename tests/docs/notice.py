@@ -27,6 +27,7 @@ class Vendored:
 
 
 _STATIC: Final = "service/web/static/vendor"
+_ARMS: Final = "tests/importing/arms"
 _SWAGGER: Final = "service/api/routes/swagger_ui"
 VENDORED: Final = (
     Vendored(
@@ -58,6 +59,46 @@ VENDORED: Final = (
         "MPL-2.0",
         "tests/browser/axe-core/LICENSE",
         ("tests/browser/axe-core/axe-4.14.1.min.js",),
+        shipped=False,
+    ),
+    Vendored(
+        "airo-models, the joints of the UR5e",
+        "0.0.12",
+        "https://github.com/airo-ugent/airo-models",
+        "Copyright (c) 2024, Andreas Verleysen",
+        "MIT",
+        f"{_ARMS}/LICENSE.airo-models",
+        (f"{_ARMS}/ur5e-airo-models-0.0.12.urdf",),
+        shipped=False,
+    ),
+    Vendored(
+        "compas_fab, the joints of the IRB 120 and the IRB 4600",
+        "2.0.1",
+        "https://github.com/compas-dev/compas_fab",
+        "Copyright (c) 2018-2026 Gramazio Kohler Research",
+        "MIT",
+        f"{_ARMS}/LICENSE.compas_fab",
+        (f"{_ARMS}/irb120-compas_fab-2.0.1.urdf", f"{_ARMS}/irb4600-compas_fab-2.0.1.urdf"),
+        shipped=False,
+    ),
+    Vendored(
+        "panda_description in example-robot-data, the joints of the Panda",
+        "6.0.0",
+        "https://github.com/gepetto/example-robot-data",
+        "Copyright Franka Emika GmbH",
+        "Apache-2.0",
+        f"{_ARMS}/LICENSE.panda_description",
+        (f"{_ARMS}/panda-example-robot-data-6.0.0.urdf",),
+        shipped=False,
+    ),
+    Vendored(
+        "baxter_description in example-robot-data, the joints of the right arm",
+        "6.0.0",
+        "https://github.com/gepetto/example-robot-data",
+        "Copyright (c) 2013-2015, Rethink Robotics",
+        "BSD-3-Clause",
+        f"{_ARMS}/LICENSE.baxter_description",
+        (f"{_ARMS}/baxter-example-robot-data-6.0.0.urdf",),
         shipped=False,
     ),
 )

@@ -20,7 +20,9 @@ DOCS = Path(__file__).parents[2] / "docs"
         ("collect-homework.md", 2),
         ("ci/README.md", 3),
         ("figures.md", 2),
-        ("courses.md", 11),
+        ("courses.md", 14),
+        ("lti.md", 2),
+        ("variants.md", 4),
     ],
 )
 def test_the_commands_of_a_page_print_the_shown_output(

@@ -6,6 +6,7 @@ tables. T = e^{[S1] q1} … e^{[Sn] qn} M is equation 2.31 of the Robot kinemati
 exponentials are SciPy's. The statements of real robots are read by ``real.statements``.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -132,6 +133,37 @@ def xarm6(_: Numbers) -> Chain:
     return [*arm, turn(Y, wrist), turn(-Z, hand)], frame(X, -Z, hand - 0.097 * Z)
 
 
+def metres(name: str) -> list[float]:
+    """Return the lengths in the statement of an exercise whose numbers are varied, in order."""
+    return [
+        float(each) for each in re.findall(r"([\d.]+) m\b", shipped_exercises()[name].statement)
+    ]
+
+
+def first_arm(n: Numbers) -> Chain:
+    elbow = Z * n["h"] + X * n["w"]
+    return [turn(Z), turn(-Y, elbow)], frame(X, -Y, elbow + X * n["r"])
+
+
+def planar_rr_numbers(_: Numbers) -> Chain:
+    first, second = metres("planar-rr-numbers")
+    return [turn(Z), turn(-Z, X * first)], frame(X, -Z, X * (first + second))
+
+
+def elbow_directions(_: Numbers) -> Chain:
+    height, upper, fore = metres("elbow-directions")
+    shoulder = Z * height
+    elbow = shoulder + X * upper
+    crooked = np.cos(np.pi / 6) * Y + np.sin(np.pi / 6) * Z
+    return [turn(Z), turn(Y, shoulder), turn(crooked, elbow)], frame(X, crooked, elbow + X * fore)
+
+
+def vertical_axes(_: Numbers) -> Chain:
+    first, second, third = metres("vertical-axes")
+    tip = X * (first + second + third)
+    return [turn(Z), slide(Z), turn(Z, X * (first + second))], frame(X, Z, tip)
+
+
 def in_words(name: str) -> Callable[[Numbers], Chain]:
     """Return the chain that the statement of a real robot describes.
 
@@ -161,22 +193,34 @@ def in_words(name: str) -> Callable[[Numbers], Chain]:
 
 STATEMENTS: dict[str, Callable[[Numbers], Chain]] = {
     "baxter-left-arm": baxter,
+    "elbow-directions": elbow_directions,
+    "find-the-slip-scara": scara,
+    "find-the-slip-stanford": stanford,
+    "first-arm": first_arm,
+    "first-arm-modified": first_arm,
     "planar-rpr-poe": planar_rpr,
     "planar-rr": planar_rr,
+    "planar-rr-numbers": planar_rr_numbers,
     "planar-rrr": planar_rrr,
     "planar-rrr-drawn": planar_rrr,
+    "planar-rrr-faded": planar_rrr,
+    "planar-rrr-frames": planar_rrr,
     "planar-rrr-standard": planar_rrr,
     "rrrp": rrrp,
     "rrrp-drawn": rrrp,
     "rrrp-proximal": rrrp,
     "scara": scara,
+    "scara-faded": scara,
     "spatial-rrr": spatial_rrr,
+    "spatial-rrr-frames": spatial_rrr,
     "spherical-wrist": spherical_wrist,
     "stanford-arm": stanford,
     "stanford-arm-d1": stanford,
     "stanford-arm-drawn": stanford,
+    "stanford-arm-frames": stanford,
     "three-link-cartesian": cartesian,
     "three-link-cylindrical": cylindrical,
+    "vertical-axes": vertical_axes,
     **{name: in_words(name) for name in REAL_ROBOTS},
     "xarm6": xarm6,
 }

@@ -21,6 +21,8 @@ ROOMS = {
     "catalogue": {"shared"},
     "student": {"shared", "typeset", "robot", "pages", "catalogue"},
     "play": {"shared", "robot", "student"},
+    "ten_minutes": {"shared", "robot"},
+    "practice": {"student"},
     "tutor": {"shared", "student"},
     "learner": {"shared", "typeset", "student", "tutor"},
 }

@@ -111,7 +111,7 @@ sizes = {"transform": 4, "rotation": 3, "screw_axes": 6}
 lists = {"position", "vector", "euler_angles"}
 for exercise in exercises.values():
     answers = {
-        part.id: {"rows": rows} if part.kind == "dh_table"
+        part.id: {"rows": rows} if part.kind in ("dh_table", "find_slip")
         else rows[0] if part.kind == "dh_row"
         else line[:2] if part.kind in lists
         else [line[:sizes.get(part.kind, 4)]]

@@ -48,6 +48,21 @@ def test_a_thief_gains_nothing(
         assert after == before, (thief.part.id, thief.stolen)
 
 
+@pytest.mark.parametrize("exercise_id", sampled(IDS, 12))
+@pytest.mark.parametrize("first", FIRST)
+def test_a_thief_with_all_hints_gains_nothing(
+    first: str, exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    """The thief asks for all steps of each hint in ten rounds, and tries what is in them."""
+    had = 0
+    for thief in thieves(catalogue[exercise_id], HINTS, first):
+        thief.with_hints = True
+        before, after = thief.steal()
+        assert after == before, (thief.part.id, thief.stolen)
+        had += len(thief.hints)
+    assert had
+
+
 def test_a_thief_gets_the_table_at_full(catalogue: Mapping[str, Exercise]) -> None:
     """A thief succeeds at the level full, so that the test above can fail."""
     table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")

@@ -40,7 +40,7 @@ def places(answer: object, place: Place = ()) -> Iterator[Place]:
     """Yield the places of the cells of an answer."""
     if isinstance(answer, dict):
         for key, inside in answer.items():
-            if key not in ("convention", "none"):
+            if key not in ("convention", "none", "frame"):
                 yield from places(inside, (*place, key))
     elif isinstance(answer, list):
         for i, inside in enumerate(answer):

@@ -28,6 +28,9 @@ FRAGMENTS = [
     " = ", ":=", "\n\n", "% A1\n", "import x\n", "x = Symbol(", "x", "x1 ", "\\begin{bmatrix}",
     "\\end{bmatrix}", "{}^0", "\\right)", "\\quad", "\\text{", "a*b", "é", "𝜃",
     "SerialLink([", "\nL(1) = Link([0 0 ", "Revolute('d', ", "setFixedTransform(j1, ", "{'a': [",
+    "■(", "@", "┆", "```\n", "~~~\n", "# A tibble: 3 × 4\n", "shape: (3, 4)\n", "[1,]", "[,1] ",
+    ":: 3 axis, RRR, stdDH\n", "| j | theta | d | a | alpha | offset |\n", "dict(a=", "[{'a': ",
+    "Table 1:", "degrees\n", "，", "关节", "theta[1]", "% theta d a alpha\n", "\\begin{tblr}{",
 ]  # fmt: skip
 
 

@@ -1,7 +1,5 @@
 """The words of a statement are complete: the robot is built again from them alone."""
 
-import re
-
 import numpy as np
 import pytest
 
@@ -12,56 +10,8 @@ from service.importing.home_statement import HomeRobot, UnevenLettersError, home
 from service.importing.urdf import read_urdf
 from service.kinematics.chain import frames
 from service.kinematics.dh import Convention
-from tests.importing.urdf_texts import Part, quaternion, random_parts, turned, urdf
-
-JOINT = re.compile(
-    r"- Joint \d (turns about the axis through \((?P<point>[^)]+)\), |slides )(?P<way>.+)\."
-)
-TOOL = re.compile(
-    r"origin of \{\d\} is at \((?P<point>[^)]+)\), x\d points (?P<x>.+) and z\d points "
-    r"(?P<z>along \([^)]+\)|[^.(]+)\."
-)
-WAYS = {"x0": [1.0, 0, 0], "y0": [0, 1.0, 0], "z0": [0, 0, 1.0]}
-
-
-def way(words: str) -> np.ndarray:
-    """Return the direction in words."""
-    if found := re.fullmatch(r"along \((.+)\)", words):
-        return np.array([float(each) for each in found[1].split(", ")])
-    prefix, _, name = words.rpartition(" ")
-    return np.array(WAYS[name]) * (-1 if prefix == "opposite to" else 1)
-
-
-def point(words: str, lengths: dict[str, float]) -> np.ndarray:
-    """Return the point in words: three sums of letters and numbers."""
-    coordinates = []
-    for text in words.split(", "):
-        terms = re.findall(r"([+-]?) ?([a-z]\d+|[\d.]+)", text)
-        coordinates.append(
-            sum(
-                (-1 if sign == "-" else 1) * (lengths[term] if term in lengths else float(term))
-                for sign, term in terms
-            )
-        )
-    return np.array(coordinates)
-
-
-def pose(statement: str, lengths: dict[str, float], values: np.ndarray) -> list[np.ndarray]:
-    """Return the tool's origin, x and z: those at home, moved by the joints from last to first."""
-    tool = TOOL.search(statement.replace("\n", " "))
-    assert tool
-    place, x, z = point(tool["point"], lengths), way(tool["x"]), way(tool["z"])
-    joints = list(JOINT.finditer(statement))
-    for joint, value in reversed(list(zip(joints, values, strict=True))):
-        direction = way(joint["way"])
-        if joint["point"] is None:
-            place = place + value * direction
-            continue
-        foot = point(joint["point"], lengths)
-        turn = quaternion(list(direction), value)
-        place = foot + turned(turn, list(place - foot))
-        x, z = turned(turn, list(x)), turned(turn, list(z))
-    return [place, x, z]
+from tests.importing.statement_reader import pose
+from tests.importing.urdf_texts import Part, random_parts, urdf
 
 
 def straight_parts(rng: np.random.Generator) -> list[Part]:

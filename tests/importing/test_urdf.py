@@ -66,6 +66,12 @@ def test_an_unusable_file_is_refused_with_its_reason(name: str) -> None:
     assert time.process_time() - began < 1
 
 
+def test_an_undeclared_prefix_does_not_matter() -> None:
+    text = urdf([ONE]).replace(b"</joint>", b'<limit drake:acceleration="2.5"/></joint>')
+    arm, _ = read_urdf(text, "l1")
+    assert arm.structure == "R"
+
+
 def test_unknown_links_are_named() -> None:
     with pytest.raises(UnusableUrdfError, match="no link 'tool9'"):
         read_urdf(urdf([ONE]), "tool9")

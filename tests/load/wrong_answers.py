@@ -56,19 +56,23 @@ def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: in
 
 
 @cache
-def _models() -> list[tuple[Exercise, str, Any]]:
-    """Return the shipped exercises with a table, with its part and the rows with full marks."""
+def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
+    """Return these exercises with a table, with its part and the rows with full marks."""
+    shipped = shipped_exercises()
     return [
         (exercise, part.id, dict[str, Any](solved(exercise).answers)[part.id]["rows"])
-        for exercise in shipped_exercises().values()
+        for exercise in map(shipped.__getitem__, shipped if names is None else names)
         for part in exercise.parts
         if part.kind == "dh_table"
     ]
 
 
-def tables(seed: int, wrong: float) -> Iterator[Body]:
-    """Yield tables of the shipped exercises without end; a share has one to four slips."""
-    choose, models = random.Random(seed), _models()
+def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Iterator[Body]:
+    """Yield tables of the shipped exercises without end; a share has one to four slips.
+
+    With ``names``, only of these exercises.
+    """
+    choose, models = random.Random(seed), _models(names)
     while True:
         exercise, part, rows = choose.choice(models)
         slips = choose.randint(1, 4) if choose.random() < wrong else 0

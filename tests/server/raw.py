@@ -126,6 +126,19 @@ def answers(connection: socket.socket) -> list[Answer]:
     return found
 
 
+def workers(running: Service) -> set[int]:
+    """Return the child processes of the service, without multiprocessing's resource tracker."""
+    found = set()
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == running.process.pid and b"resource_tracker" not in (
+                (folder / "cmdline").read_bytes()
+            ):
+                found.add(int(folder.name))
+    return found
+
+
 @contextlib.contextmanager
 def service(
     folder: Path, *options: str, module: str = "service", **settings: str

@@ -7,8 +7,9 @@ from tests.shipped import shipped_exercises
 
 SEVEN = ("franka-research-3", "kuka-lbr-iiwa-7", "kinova-gen3", "sawyer")
 MODIFIED = {
-    "planar-rrr", "planar-rrr-drawn", "rrrp-proximal", "franka-research-3", "kuka-lbr-iiwa-7",
-    "kinova-gen3", "puma-560-craig",
+    "planar-rrr", "planar-rrr-drawn", "planar-rrr-frames", "rrrp-proximal", "franka-research-3",
+    "kuka-lbr-iiwa-7", "kinova-gen3", "puma-560-craig", "find-the-slip-stanford",
+    "first-arm-modified", "planar-rrr-faded",
 }  # fmt: skip
 
 
@@ -20,7 +21,11 @@ MODIFIED = {
         ("7dof", {"baxter-left-arm", *SEVEN}),
         ("7R", {"baxter-left-arm", *SEVEN}),
         ("puma", {"spatial-rrr", "spherical-wrist", "puma-560", "puma-560-craig"}),
-        ("scara", {"scara", "rrrp", "rrrp-drawn", "rrrp-proximal", "adept-cobra-600"}),
+        (
+            "scara",
+            {"scara", "rrrp", "rrrp-drawn", "rrrp-proximal", "adept-cobra-600", "vertical-axes"}
+            | {"find-the-slip-scara", "scara-faded"},
+        ),
         ("e-Series", {"ur3e", "ur5e", "ur10e", "ur16e"}),
         ("KUKA", {"kuka-kr-5-arc", "kuka-kr-10-r1100", "kuka-lbr-iiwa-7", "kuka-youbot-arm"}),
         ("gantry", {"abb-irb-6620lx", "three-link-cartesian"}),

@@ -27,6 +27,7 @@ _TITLES: Final[dict[CourseFault, tuple[HTTPStatus, str]]] = {
     "unknown-assignment": (HTTPStatus.NOT_FOUND, "There is no such assignment"),
     "unknown-learner": (HTTPStatus.NOT_FOUND, "The course has no such learner"),
     "not-assigned": (HTTPStatus.NOT_FOUND, "The exercise is not part of the assignment"),
+    "has-attempts": (HTTPStatus.CONFLICT, "Attempts are recorded there"),
     "already-there": (HTTPStatus.CONFLICT, "There is one with this id already"),
     "unusable": (HTTPStatus.UNPROCESSABLE_ENTITY, "The request cannot be used"),
 }

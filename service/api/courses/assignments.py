@@ -1,9 +1,9 @@
 """The routes of assignments and extensions; for tutors."""
 
 from http import HTTPStatus
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from service.api.courses.asking import (
     AssignmentId,
@@ -14,13 +14,17 @@ from service.api.courses.asking import (
     write,
 )
 from service.api.http.bodies import read_body
-from service.api.http.lookup import Catalogue
+from service.api.http.lookup import Catalogue, require_exercise
 from service.api.recording.store import private
+from service.contract.attempts import Learner
 from service.contract.courses import (
     AssignmentChange,
     CourseAssignment,
     CourseAssignmentList,
+    DealRequest,
     Extension,
+    LearnerVariant,
+    LearnerVariants,
     NewAssignment,
 )
 
@@ -123,5 +127,49 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
 
         body = await read_body(Extension, request)
         return private(await write(store, lambda it: extend(it, course_id, assignment_id, body)))
+
+    @router.get(
+        "/assignments/{assignment_id}/variants",
+        operation_id="listVariants",
+        summary="Show the variants of a learner",
+        response_description="The variants of the learner in the assignment.",
+        **reading(LearnerVariants),
+    )
+    async def list_variants(
+        course_id: CourseId,
+        assignment_id: AssignmentId,
+        learner: Annotated[Learner, Query(description="The learner.")],
+    ) -> Response:
+        """Show which variant a learner has of each exercise; for tutors of the course."""
+        from service.courses.dealing import learner_variants
+
+        found = await read(
+            store, lambda it: learner_variants(it, course_id, assignment_id, learner, catalogue)
+        )
+        return private(LearnerVariants(learner=learner, variants=found))
+
+    @router.post(
+        "/assignments/{assignment_id}/variants",
+        operation_id="dealVariant",
+        summary="Give a learner another variant",
+        response_description="The new variant.",
+        **changing(DealRequest, LearnerVariant),
+    )
+    async def deal_variant(
+        request: Request, course_id: CourseId, assignment_id: AssignmentId
+    ) -> Response:
+        """Give a learner another variant of an exercise; for tutors of the course.
+
+        Earlier attempts keep their points, and count as before.
+        """
+        from service.courses.dealing import deal_again
+
+        body = await read_body(DealRequest, request)
+        exercise = require_exercise(catalogue, body.exercise)
+        dealt = await write(
+            store,
+            lambda it: deal_again(it, course_id, assignment_id, body.learner, exercise),
+        )
+        return private(dealt)
 
     return router

@@ -10,13 +10,15 @@ from service.api.courses.asking import AssignmentId, CourseId, course_problem, r
 from service.api.http.lookup import Catalogue
 from service.api.recording.store import private, private_json
 from service.contract.attempts import Learner
-from service.contract.courses import Gradebook, GradebookFormat, MissingList, OwnCourses
+from service.contract.courses import Gradebook, GradebookFormat, MissingList
+from service.contract.own_courses import OwnCourses
 from service.courses.errors import CourseError
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
 _CSV: Final[dict[str, Any]] = {"schema": {"type": "string"}}
+_WORKBOOK: Final = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
@@ -32,19 +34,21 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
     )
     async def list_missing(course_id: CourseId, assignment_id: AssignmentId) -> Response:
         """List who has not handed in which exercises; for tutors of the course."""
-        from service.courses.gradebook import missing
+        from service.courses.results.gradebook import missing
 
         found = await read(store, lambda it: missing(it, course_id, assignment_id))
         return private(MissingList(missing=found))
 
     gradebook_options = reading(Gradebook)
-    gradebook_options["responses"][200] = {"content": {"text/csv": _CSV}}
+    gradebook_options["responses"][200] = {
+        "content": {"text/csv": _CSV, _WORKBOOK: {"schema": {"type": "string", "format": "binary"}}}
+    }
 
     @router.get(
         "/gradebook",
         operation_id="getGradebook",
         summary="Show the gradebook of a course",
-        response_description="The gradebook, as JSON or CSV.",
+        response_description="The gradebook, as JSON, CSV or a workbook.",
         **gradebook_options,
     )
     async def show_gradebook(
@@ -56,24 +60,24 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
             GradebookFormat,
             Query(
                 alias="format",
-                description="`json`, `csv`, or CSV with the headings that `moodle` or `canvas` "
-                "imports.",
+                description="`json`, `csv`, CSV with the headings that `moodle` or `canvas` "
+                "imports, or `xlsx`: a workbook with the points and the hand-ins.",
             ),
         ] = "json",
     ) -> Response:
         """Show the points that count, of each learner at each exercise; for tutors."""
-        from service.courses.gradebook import gradebook, written_gradebook
+        from service.courses.results.gradebook import gradebook, written_gradebook
+        from service.courses.results.workbook import gradebook_workbook
 
+        if form == "xlsx":
+            content = await read(store, lambda it: gradebook_workbook(it, course_id, assignment))
+            return Response(content, HTTPStatus.OK, _file(course_id, form), _WORKBOOK)
         book = await read(store, lambda it: gradebook(it, course_id, assignment))
         if form == "json":
             # Null means that nothing was handed in.
             return private_json(book.model_dump_json().encode())
-        headers = {
-            "Cache-Control": "no-store",
-            "Content-Disposition": f'attachment; filename="gradebook-{course_id}.csv"',
-        }
         content = b"".join(written_gradebook(book, form))
-        return Response(content, HTTPStatus.OK, headers, "text/csv; charset=utf-8")
+        return Response(content, HTTPStatus.OK, _file(course_id, "csv"), "text/csv; charset=utf-8")
 
     @router.get(
         "/learners/{learner}/view",
@@ -96,3 +100,9 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         return private(view)
 
     return router
+
+
+def _file(course_id: str, ending: str) -> dict[str, str]:
+    """Return the headers of a downloaded gradebook."""
+    attachment = f'attachment; filename="gradebook-{course_id}.{ending}"'
+    return {"Cache-Control": "no-store", "Content-Disposition": attachment}

@@ -16,6 +16,7 @@ from service.api.courses.asking import (
     course_problem,
     read,
     reading,
+    write,
 )
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
@@ -27,14 +28,20 @@ from service.api.recording.attempting import AttemptTerms, Recorder
 from service.api.recording.new_attempts import not_recorded
 from service.api.recording.store import private
 from service.api.routes.solutions import SolvedExercises
-from service.catalogue import FeedbackLevel
+from service.catalogue import Exercise, FeedbackLevel
 from service.contract.attempts import AttemptRequest, AttemptResponse
-from service.contract.courses import HandInRequest, OwnCourses
+from service.contract.own_courses import HandInRequest, OwnCourses
 from service.courses.errors import CourseError
 from service.solutions import ModelSolution
+from service.submissions.body import GradeRequest
+from service.variants.variant import hidden_variant
 
-if TYPE_CHECKING:  # it loads the drivers of databases
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Connection
+
+    from service.attempts.attempt import Standing
     from service.attempts.store import AttemptStore
+    from service.courses.terms import LearnerTerms
 
 _Key = Annotated[
     str,
@@ -94,21 +101,29 @@ def routes(
         The assignment says how attempts are limited and how much their reports say. An attempt
         that is answered with 201 is not lost, whatever happens to the service.
         """
-        from service.courses.terms import terms_of
-
         access.require_allowed_origin(request, origins)
         if store is None:
             raise not_recorded()
         body = await read_body(HandInRequest, request)
         caller = access.caller(request)
         learner = _learner(caller, body.learner)
-        exercise = exercise_or_404(catalogue, body.exercise)
-        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        terms = await read(store, lambda it: terms_of(it, course_id, assignment_id, learner))
-        if exercise.id not in terms.exercises:
-            raise _not_assigned(assignment_id, exercise.id)
-        given = body.model_dump(exclude={"exercise", "learner"}, exclude_unset=True)
-        attempt = AttemptRequest.model_validate({**given, "learner": learner})
+        named = exercise_or_404(catalogue, body.exercise)
+        require_parts(named, ((part, ("answers", part)) for part in body.answers))
+        now = datetime.now(UTC)
+        place = (course_id, assignment_id, named)
+        begun = partial(_begun, place, learner, caller.owner, idempotency_key)
+        # Not by the threads that read: there a hand-in would wait for the queries of tutors.
+        found = await write(store, begun)
+        if isinstance(found, CourseError):
+            raise course_problem(found)
+        terms, seed, before = found
+        exercise = named if seed is None else hidden_variant(named, seed)
+        # Its fields have been validated.
+        attempt = AttemptRequest.model_construct(
+            (body.model_fields_set - {"exercise"}) | {"learner"},
+            **{name: getattr(body, name) for name in GradeRequest.model_fields},
+            learner=learner,
+        )
         level = partial(terms.feedback_at, exercise)
         return await Recorder(store, feedback, monitor).answer(
             request,
@@ -117,6 +132,7 @@ def routes(
             AttemptTerms(terms.rules, level, terms.number),
             caller.owner,
             idempotency_key,
+            (now, before),
         )
 
     @router.get(
@@ -133,14 +149,14 @@ def routes(
         exercise_id: ExerciseId,
     ) -> Response:
         """Show a learner the model solution, once the assignment allows it."""
+        from service.courses.dealing import assigned
         from service.courses.learner_view import has_full_marks
-        from service.courses.terms import terms_of
 
         learner = _learner(access.caller(request), None)
-        terms = await read(store, lambda it: terms_of(it, course_id, assignment_id, learner))
-        exercise = exercise_or_404(catalogue, exercise_id)
-        if exercise.id not in terms.exercises:
-            raise _not_assigned(assignment_id, exercise.id)
+        named = exercise_or_404(catalogue, exercise_id)
+        terms, exercise = await read(
+            store, lambda it: assigned(it, course_id, assignment_id, learner, named)
+        )
         is_full = await read(
             store, lambda it: has_full_marks(it, learner, terms.number, exercise.id)
         )
@@ -156,6 +172,31 @@ def routes(
     return router
 
 
+def _begun(
+    place: tuple[str, str, Exercise],
+    learner: str,
+    owner: str,
+    idempotency_key: str,
+    connection: "Connection",
+) -> "tuple[LearnerTerms, str | None, Standing] | CourseError":
+    """Return the terms of a hand-in, the seed of the learner's variant, and what counts so far.
+
+    ``place`` is a course, an assignment and an exercise. An error is returned: if it were raised,
+    other jobs of the transaction would run again.
+    """
+    from service.attempts.recording import standing
+    from service.courses.dealing import assigned_seed
+
+    course, assignment, exercise = place
+    try:
+        terms, seed = assigned_seed(connection, course, assignment, learner, exercise)
+    except CourseError as error:
+        return error
+    number = terms.number
+    counted = standing(connection, exercise.id, learner, owner, idempotency_key, number)
+    return terms, seed, counted
+
+
 def _learner(caller: Caller, named: str | None) -> str:
     """Return the learner for whom the caller acts. Raises ProblemError."""
     if caller.learner is not None:
@@ -165,8 +206,3 @@ def _learner(caller: Caller, named: str | None) -> str:
     if named is None:
         raise access_problem("learner-needed")
     return named
-
-
-def _not_assigned(assignment: str, exercise: str) -> ProblemError:
-    message = f"The exercise {exercise} is not part of the assignment {assignment}."
-    return course_problem(CourseError("not-assigned", message))

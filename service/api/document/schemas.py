@@ -45,7 +45,8 @@ _CHOICES: Final = {
     ("open", "after", "none"): "Practice",
     ("never", "after_full", "after_due"): "ShowSolution",
     ("not_open", "open", "late", "closed"): "AssignmentState",
-    ("json", "csv", "moodle", "canvas"): "GradebookFormat",
+    ("json", "csv", "moodle", "canvas", "xlsx"): "GradebookFormat",
+    ("waiting", "sent", "refused"): "ScoreState",
 }
 
 

@@ -179,10 +179,10 @@ class Access:
             raise access_problem("other-course")
         if right.reach is Reach.COURSE and course not in (None, request.path_params["course_id"]):
             raise access_problem("other-course")
-        exercises = identity.caller.exercises
-        if exercises is None or right.reach is Reach.OWN:
+        if identity.caller.exercises is None or right.reach is Reach.OWN:
             return
-        if right.reach.named(request) not in exercises:
+        named = right.reach.named(request)
+        if named is None or not identity.caller.reaches(named):
             raise access_problem("other-exercise")
 
     def _problem(
@@ -307,11 +307,16 @@ def is_same_origin(request: Request) -> bool:
 def session_in(scope: AsgiScope) -> str:
     """Return the session in the cookies of a request, or "".
 
-    Browsers send cookies also for pages of other origins, whose requests have no session here. A
-    user may follow a link from any page.
+    Over HTTPS only the secure cookie counts: another host of the same site, or anybody who changes
+    an answer over HTTP, can set the plain one. Browsers send cookies also for pages of other
+    origins, whose requests have no session here. A user may follow a link from any page.
     """
     request = Request(scope)
-    session = request.cookies.get(SECURE_COOKIE) or request.cookies.get(PLAIN_COOKIE) or ""
+    origin = request.headers.get("origin", "")
+    is_secure = scope["scheme"] == "https" or origin.startswith("https:")
+    # A proxy that this service does not trust may have hidden that the browser uses HTTPS.
+    names = (SECURE_COOKIE,) if is_secure else (SECURE_COOKIE, PLAIN_COOKIE)
+    session = next(filter(None, map(request.cookies.get, names)), "")
     return session if session and is_same_origin(request) else ""
 
 

@@ -11,7 +11,7 @@ from service.api.permissions.access_problems import access_problem
 from service.api.turns import CLIENT, COURSE_SITE, ONE_ADDRESS, ONE_STUDENT, Client
 
 # Parts of the paths that count towards limits, after any prefix of a proxy; pages and files do not.
-_COUNTED: Final = ("/v1/", "/tutor")
+_COUNTED: Final = ("/v1/", "/tutor", "/lti/")
 # Supervisors have no key, and must not wait for the database of keys.
 _HEALTH: Final = ("/healthz", "/readyz")
 

@@ -37,6 +37,10 @@ class AttemptTerms:
     assignment: int | None = None
 
 
+# When a request arrived, and how many attempts of the learner counted then.
+Arrived = tuple[datetime, Standing]
+
+
 @dataclass(frozen=True, slots=True)
 class Recorder:
     """Records attempts in a store; reports have at most the level ``ceiling``."""
@@ -53,14 +57,16 @@ class Recorder:
         terms: AttemptTerms,
         owner: str,
         idempotency_key: str | None,
+        arrived: Arrived | None = None,
     ) -> Response:
         """Grade answers, record them, and answer with the attempt and its report.
 
-        Raises ProblemError.
+        Without ``arrived``, the request arrives now. Raises ProblemError.
         """
-        attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key)
+        now, before = arrived or (datetime.now(UTC), None)
+        attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
         try:
-            recorded = await attempting.recorded(request)
+            recorded = await attempting.recorded(request, before)
         except StoreDownError as error:
             detail = (
                 "The database did not confirm the attempt. Send it again, with the same "
@@ -85,6 +91,7 @@ class _Attempting:
         recorder: Recorder,
         owner: str,
         idempotency_key: str | None,
+        now: datetime,
     ) -> None:
         self._exercise = exercise
         self._body = body
@@ -93,7 +100,7 @@ class _Attempting:
         self._owner = owner
         self._key = idempotency_key
         self._grading = AttemptGrading(exercise, body)
-        self._now = datetime.now(UTC)
+        self._now = now
         answers = body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
         self._submission = json.dumps(answers)
         self._answers_digest = _digest(body.answers)
@@ -102,11 +109,11 @@ class _Attempting:
             content["assignment"] = terms.assignment
         self._request_digest = _digest(content)
 
-    async def recorded(self, request: Request) -> RecordedAttempt:
+    async def recorded(self, request: Request, before: Standing | None) -> RecordedAttempt:
         """Grade and record it. Raises StoreDownError, AttemptRefusedError, ProblemError."""
         store, assignment = self._recorder.store, self._terms.assignment
-        standing = await store.standing(
-            self._exercise.id, self._body.learner, self._owner, self._key, assignment
+        standing = before or await store.standing(
+            self._exercise.plain_id, self._body.learner, self._owner, self._key, assignment
         )
         while True:
             if standing.earlier is not None:
@@ -161,7 +168,7 @@ class _Attempting:
     def _new(self, taken: Ruling, graded: AttemptReport, ordinal: int) -> NewAttempt:
         report = graded.report
         return NewAttempt(
-            exercise=self._exercise.id,
+            exercise=self._exercise.plain_id,
             learner=self._body.learner,
             ordinal=ordinal if report.gradable else None,
             at=self._now,
@@ -178,6 +185,7 @@ class _Attempting:
             idempotency_key=self._key,
             request_digest=self._request_digest,
             assignment=self._terms.assignment,
+            variant=self._exercise.seed or None,
         )
 
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -16,7 +17,7 @@ from service.api.http.problems import invalid
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
 from service.api.recording.store import ask, private, private_json, unknown_attempt
-from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
+from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
 from service.contract.attempts import (
     AttemptDetail,
@@ -108,6 +109,8 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         """
         caller = access.caller(request)
         course = course_of(caller, course)
+        if exercise is not None and caller.learner is not None:
+            exercise = exercise.partition("~")[0]
         wanted = AttemptFilter(
             exercise, _readable(caller, learner), since, until, counted, course, assignment
         )
@@ -116,7 +119,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
             raise invalid([detail]) from error
-        attempts = [AttemptSummary.model_validate(each, from_attributes=True) for each in shown]
+        attempts = [_summary(each, caller) for each in shown]
         return private(AttemptList(attempts=attempts, next=following))
 
     @router.get(
@@ -200,10 +203,16 @@ def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
     return may_reach(caller, found) and caller.learner in (None, found.attempt.learner)
 
 
+def _summary(attempt: ListedAttempt, caller: Caller) -> AttemptSummary:
+    """Return an attempt as the caller may see it: learners see no seed."""
+    seen = attempt if caller.learner is None else replace(attempt, variant=None)
+    return AttemptSummary.model_validate(seen, from_attributes=True)
+
+
 def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
     # Overrides and replaced reports are only for tutors.
     is_tutor = caller.learner is None
-    attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
+    attempt = _summary(found.attempt, caller)
     return {
         "attempt": attempt.model_dump(mode="json", exclude_none=True),
         "submission": json.loads(found.submission),

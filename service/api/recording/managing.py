@@ -177,17 +177,24 @@ def routes(
         response_description="The results of this step, and the cursor of the next one.",
         **posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED),
     )
-    async def regrade_attempts(request: Request, exercise_id: ExerciseId) -> Response:
+    async def regrade_attempts(
+        request: Request, exercise_id: ExerciseId, course: CourseFilter = None
+    ) -> Response:
         """Regrade attempts that another version of exercise or program has graded; for tutors.
+
+        With `course`, and with a key of a course, only attempts in this course are regraded.
 
         One request works for about a second. Repeat it with `next` as the cursor until the
         answer has no `next`. Without `apply` nothing is written, and the answers say which
         results would change and why. With `apply` the new reports are written, and the old
-        ones are kept. An interrupted regrade continues with a request without a cursor.
+        ones are kept. All variants of the exercise are regraded, each by its own answer; an
+        attempt at a variant that has other values now stays. An interrupted regrade continues
+        with a request without a cursor.
         """
-        exercise = exercise_or_404(catalogue, exercise_id)
+        exercise = exercise_or_404(catalogue, exercise_id.partition("~")[0])
+        course = course_of(access.caller(request), course)
         body = await read_body(RegradeRequest, request)
-        return private(await ask(store, lambda it: regrades.step(it, exercise, body)))
+        return private(await ask(store, lambda it: regrades.step(it, exercise, course, body)))
 
     return router
 
@@ -199,23 +206,23 @@ class _Regrades:
         self._ceiling = ceiling
         self._work = BoundedWork()
         # The regrade of the last step, which has memoized the reports on equal answers.
-        self._last: tuple[Exercise, Regrading] | None = None
+        self._last: tuple[Exercise, str | None, Regrading] | None = None
 
     async def step(
-        self, store: "AttemptStore", exercise: Exercise, body: RegradeRequest
+        self, store: "AttemptStore", exercise: Exercise, course: str | None, body: RegradeRequest
     ) -> RegradeAnswer:
-        """Do one step. Raises ProblemError, StoreDownError."""
-        return await self._work.do(partial(self._step, store, exercise, body))
+        """Do one step in a course, or in all. Raises ProblemError, StoreDownError."""
+        return await self._work.do(partial(self._step, store, exercise, course, body))
 
     def _step(
-        self, store: "AttemptStore", exercise: Exercise, body: RegradeRequest
+        self, store: "AttemptStore", exercise: Exercise, course: str | None, body: RegradeRequest
     ) -> RegradeAnswer:
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 
         step = apply_step if body.apply else preview_step
         try:
-            done = step(store.engine, self._of(exercise), body.cursor)
+            done = step(store.engine, self._of(exercise, course), body.cursor)
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a step."}
             raise invalid([detail]) from error
@@ -231,12 +238,12 @@ class _Regrades:
             next=done.following,
         )
 
-    def _of(self, exercise: Exercise) -> "Regrading":
+    def _of(self, exercise: Exercise, course: str | None) -> "Regrading":
         from service.attempts.regrades.outdated import Regrading
 
-        if self._last is None or self._last[0] is not exercise:
-            self._last = (exercise, Regrading(exercise, self._ceiling))
-        return self._last[1]
+        if self._last is None or self._last[0] is not exercise or self._last[1] != course:
+            self._last = (exercise, course, Regrading(exercise, self._ceiling, course))
+        return self._last[2]
 
 
 async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:

@@ -82,7 +82,7 @@ def routes(
         caller = access.caller(request)
         if caller.learner not in (None, body.learner):
             raise access_problem("other-learner")
-        await practice(caller, exercise.id)
+        await practice(caller, exercise.plain_id)
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
         terms = AttemptTerms(exercise.attempts, exercise.feedback_at)
         recorder = Recorder(store, feedback, monitor)

@@ -3,16 +3,18 @@
 from http import HTTPStatus
 from typing import Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
+from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import refusals
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.catalogue import FeedbackLevel, least
 from service.contract.exercises import ExerciseList, ExerciseView
+from service.grading.kinds.find_slip import shown_shape
 from service.typeset.statement import statement_html
 
 
-def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
+def routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> APIRouter:
     """Return the routes of the catalogue; ``feedback`` is the highest level of any report."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
 
@@ -34,18 +36,18 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         summary="Show an exercise",
         response_model=ExerciseView,
         response_description="The exercise.",
-        responses=refusals(HTTPStatus.NOT_FOUND),
         response_model_exclude_none=True,
+        **of_assignment({"responses": refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)}),
     )
-    async def show_exercise(exercise_id: ExerciseId) -> dict[str, Any]:
+    async def show_exercise(exercise_id: ExerciseId, request: Request) -> dict[str, Any]:
         """Show an exercise: its statement, its symbols, and what each part asks for."""
-        exercise = exercise_or_404(catalogue, exercise_id)
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
         parts = [
             {
                 **dict(part),
                 "prompt_html": statement_html(part.prompt, exercise.symbols),
-                "shape": part.shape(exercise.reference),
+                "shape": shown_shape(part, exercise),
             }
             for part in exercise.parts
         ]

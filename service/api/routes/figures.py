@@ -6,8 +6,9 @@ from functools import partial
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 
+from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import refusals
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.memoized import MemoizedResults
@@ -21,13 +22,16 @@ _THEME = Query(
 )
 
 
+_REFUSED = refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY)
+
+
 class SvgResponse(Response):
     """A drawing."""
 
     media_type = "image/svg+xml"
 
 
-def routes(catalogue: Catalogue) -> APIRouter:
+def routes(catalogue: Catalogue, own: OwnVariants) -> APIRouter:
     """Return the route of the figures."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
     figures = MemoizedResults()
@@ -38,10 +42,10 @@ def routes(catalogue: Catalogue) -> APIRouter:
         summary="Draw the mechanism",
         response_class=SvgResponse,
         response_description="The drawing.",
-        responses=refusals(HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY),
+        **of_assignment({"responses": _REFUSED}),
     )
     async def draw_figure(
-        exercise_id: ExerciseId, theme: Annotated[Theme, _THEME] = Theme.AUTO
+        exercise_id: ExerciseId, request: Request, theme: Annotated[Theme, _THEME] = Theme.AUTO
     ) -> Response:
         """Draw the robot of an exercise: joints, links, given frames, lengths, joint variables.
 
@@ -49,7 +53,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
         does not name. The angles of all joints are 0, and sliding joints are extended. An exercise
         without a robot has no figure.
         """
-        exercise = exercise_or_404(catalogue, exercise_id)
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
         if exercise.reference is None:
             raise ProblemError(
                 HTTPStatus.NOT_FOUND,
@@ -59,7 +63,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
             )
         key = (exercise.id, exercise.version, exercise.title, exercise.view, theme)
         content = await figures.of(key, partial(_drawn, exercise, theme))
-        return SvgResponse(content, headers=_headers(theme))
+        return SvgResponse(content, headers=figure_headers(theme))
 
     return router
 
@@ -68,7 +72,7 @@ def _drawn(exercise: Exercise, theme: Theme) -> bytes:
     return exercise_figure(exercise, theme).encode()
 
 
-def _headers(theme: Theme) -> dict[str, str]:
+def figure_headers(theme: Theme) -> dict[str, str]:
     """Return headers that allow only the figure's own style, and let any page show the figure."""
     digest = base64.b64encode(hashlib.sha256(style_sheet(theme).encode()).digest()).decode()
     policy = f"default-src 'none'; style-src 'sha256-{digest}'; frame-ancestors 'self'"

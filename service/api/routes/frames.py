@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from fastapi import APIRouter, Request, Response
 
+from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, Location, require_exercise
@@ -16,15 +17,18 @@ from service.api.permissions.access import Access, require_reach
 from service.api.turns import run_in_turns
 from service.catalogue import Exercise
 from service.catalogue.feedback_level import FeedbackLevel
+from service.catalogue.parts.frames import FramesSpec
 from service.contract.frames import (
     ConvertedRow,
     DrawnConfiguration,
     DrawnMechanism,
     FramesAnswer,
+    FramesAsPlaced,
     FramesOfTable,
     FramesRequest,
     LostFreedom,
     MovingJoint,
+    PlacedToDraw,
     PrintedFormula,
     TableInFormulas,
     TableToDraw,
@@ -42,6 +46,7 @@ from service.figures.geometry.mechanism import (
 )
 from service.figures.geometry.view import View
 from service.figures.table_figure import SeenMechanism, WrittenChain, table_figure
+from service.figures.tables.placed_frames import placed_frames
 from service.figures.tables.scope import DrawingScope, free_scope
 from service.figures.tables.table_formulas import TableFormulas, table_formulas
 from service.figures.tables.table_frames import TableFrames, table_frames, table_to_draw
@@ -71,7 +76,7 @@ class _Mechanisms:
         return self._mechanisms[key]
 
 
-def routes(catalogue: Catalogue, access: Access) -> APIRouter:
+def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
     """Return the route that computes frames."""
     router = APIRouter(prefix="/v1", tags=["drawing"])
     mechanisms = _Mechanisms()
@@ -81,7 +86,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         operation_id="getFrames",
         summary="Compute the places of frames and links",
         response_description="Coordinates to draw with.",
-        **posting(FramesRequest, FramesAnswer, "frames"),
+        **of_assignment(posting(FramesRequest, FramesAnswer, "frames")),
     )
     async def frames(request: Request) -> Response:
         """Compute the frames of a table and the links of an exercise's mechanism.
@@ -92,16 +97,20 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         """
         body = await read_body(FramesRequest, request)
         require_reach(access.caller(request), body.exercise)
-        answer = await run_in_turns(request, partial(_answered, catalogue, body, mechanisms))
+        exercise = None
+        if body.exercise is not None:
+            exercise = await own.of(request, require_exercise(catalogue, body.exercise))
+        answer = await run_in_turns(request, partial(_answered, exercise, body, mechanisms))
         content = answer.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")
 
     return router
 
 
-def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms) -> FramesAnswer:
+def _answered(
+    exercise: Exercise | None, body: FramesRequest, mechanisms: _Mechanisms
+) -> FramesAnswer:
     """Return the answer to a request. Raises ProblemError if its fields contradict each other."""
-    exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
     scope = _scope(exercise, body)
     constants = [variable.name for variable in scope.variables if variable.joint is None]
     if unknown := sorted(body.symbols.keys() - set(constants)):
@@ -116,6 +125,9 @@ def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms
             written = WrittenChain(found.frames[0], found.row_joints, body.table.convention)
         # Without an exercise, only the symbols that the table uses.
         used = used if exercise else found.symbols if found else set()
+    placed = None
+    if body.placed is not None:
+        placed = _placed(body.placed, exercise, body, numbers, amounts)
     if exercise is not None:
         movable, view = mechanisms.of(exercise, numbers)
         shown = movable.at(amounts)
@@ -125,6 +137,7 @@ def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms
         symbols={name: numbers[name] for name in constants if name in used},
         joints=list(_joints(scope, numbers)),
         table=table,
+        placed=placed,
         mechanism=mechanism,
         figure=table_figure(written, seen, body.figure)
         if body.figure and (written or seen)
@@ -222,6 +235,34 @@ def _table(
         formulas=formulas,
     )
     return drawn, found
+
+
+def _placed(
+    placed: PlacedToDraw,
+    exercise: Exercise | None,
+    body: FramesRequest,
+    numbers: Mapping[str, float],
+    amounts: Numbers,
+) -> FramesAsPlaced:
+    part = exercise.part(placed.part) if exercise else None
+    if exercise is None or not isinstance(part, FramesSpec):
+        message = "Name an exercise, and a part of it that asks for frames"
+        raise _refused(("placed", "part"), message)
+    budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
+    try:
+        found = placed_frames(
+            placed.rows, part, exercise, numbers, amounts, budget, body.angle_unit
+        )
+    except UnreadableAnswerError as error:
+        return FramesAsPlaced(labels=[], frames=[], left_out=[], error=_error(error.finding))
+    return FramesAsPlaced(
+        labels=list(found.labels),
+        frames=_plain(found.frames),
+        left_out=[
+            UnreadCell(row=cell.row, column=cell.column, error=_error(cell.finding))
+            for cell in found.left_out
+        ],
+    )
 
 
 def _printed(found: TableFormulas) -> TableInFormulas:

@@ -7,6 +7,7 @@ from http import HTTPStatus
 from fastapi import APIRouter, Request, Response
 
 from service.access.caller import Caller
+from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.courses.practice import PracticeGate
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body, validated
@@ -31,6 +32,7 @@ def routes(
     access: Access,
     monitor: Monitor | None,
     practice: PracticeGate,
+    own: OwnVariants,
 ) -> APIRouter:
     """Return the routes that grade; reports have at most the level ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["grading"])
@@ -42,7 +44,7 @@ def routes(
         operation_id="grade",
         summary="Grade a submission",
         response_description="The report.",
-        **posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND),
+        **of_assignment(posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND)),
     )
     async def grade_one(exercise_id: ExerciseId, request: Request) -> Response:
         """Grade answers, row by row and cell by cell. Nothing is recorded.
@@ -52,9 +54,9 @@ def routes(
         always get the same report. It says no more than the exercise and the service allow;
         `feedback` may ask for less.
         """
-        exercise = exercise_or_404(catalogue, exercise_id)
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
         body = await read_body(GradeRequest, request)
-        await practice.check(access.caller(request), exercise.id)
+        await practice.check(access.caller(request), exercise.plain_id)
         report = await run_in_turns(request, lambda: _report(exercise, body, ()))
         return Response(report, media_type="application/json")
 
@@ -116,9 +118,9 @@ def routes(
 
 
 def _named(submission: object) -> str:
-    """Return the exercise that a submission names, which may be malformed."""
+    """Return the plain exercise that a submission names, which may be malformed."""
     exercise = submission.get("exercise") if isinstance(submission, dict) else None
-    return exercise if isinstance(exercise, str) else ""
+    return exercise.partition("~")[0] if isinstance(exercise, str) else ""
 
 
 def _problem(problem: ProblemError, path: str, i: int) -> bytes:

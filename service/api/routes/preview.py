@@ -5,6 +5,7 @@ from typing import Final
 
 from fastapi import APIRouter, Request, Response
 
+from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, require_exercise, require_parts
@@ -96,7 +97,7 @@ def _shown(body: PreviewRequest, exercise: Exercise | None) -> str:
     return shown.model_dump_json(exclude_none=True)
 
 
-def routes(catalogue: Catalogue, access: Access) -> APIRouter:
+def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
     """Return the routes of previews."""
     router = APIRouter(prefix="/v1", tags=["preview"])
 
@@ -105,7 +106,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         operation_id="preview",
         summary="Show how a text is read",
         response_description="The reading of the text, or the reason why it cannot be read.",
-        **posting(PreviewRequest, PreviewAnswer, "preview"),
+        **of_assignment(posting(PreviewRequest, PreviewAnswer, "preview")),
     )
     async def preview_text(request: Request) -> Response:
         """Show how a text is read: as plain text, LaTeX and MathML.
@@ -116,6 +117,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         body = await read_body(PreviewRequest, request)
         require_reach(access.caller(request), body.exercise)
         exercise = _exercise(catalogue, body)
+        if exercise is not None:
+            exercise = await own.of(request, exercise)
         content = await run_in_turns(request, partial(_shown, body, exercise))
         return Response(content, media_type="application/json")
 
@@ -124,7 +127,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         operation_id="previewMany",
         summary="Show how the entries of a part are read",
         response_description="The reading of each entry, in their order.",
-        **posting(PreviewManyRequest, PreviewManyResponse, "preview-many"),
+        **of_assignment(posting(PreviewManyRequest, PreviewManyResponse, "preview-many")),
     )
     async def preview_entries_of_part(request: Request) -> Response:
         """Show how several entries of one part are read, each on its own.
@@ -135,7 +138,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         """
         body = await read_body(PreviewManyRequest, request)
         require_reach(access.caller(request), body.exercise)
-        exercise = require_exercise(catalogue, body.exercise)
+        exercise = await own.of(request, require_exercise(catalogue, body.exercise))
         require_parts(exercise, [(body.part, ("part",))])
         shown = await run_in_turns(request, partial(preview_many, body, exercise))
         return Response(shown.model_dump_json(exclude_none=True), media_type="application/json")

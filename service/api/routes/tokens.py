@@ -10,7 +10,7 @@ from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, require_exercises
 from service.api.permissions.access import Access, require_reach
-from service.contract.tokens import TokenRequest, TokenResponse
+from service.contract.tutoring import TokenRequest, TokenResponse
 
 
 def routes(catalogue: Catalogue, access: Access) -> APIRouter:

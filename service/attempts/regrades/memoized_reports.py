@@ -26,6 +26,7 @@ class WrittenReport:
     max_points: float
     parts: PartResults
     outcome: Outcome
+    version: str
 
     @property
     def size(self) -> int:

@@ -31,14 +31,17 @@ from sqlalchemy import (
     update,
 )
 
+from service.attempts.attempt import AttemptFilter
 from service.attempts.graded import AttemptGrading
 from service.attempts.recording import insert_or_ignore, outcome_ids
 from service.attempts.regrades.memoized_reports import MemoizedReports, PartResults, WrittenReport
-from service.attempts.results.listing import BY_TIME, TimePlace, later_than
+from service.attempts.results.listing import BY_TIME, TimePlace, condition, later_than
 from service.attempts.storage.database import in_transaction, without_time_limit
+from service.attempts.storage.score_queue import Priority, queue_scores
 from service.attempts.storage.tables import attempts, earlier_reports, regrade_queue
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.submissions.body import GradeRequest
+from service.variants.variant import NoVariantError, hidden_variant, values_of, variant_of
 from service.version import VERSION
 
 # The most attempts in one commit, and the time after which a batch ends (seconds).
@@ -70,11 +73,18 @@ class RegradedAttempt:
 
 
 class Regrading:
-    """Regrades the attempts at an exercise with its current version and the current program."""
+    """Regrades the attempts at an exercise with its current version and the current program.
 
-    def __init__(self, exercise: Exercise, ceiling: FeedbackLevel) -> None:
+    With ``course``, it regrades only the attempts in the assignments of this course.
+    """
+
+    def __init__(
+        self, exercise: Exercise, ceiling: FeedbackLevel, course: str | None = None
+    ) -> None:
+        self._condition = condition(AttemptFilter(exercise.id, course=course))
         self._exercise = exercise
         self._ceiling = ceiling
+        self._course = course
         # Equal answers get equal reports.
         self._memoized = MemoizedReports()
 
@@ -99,7 +109,8 @@ class Regrading:
 
     def preview(self, connection: Connection, numbers: Sequence[int]) -> list[RegradedAttempt]:
         """Return what regrading these attempts would change; write nothing."""
-        return [self._regraded(row)[0] for row in self._rows(connection, numbers)]
+        rows = self._rows(connection, numbers)
+        return [self._regraded(row)[0] for row in rows if self._of(row) is not None]
 
     def enqueue(self, connection: Connection) -> None:
         """Put all outdated attempts into the queue, each at most once."""
@@ -113,8 +124,8 @@ class Regrading:
 
     def waiting(self, connection: Connection) -> int:
         """Count the attempts in the queue, including those that a worker has taken."""
-        mine = regrade_queue.c.exercise == self._exercise.id
-        return connection.scalar(select(func.count()).select_from(regrade_queue).where(mine)) or 0
+        waiting = select(func.count()).select_from(regrade_queue).where(self._is_queued())
+        return connection.scalar(waiting) or 0
 
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
         """Regrade some attempts of the queue that no other worker has taken, in a transaction.
@@ -145,10 +156,14 @@ class Regrading:
 
     def _waiting(self) -> Select[int]:
         """The query for the first batch of the queue."""
-        waiting = select(regrade_queue.c.attempt).where(
-            regrade_queue.c.exercise == self._exercise.id
-        )
+        waiting = select(regrade_queue.c.attempt).where(self._is_queued())
         return waiting.order_by(regrade_queue.c.attempt).limit(BATCH)
+
+    def _is_queued(self) -> ColumnElement[bool]:
+        mine = regrade_queue.c.exercise == self._exercise.id
+        if self._course is None:
+            return mine
+        return mine & regrade_queue.c.attempt.in_(select(attempts.c.number).where(self._condition))
 
     def _prepared(self, engine: Engine) -> list[int]:
         """Grade the first batch of the queue, so that its reports are memoized; return it."""
@@ -172,11 +187,31 @@ class Regrading:
         return graded
 
     def _is_outdated(self) -> ColumnElement[bool]:
-        another = or_(attempts.c.version != self._exercise.version, attempts.c.grader != VERSION)
-        return (attempts.c.exercise == self._exercise.id) & another
+        exercise, version = self._exercise, attempts.c.version
+        if exercise.vary is None:
+            another = version != exercise.version
+        else:
+            # The versions of all variants begin with that of the file.
+            another = version.not_like(f"{exercise.vary.base_version}-%")
+        return self._condition & or_(another, attempts.c.grader != VERSION)
 
     def _needs(self, row: Row[Any]) -> bool:
-        return (row.version, row.grader) != (self._exercise.version, VERSION)
+        exercise = self._of(row)
+        return exercise is not None and (row.version, row.grader) != (exercise.version, VERSION)
+
+    def _of(self, row: Row[Any]) -> Exercise | None:
+        """Return the exercise or variant of an attempt; None if its variant has other values now.
+
+        Learners who have answered a question are not graded by another one.
+        """
+        if row.variant is None:
+            return self._exercise
+        make = variant_of if row.assignment is None else hidden_variant
+        try:
+            variant = make(self._exercise, row.variant)
+        except NoVariantError:
+            return None
+        return variant if values_of(variant.version) == values_of(row.version) else None
 
     def _rows(self, connection: Connection, numbers: Sequence[int]) -> Sequence[Row[Any]]:
         chosen = select(attempts).where(attempts.c.number.in_(numbers))
@@ -184,15 +219,19 @@ class Regrading:
 
     def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, WrittenReport]:
         before = json.loads(row.report)
+        exercise = self._of(row)
+        assert exercise is not None, "the variant has other values"
         # Never above the level of the old report: the service may have had a lower ceiling than
         # this process.
         level = least(
-            self._exercise.feedback_at(row.ordinal or 1),
+            exercise.feedback_at(row.ordinal or 1),
             self._ceiling,
             FeedbackLevel(before["feedback"]),
         )
         report = self._memoized.get(
-            row.submission, level, lambda: self._report(row.submission, level)
+            f"{exercise.id} {exercise.version} {row.submission}",
+            level,
+            lambda: self._report(exercise, row.submission, level),
         )
         after = round(report.points * row.worth, 6)
         reasons = tuple(_reasons(_results(before), report.parts))
@@ -208,15 +247,17 @@ class Regrading:
         )
         return change, report
 
-    def _report(self, submission: str, level: FeedbackLevel) -> WrittenReport:
+    def _report(self, exercise: Exercise, submission: str, level: FeedbackLevel) -> WrittenReport:
         body = GradeRequest.model_validate_json(submission)
         # A corrected exercise may have lost a part, or renamed it.
-        answers = {part: it for part, it in body.answers.items() if self._exercise.part(part)}
+        answers = {part: it for part, it in body.answers.items() if exercise.part(part)}
         body = body.model_copy(update={"answers": answers})
-        graded = AttemptGrading(self._exercise, body).at(level)
+        graded = AttemptGrading(exercise, body).at(level)
         report = graded.report
         parts = {part.part: (str(part.verdict), part.points) for part in report.parts}
-        return WrittenReport(graded.text, report.points, report.max_points, parts, graded.outcome)
+        return WrittenReport(
+            graded.text, report.points, report.max_points, parts, graded.outcome, exercise.version
+        )
 
     def _write(
         self,
@@ -240,7 +281,7 @@ class Regrading:
                 {
                     "which": row.number,
                     "report": report.text,
-                    "version": self._exercise.version,
+                    "version": report.version,
                     "grader": VERSION,
                     "points": change.after,
                     "max_points": report.max_points,
@@ -249,6 +290,13 @@ class Regrading:
                 for row, change, report in done
             ],
         )
+        changed = [
+            row.number
+            for row, change, report in done
+            if (change.before, row.max_points) != (change.after, report.max_points)
+        ]
+        if changed:
+            queue_scores(connection, attempts.c.number.in_(changed), Priority.REGRADE)
 
 
 def _results(report: Mapping[str, Any]) -> PartResults:

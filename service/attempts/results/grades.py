@@ -91,7 +91,7 @@ def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> 
 
 _FIELDS: Final = (
     "exercise", "learner", "attempt", "ordinal", "at", "is_late", "points", "max_points",
-    "report_points", "counts", "version", "grader",
+    "report_points", "counts", "version", "grader", "variant",
 )  # fmt: skip
 _Value = str | float | bool | None
 
@@ -102,6 +102,7 @@ def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
     return (
         each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,
         each.earned, each.max_points, each.points, graded.counts, each.version, each.grader,
+        each.variant,
     )  # fmt: skip
 
 

@@ -32,7 +32,10 @@ def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
 
 def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
     if wanted.exercise is not None:
-        yield attempts.c.exercise == wanted.exercise
+        exercise, _, seed = wanted.exercise.partition("~")
+        yield attempts.c.exercise == exercise
+        if seed:
+            yield attempts.c.variant == seed
     if wanted.learner is not None:
         yield attempts.c.learner == wanted.learner
     if wanted.since is not None:

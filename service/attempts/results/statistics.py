@@ -39,7 +39,7 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
     assert wanted.exercise is not None
     chosen = condition(wanted)
     counts = _counts(connection, chosen)
-    contents = _contents(connection, wanted.exercise, counts)
+    contents = _contents(connection, wanted.exercise.partition("~")[0], counts)
     parts: dict[str, _PartCount] = defaultdict(_PartCount)
     slips: dict[_Slip, Counter[str]] = defaultdict(Counter)
     outcome_with: dict[_Slip, int] = {}

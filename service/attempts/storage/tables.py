@@ -87,7 +87,8 @@ course_learners = Table(
 )
 
 # ``exercises`` is a JSON list of exercises with their points; ``feedback`` a list of levels, one
-# for each attempt, or NULL for that of each exercise.
+# for each attempt, or NULL for that of each exercise. ``variants`` is the secret from which the
+# seeds of the learners follow, or NULL if all learners get the same exercise.
 assignments = Table(
     "assignments",
     metadata,
@@ -104,7 +105,18 @@ assignments = Table(
     Column("feedback", Text),
     Column("practice", String(10), nullable=False),
     Column("solution", String(10), nullable=False),
+    Column("variants", String(64)),
     UniqueConstraint("course", "id"),
+)
+
+# How often a learner got another variant of an exercise; there is no row for the first variant.
+deals = Table(
+    "deals",
+    metadata,
+    Column("assignment", RowNumber, ForeignKey(assignments.c.number), primary_key=True),
+    Column("learner", String(200), primary_key=True, index=True),
+    Column("exercise", String(100), primary_key=True),
+    Column("number", Integer, nullable=False),
 )
 
 # Other dates or another limit of one learner; NULL means that of the assignment.
@@ -125,7 +137,8 @@ _ASSIGNED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("assig
 
 # ``number`` is the order of arrival. ``ordinal`` counts the learner's counted attempts at the
 # exercise, in all assignments and none; it is unique, so that two requests at once cannot both take
-# the last allowed attempt. ``assignment`` is NULL if the attempt belongs to none.
+# the last allowed attempt. ``assignment`` is NULL if the attempt belongs to none. ``variant`` is a
+# seed, or NULL for the exercise itself.
 # ``awarded`` are points of a tutor instead of the report's. The indexes cover all columns by which
 # lists are filtered and statistics counted, because the rows with their reports are far larger.
 attempts = Table(
@@ -154,6 +167,7 @@ attempts = Table(
     UniqueConstraint("owner", "idempotency_key"),
     Column("awarded", Float),
     Column("assignment", RowNumber, ForeignKey(assignments.c.number)),
+    Column("variant", String(20)),
     Index("ix_attempts_assigned", "exercise", "learner", "assignment", "ordinal", **_ASSIGNED),
     # It has all columns of a gradebook.
     Index(

@@ -211,6 +211,10 @@ class ExerciseSpec(StrictModel):
     """The rules for recorded attempts: a table ``[attempts]``."""
     view: ViewSpec | None = None
     """The viewpoint of the robot's figure."""
+    vary: dict[Text, JsonValue] | None = None
+    """What differs between variants: a table ``[vary]`` with a list of choices or a range for each
+    name, and optionally ``conditions`` and ``deployed``. All texts of the file may contain a name
+    in double braces."""
     parts: Annotated[list[AnyPartSpec], Field(min_length=1)]
     """The questions, one ``[[parts]]`` for each."""
     checks: list[CheckSpec] = Field([])

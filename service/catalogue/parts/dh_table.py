@@ -1,12 +1,13 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the robot."""
 
 from collections.abc import Iterator
-from typing import ClassVar, Literal, TypeAlias
+from typing import Annotated, ClassVar, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from service.catalogue.files.fields import GivenOrFree
+from service.catalogue.files.fields import GivenOrFree, NotBool
 from service.catalogue.part import TablePartSpec
+from service.catalogue.robots.formulas import FieldError
 from service.catalogue.robots.robot import Robot
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices
@@ -36,12 +37,20 @@ class DhTableShape(AnswerShape):
     tool: GivenOrFree
     directions: GivenOrFree
     empty_cells: EmptyCells
+    given: dict[str, list[str]] = Field(
+        default_factory=dict,
+        description="The cells of the given rows, by row label, in the order of the columns. An "
+        "answer may leave these rows out; they earn nothing.",
+    )
 
     def _clauses(self) -> Iterator[str]:
         rows, columns = ", ".join(self.rows), ", ".join(self.columns)
         yield f"a table with the rows {rows} and the columns {columns}"
         yield f"{self.convention} convention"
         yield from choices(**self.model_dump(include=_CHOICES))
+        if self.given:
+            named = "row" if len(self.given) == 1 else "rows"
+            yield f"{named} {', '.join(self.given)} given"
         if self.empty_cells == "zero":
             yield "empty cells are 0"
 
@@ -69,6 +78,27 @@ class DhTableSpec(TablePartSpec):
     """The positive directions of the joints: "given" or "free"."""
     empty_cells: EmptyCells = "unread"
     """The meaning of an empty cell or a dash: "unread" earns nothing, "zero" means 0."""
+    given: tuple[Annotated[int, Field(ge=1, strict=True), NotBool], ...] = ()
+    """The rows that are given, counted from 1, such as [1, 2]. The form shows them filled in. They
+    earn nothing: the other rows share the points."""
+
+    def check_reference(self, field: str, reference: Reference | None) -> None:
+        """Raise FieldError unless the given rows are in the robot's own table."""
+        super().check_reference(field, reference)
+        if not self.given:
+            return
+        assert isinstance(reference, Robot)
+        if self.convention is not reference.convention:
+            raise FieldError(
+                f"{field}.given",
+                f"are rows of the robot's own table, which is {reference.convention.value}; write "
+                f'convention = "{reference.convention.value}"',
+            )
+        rows = len(reference.tables[reference.convention].rows)
+        if max(self.given) > rows or len(self.given) == rows:
+            raise FieldError(
+                f"{field}.given", f"leave at least one of the {rows} rows to the student"
+            )
 
     def shape(self, reference: Reference | None) -> DhTableShape:
         """The shape of the table in the convention of the part."""
@@ -83,8 +113,24 @@ class DhTableSpec(TablePartSpec):
             rows=list(labels),
             convention=self.convention,
             empty_cells=self.empty_cells,
+            given=self._given_cells(reference),
             **chosen,
         )
+
+    def _given_cells(self, robot: Robot) -> dict[str, list[str]]:
+        """Return the texts of the given rows by their labels."""
+        table = robot.tables[robot.convention]
+        return {
+            table.labels[i - 1]: [cell.source for cell in table.rows[i - 1]] for i in self.given
+        }
+
+    @model_validator(mode="after")
+    def _given_rows_have_given_frames(self) -> "DhTableSpec":
+        if list(self.given) != sorted(set(self.given)):
+            raise ValueError("write each number in given once, in order")
+        if self.given and self.frames == "free":
+            raise ValueError('given rows need frames = "given", because they say where frames lie')
+        return self
 
     @model_validator(mode="after")
     def _choices_go_together(self) -> "DhTableSpec":

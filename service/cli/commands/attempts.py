@@ -17,7 +17,7 @@ from service.attempts.errors import (
     UnusableDatabaseError,
     UnusablePointsError,
 )
-from service.attempts.learner_data import delete_older, months_before
+from service.attempts.learner_data import delete_older, is_older, months_before
 from service.attempts.results.grades import counting_rules, graded_attempts, written
 from service.attempts.results.listing import page
 from service.attempts.results.statistics import exercise_statistics
@@ -196,6 +196,9 @@ def regrade(
     jobs: Annotated[
         int, typer.Option(min=1, max=64, help="The number of processes; PostgreSQL only.")
     ] = 1,
+    course: Annotated[
+        str | None, typer.Option(help="Only attempts in this course.", callback=encodable)
+    ] = None,
 ) -> None:
     """Regrade the attempts at a corrected exercise."""
     # Import here: no other command of this group grades.
@@ -204,11 +207,11 @@ def regrade(
     corrected = installed_exercise(exercise)
     with database() as engine:
         if not apply:
-            show_what_would_change(engine, corrected)
+            show_what_would_change(engine, corrected, course)
             return
         if jobs > 1 and engine.dialect.name != "postgresql":
             give_up("SQLite has one writer at a time: leave --jobs out, or use PostgreSQL.")
-        regrade_all(engine, corrected, jobs)
+        regrade_all(engine, corrected, course, jobs)
 
 
 @commands.command("override")
@@ -259,9 +262,15 @@ def expire(
     with database() as engine:
         if not apply:
             with engine.connect() as connection:
-                old = select(func.count()).where(attempts.c.at < before)
-                count = connection.scalar(old) or 0
+                old = select(func.count(attempts.c.number)).where(attempts.c.at < before)
+                count = connection.scalar(old.where(is_older(before))) or 0
+                kept = (connection.scalar(old) or 0) - count
             typer.echo(f"{count} attempts are from before {before:%Y-%m-%d}. --apply deletes them.")
+            if kept:
+                typer.echo(
+                    f"{kept} older attempts are kept: their assignments have no due date, or were "
+                    "closed later."
+                )
             return
         count = in_transaction(engine, lambda connection: delete_older(connection, before))
         erased = overwrite_deleted(engine)

@@ -17,16 +17,20 @@ from service.contract.courses import (
     AssignedPoints,
     AssignmentChange,
     CourseAssignment,
+    DeletedData,
+    DeletionRequest,
     Extension,
     NewAssignment,
     Practice,
     ShowSolution,
 )
-from service.courses import assignments
+from service.courses import assignments, dealing, deletion
 from service.courses.errors import CourseError
 from service.formats.shared.plain_text import number, visible
 from service.submissions.assignment import Assignment, load_assignment
+from service.submissions.lookup import find_exercise
 
+D = TypeVar("D", bound=DeletionRequest)
 M = TypeVar("M", bound=BaseModel)
 R = TypeVar("R")
 
@@ -62,7 +66,18 @@ FeedbackOption = Annotated[
 PracticeOption = Annotated[
     Practice | None, typer.Option(help="Whether answers are graded without being recorded.")
 ]
+WithAttempts = Annotated[
+    bool,
+    typer.Option("--with-attempts", help="Delete the attempts, too, with answers and reports."),
+]
+YesOption = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
 SolutionOption = Annotated[ShowSolution | None, typer.Option(help="When the solution is shown.")]
+VariantsOption = Annotated[
+    bool | None,
+    typer.Option(
+        "--variants/--no-variants", help="Give each learner a variant of their own, or none."
+    ),
+]
 
 
 def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
@@ -75,6 +90,23 @@ def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
             return in_transaction(engine, work)
         except CourseError as error:
             give_up(str(error))
+
+
+def deleted(
+    name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
+) -> None:
+    """Print what ``work`` would delete, ask, and delete it."""
+    found = changed(lambda it: work(it, wanted))
+    if not wanted.with_attempts:
+        # They stay, or they prevent the deletion.
+        found = found.model_copy(update={"attempts": 0})
+    numbers = found.model_dump(exclude={"deleted"})
+    told = ", ".join(f"{kind}: {count}" for kind, count in numbers.items() if count)
+    if not yes:
+        typer.confirm(f"Delete {visible(name)} permanently? {told}", abort=True)
+    apply = wanted.model_copy(update={"apply": True})
+    changed(lambda it: work(it, apply))
+    typer.echo(f"Deleted {visible(name)}: {told}.")
 
 
 def checked(model: type[M], **fields: Any) -> M:
@@ -103,11 +135,14 @@ def add(
     feedback: FeedbackOption = None,
     practice: PracticeOption = None,
     solution: SolutionOption = None,
+    variants: VariantsOption = None,
 ) -> None:
     """Add an assignment to a course."""
     fields = _fields(
         title, exercise, file, opens, due, closes, limit, late_worth, feedback, practice, solution
     )
+    if variants is not None:
+        fields["variants"] = variants
     fields.setdefault("title", assignment)
     body = checked(NewAssignment, id=assignment, **fields)
     known = installed().keys()
@@ -130,11 +165,14 @@ def change(
     feedback: FeedbackOption = None,
     practice: PracticeOption = None,
     solution: SolutionOption = None,
+    variants: VariantsOption = None,
 ) -> None:
     """Change an assignment. With a later due date, late attempts get their points back."""
     fields = _fields(
         title, exercise, file, opens, due, closes, limit, late_worth, feedback, practice, solution
     )
+    if variants is not None:
+        fields["variants"] = variants
     removed = dict.fromkeys(name for name in _REMOVABLE if fields.get(name) == _NONE)
     body = checked(AssignmentChange, **(fields | removed))
     # A field that is None on purpose removes what was set.
@@ -150,6 +188,23 @@ def list_assignments(course: CourseOption) -> None:
         _print(each)
 
 
+@commands.command("delete")
+def delete(
+    course: CourseOption,
+    assignment: AssignmentName,
+    with_attempts: WithAttempts = False,
+    yes: YesOption = False,
+) -> None:
+    """Delete an assignment with its extensions; with --with-attempts also with its attempts."""
+    name = f"the assignment {assignment}"
+    deleted(
+        name,
+        lambda it, wanted: deletion.delete_assignment(it, course, assignment, wanted),
+        DeletionRequest(with_attempts=with_attempts),
+        yes=yes,
+    )
+
+
 @commands.command("extend")
 def extend(
     course: CourseOption,
@@ -163,6 +218,26 @@ def extend(
     given = {"due": _date(due), "closes": _date(closes), "limit": limit}
     body = checked(Extension, learner=learner, **given)
     _print(changed(lambda it: assignments.extend(it, course, assignment, body)))
+
+
+@commands.command("variants")
+def variants_of_learner(
+    course: CourseOption,
+    assignment: AssignmentName,
+    learner: Annotated[str, typer.Argument(help="The learner's id.", callback=encodable)],
+    new: Annotated[
+        str | None, typer.Option(metavar="EXERCISE", help="Deal another variant of this exercise.")
+    ] = None,
+) -> None:
+    """Show which variants a learner has, or deal a new one."""
+    catalogue = installed()
+    if new is not None:
+        chosen = find_exercise(catalogue, new)
+        changed(lambda it: dealing.deal_again(it, course, assignment, learner, chosen))
+    found = changed(lambda it: dealing.learner_variants(it, course, assignment, learner, catalogue))
+    for each in found:
+        dealt = "" if each.deals == 1 else f", deal {each.deals}"
+        stdout().print(f"{visible(learner)}: {each.variant}{dealt}", soft_wrap=True)
 
 
 def _fields(
@@ -245,6 +320,8 @@ def _print(assignment: CourseAssignment) -> None:
     screen.print(f"  attempts {limit}; late attempts earn {assignment.late_worth:.0%}")
     screen.print(f"  feedback {told}", soft_wrap=True)
     screen.print(f"  practice {assignment.practice}; solution {assignment.solution}")
+    if assignment.variants:
+        screen.print("  each learner has variants of their own", soft_wrap=True)
     for extension in assignment.extensions:
         due = f"due {extension.due:%Y-%m-%d %H:%M %Z}" if extension.due else ""
         own = f"at most {extension.limit} attempts" if extension.limit else ""

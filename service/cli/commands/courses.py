@@ -9,22 +9,31 @@ import typer
 
 from service.cli.commands import course_assignments
 from service.cli.commands.attempts import encodable
-from service.cli.commands.course_assignments import changed, checked
+from service.cli.commands.course_assignments import (
+    WithAttempts,
+    YesOption,
+    changed,
+    checked,
+    deleted,
+)
 from service.cli.files.output import write
 from service.cli.terminal import give_up, stdout
 from service.contract.courses import (
     LONGEST_LINK_DAYS,
     Course,
     CourseChange,
+    DeletionRequest,
     GradebookFormat,
     LinksRequest,
     NewCourse,
+    RemovalRequest,
 )
-from service.courses import roll
+from service.courses import deletion, roll
 from service.courses.class_list import read_class_list
 from service.courses.errors import CourseError
-from service.courses.gradebook import gradebook, missing, written_gradebook
 from service.courses.links import issue_links, revoke_links, written_links
+from service.courses.results.gradebook import gradebook, missing, written_gradebook
+from service.courses.results.workbook import gradebook_workbook
 from service.formats.shared.plain_text import number, visible
 from service.settings import load_settings
 
@@ -96,6 +105,38 @@ def change(
     typer.echo("Changed.")
 
 
+@commands.command("delete")
+def delete(
+    course: CourseIdArgument, with_attempts: WithAttempts = False, yes: YesOption = False
+) -> None:
+    """Delete a course, and end its keys and links; with --with-attempts also its attempts."""
+    deleted(
+        f"the course {course}",
+        lambda it, wanted: deletion.delete_course(it, course, wanted, datetime.now(UTC)),
+        DeletionRequest(with_attempts=with_attempts),
+        yes=yes,
+    )
+
+
+@_learners.command("remove")
+def remove_learner(
+    course: CourseIdArgument,
+    learner: Annotated[str, typer.Argument(help="The learner's id.", callback=encodable)],
+    with_attempts: WithAttempts = False,
+    yes: YesOption = False,
+) -> None:
+    """Remove a learner from a course, and end the learner's links to it.
+
+    Without --with-attempts the attempts stay, and count again if the learner comes back.
+    """
+    deleted(
+        f"the learner {learner} of the course {course}",
+        lambda it, wanted: deletion.remove_learner(it, course, wanted, datetime.now(UTC)),
+        checked(RemovalRequest, learner=learner, with_attempts=with_attempts),
+        yes=yes,
+    )
+
+
 @_learners.command("import")
 def import_learners(
     course: CourseIdArgument,
@@ -152,11 +193,17 @@ def show_gradebook(
     assignment: Annotated[str | None, typer.Option(help="Only this assignment.")] = None,
     form: Annotated[
         GradebookFormat,
-        typer.Option("--format", help="csv, json, or CSV that moodle or canvas imports."),
+        typer.Option("--format", help="csv, json, xlsx, or CSV that moodle or canvas imports."),
     ] = "csv",
     output: Output = None,
 ) -> None:
     """Write the points that count, of each learner at each exercise."""
+    if form == "xlsx":
+        if output is None and stdout().is_terminal:
+            give_up("A workbook is not for the screen: give a file with --output.")
+        workbook = changed(lambda it: gradebook_workbook(it, course, assignment))
+        write([workbook], output, at_once=True)
+        return
     book = changed(lambda it: gradebook(it, course, assignment))
     if form == "json":
         write([book.model_dump_json(indent=2).encode() + b"\n"], output, at_once=True)

@@ -14,11 +14,12 @@ from rich.text import Text
 from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise, by_level
 from service.catalogue.robots.robot import Robot
-from service.cli.exercises import check, export_robot, import_robot
+from service.cli.exercises import check, export_robot, import_robot, variants
 from service.cli.exercises.new_file import write_new
 from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
 from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, reference_figure
+from service.grading.kinds.find_slip import shown_shape
 from service.solutions import ModelSolution, Shown, solve
 
 _NARROWEST = 24
@@ -81,7 +82,7 @@ def show_exercise(
     for part in exercise.parts:
         heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
         console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
-        answer = f"Answer: {part.shape(exercise.reference).in_words()}."
+        answer = f"Answer: {shown_shape(part, exercise).in_words()}."
         for text in filter(None, (part.prompt, answer)):
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
@@ -99,6 +100,7 @@ def _write_figure(exercise: Exercise, file: Path, theme: Theme, *, frames: bool)
 
 
 commands.command("check")(check.command)
+commands.command("deploy")(variants.deploy_command)
 commands.command("import")(import_robot.command)
 commands.command("export")(export_robot.command)
 

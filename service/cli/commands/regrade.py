@@ -21,9 +21,9 @@ _PAUSE: Final = 0.2
 _MOST_SHOWN: Final = 200
 
 
-def show_what_would_change(engine: Engine, exercise: Exercise) -> None:
+def show_what_would_change(engine: Engine, exercise: Exercise, course: str | None) -> None:
     """Grade all outdated attempts; print whose result would change, and why."""
-    regrading = Regrading(exercise, load_settings().feedback)
+    regrading = Regrading(exercise, load_settings().feedback, course)
     changes: list[RegradedAttempt] = []
     with engine.connect() as connection:
         numbers = regrading.outdated(connection)
@@ -52,16 +52,15 @@ def show_what_would_change(engine: Engine, exercise: Exercise) -> None:
         screen.print("Nothing is saved yet: add --apply to save. The old reports are kept.")
 
 
-def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
+def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: int) -> None:
     """Regrade all outdated attempts in ``jobs`` processes. Other programs may do so at once."""
-    regrading = Regrading(exercise, load_settings().feedback)
+    regrading = Regrading(exercise, load_settings().feedback, course)
     in_transaction(engine, regrading.enqueue)
     with engine.connect() as connection:
         total = left = regrading.waiting(connection)
     context = get_context("spawn")
-    others = [
-        context.Process(target=work, args=(exercise.id,), daemon=True) for _ in range(jobs - 1)
-    ]
+    args = (exercise.id, course)
+    others = [context.Process(target=work, args=args, daemon=True) for _ in range(jobs - 1)]
     for each in others:
         each.start()
     try:
@@ -87,13 +86,13 @@ def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
     stdout().print(f"Regraded: {total}. The reports before are kept.")
 
 
-def work(exercise_id: str) -> None:
+def work(exercise_id: str, course: str | None) -> None:
     """Regrade batches of the queue until it is empty. This is the main function of a process."""
     settings = load_settings()
     assert settings.database is not None
     try:
         engine = open_database(settings.database.get_secret_value(), create=False)
-        regrading = Regrading(installed_exercise(exercise_id), settings.feedback)
+        regrading = Regrading(installed_exercise(exercise_id), settings.feedback, course)
         while regrading.next_batch(engine):
             pass
         engine.dispose()

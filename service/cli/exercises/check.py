@@ -11,9 +11,16 @@ from rich.console import Console
 from rich.text import Text
 
 from service.authoring import Level, Remark, examine, lazy_shares
-from service.catalogue import CatalogueError, Exercise, exercise_files, load_exercise
+from service.catalogue import (
+    CatalogueError,
+    Exercise,
+    exercise_files,
+    is_exercise_id,
+    load_exercise,
+)
 from service.catalogue.files.lines import line_of, value_lines
-from service.cli.terminal import UNUSABLE, complain, stdout
+from service.cli.exercises.variants import check_seeds
+from service.cli.terminal import UNUSABLE, complain, give_up, installed_file, stdout
 from service.settings import load_settings
 
 FAILED = 1
@@ -24,9 +31,13 @@ STYLES = {Level.FAILED: "red", Level.WARNING: "yellow"}
 def command(
     path: Annotated[
         Path | None,
-        typer.Argument(help="A file, or a folder of files; by default the whole catalogue."),
+        typer.Argument(help="A file, a folder or an id; by default the whole catalogue."),
     ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Let warnings fail as well.")] = False,
+    seeds: Annotated[
+        int | None,
+        typer.Option(min=1, max=10_000, help="Check this many variants of one exercise."),
+    ] = None,
 ) -> None:
     """Check exercise files: their fields, model answers and own checks; warn of likely mistakes.
 
@@ -37,6 +48,12 @@ def command(
     Exit code 2: a file cannot be used; the other files are still checked.
     """
     console = stdout()
+    if path is not None and not path.exists() and is_exercise_id(str(path)):
+        path = installed_file(str(path))
+    if seeds is not None:
+        if path is None or path.is_dir():
+            give_up("--seeds is for one exercise: name its file or its id.")
+        raise SystemExit(FAILED if check_seeds(load_exercise(path), seeds, console) else 0)
     if path is None:
         files = exercise_files(*load_settings().exercises_dir)
     else:

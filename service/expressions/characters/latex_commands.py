@@ -26,6 +26,12 @@ PLAIN: Final = {
     "vert": "|", "lvert": "|", "rvert": "|", "mid": "|", "star": MARKER,
 }  # fmt: skip
 FRACTIONS: Final = frozenset({"frac", "tfrac", "dfrac", "cfrac"})
+# A number and its unit in the package siunitx.
+QUANTITIES: Final = frozenset({"SI", "qty"})
+ANGLE_UNITS: Final = {
+    **dict.fromkeys(("degree", "deg", "°", "degrees", "arcdegree"), "°"),
+    **dict.fromkeys(("radian", "rad"), " rad "),
+}
 # Commands that only style their argument.
 STYLES: Final = frozenset({
     "mathrm", "mathit", "mathbf", "mathsf", "mathtt", "mathnormal", "boldsymbol", "bm",

@@ -172,6 +172,8 @@ class _Normaliser(CharacterWriter):
             return self._over(at, after, depth)
         if name == "ang":
             return self._emit("°", after, self._braced(at, after, end, depth))
+        if name in latex_commands.QUANTITIES:
+            return self._quantity(at, after, end, depth)
         if (stop := self._without_meaning(name, at, after, end)) is not None:
             return self._emit(" ", at, stop)
         causes: dict[str, Cause] = {"pm": "plus_minus", "mp": "plus_minus", "infty": "not_finite"}
@@ -285,6 +287,16 @@ class _Normaliser(CharacterWriter):
             raise UnreadableError("cube_root", (at, start + 1))
         self._emit("√", at, after)
         return self._braced(at, after, end, depth)
+
+    def _quantity(self, at: int, after: int, end: int, depth: int) -> int:
+        r"""Read \SI{90}{\degree} as 90°. Raises UnreadableError for any unit but an angle's."""
+        _, _, unit_at = self._argument(at, after, end)
+        start, stop, unit_end = self._argument(at, unit_at, end)
+        unit = latex_commands.ANGLE_UNITS.get(self.source[start:stop].strip().lstrip("\\"))
+        if unit is None:
+            raise UnreadableError("quantity", (at, unit_end))
+        self._braced(at, after, end, depth)
+        return self._emit(unit, unit_at, unit_end)
 
     def _braced(self, at: int, after: int, end: int, depth: int) -> int:
         start, stop, after = self._argument(at, after, end)

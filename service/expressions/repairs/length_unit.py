@@ -1,4 +1,4 @@
-"""Units after a length: 0.5 m, 30cm."""
+r"""Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}."""
 
 import re
 
@@ -8,18 +8,33 @@ from service.expressions.repairs.failure import Failure, Repair, error, for_caus
 _UNIT = re.compile(
     r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
 )
+_METRES = frozenset({"m", "meter", "meters", "metre", "metres"})
+_QUANTITY = re.compile(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
 
 
-@for_causes("name")
+@for_causes("name", "quantity")
 def repair(failure: Failure) -> Repair:
     """Ask for the bare number. Suggest it only for metres, because cm and mm change its value."""
+    if failure.cause == "quantity":
+        return _quantity(failure)
     if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
         return None
     message = "Write lengths without a unit, in the unit of the exercise."
-    if failure.written not in {"m", "meter", "meters", "metre", "metres"}:
+    if failure.written not in _METRES:
         message += f" Convert {failure.written} first."
         return error(failure, "length_unit", message)
     start, end = failure.span
     number = failure.source[:start].rstrip() + failure.source[end:]
     return error(failure, "length_unit", message, number)
+
+
+def _quantity(failure: Failure) -> Repair:
+    message = "Write lengths without a unit, in the unit of the exercise."
+    quantity = _QUANTITY.fullmatch(failure.written)
+    if quantity is None or quantity[2] not in _METRES:
+        message = (
+            "Write lengths without a unit, in the unit of the exercise. Convert this one first."
+        )
+        return error(failure, "length_unit", message)
+    return error(failure, "length_unit", message, failure.replaced(quantity[1]))

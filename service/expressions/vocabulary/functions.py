@@ -70,6 +70,8 @@ ALONE: Final[dict[str, tuple[PieceKind, str]]] = {
         }.items()
         for spelling in spellings
     },
+    # In spreadsheets, these make radians of a number of degrees.
+    **dict.fromkeys(("RADIANS", "BOGENMASS", "RADIANES", "RADIANTI"), ("function", "deg")),
     **dict.fromkeys(("Grad", "grados", "gradi", "graus"), ("unit", "deg")),
     **{name: ("constant", name) for name in CONSTANTS},
     "M_PI": ("pi", "pi"), "kPi": ("pi", "pi"), "Degree": ("unit", "deg"),

@@ -6,6 +6,7 @@ All lengths are in pixels, x to the right and y down. Placing is deterministic.
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,6 +68,34 @@ class Rectangle:
         return np.asarray(_SPREAD * (self.half_width, self.half_height) + (self.x, self.y))
 
 
+class _Strokes(NamedTuple):
+    """Strokes as arrays: their ends, and the corners of the rectangle around each."""
+
+    starts: Numbers
+    ends: Numbers
+    radii: Numbers
+    weights: Numbers
+    steps: Numbers
+    squares: Numbers
+    low: Numbers
+    high: Numbers
+
+    @classmethod
+    def of(cls, starts: Numbers, ends: Numbers, radii: Numbers, weights: Numbers) -> "_Strokes":
+        """Return strokes with these starts, ends, radii and weights."""
+        steps = ends - starts
+        squares = np.maximum((steps**2).sum(axis=1), 1e-12)
+        low = np.minimum(starts, ends) - radii[:, None]
+        high = np.maximum(starts, ends) + radii[:, None]
+        return cls(starts, ends, radii, weights, steps, squares, low, high)
+
+    def near(self, points: Numbers, clearance: float) -> "_Strokes":
+        """Return the strokes that may be within ``clearance`` of one of the points."""
+        low, high = points.min(axis=0) - clearance, points.max(axis=0) + clearance
+        near = ((self.low <= high) & (self.high >= low)).all(axis=1)
+        return _Strokes(*(each[near] for each in self))
+
+
 @dataclass(slots=True)
 class TakenRoom:
     """The taken room: strokes with a radius and a weight, and the rectangles of labels.
@@ -80,7 +109,7 @@ class TakenRoom:
     _radii: list[float] = field(default_factory=list)
     _weights: list[float] = field(default_factory=list)
     labels: list[Rectangle] = field(default_factory=list)
-    _arrays: tuple[Numbers, Numbers, Numbers, Numbers] | None = None
+    _arrays: "_Strokes | None" = None
 
     def take_line(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
         """Mark the room along a line ``(points, 2)`` as taken."""
@@ -91,12 +120,11 @@ class TakenRoom:
             self._weights.append(weight)
         self._arrays = None
 
-    def _strokes(self) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Return the starts, ends, radii and weights of all strokes as arrays."""
+    def _strokes(self) -> "_Strokes":
+        """Return all strokes as arrays (memoized)."""
         if self._arrays is None:
             lists = (self._starts, self._ends, self._radii, self._weights)
-            starts, ends, radii, weights = map(np.array, lists)
-            self._arrays = starts, ends, radii, weights
+            self._arrays = _Strokes.of(*map(np.array, lists))
         return self._arrays
 
     @property
@@ -108,25 +136,32 @@ class TakenRoom:
         """Return how crowded the points ``(points, 2)`` are: 0 if no stroke is in ``clearance``."""
         if not self._starts:
             return 0.0
-        starts, ends, radii, weights = self._strokes()
-        step = ends - starts
-        square = np.maximum((step**2).sum(axis=1), 1e-12)
-        offset = points[:, None] - starts
-        share = np.clip((offset * step).sum(axis=-1) / square, 0.0, 1.0)
-        distance = np.linalg.norm(offset - share[..., None] * step, axis=-1)
-        lacking = np.clip(1 - (distance - radii) / clearance, 0.0, 1.5)
-        return float((lacking * weights).max(axis=1).sum())
+        near = self._strokes().near(points, clearance)
+        if not len(near.starts):
+            return 0.0
+        offset = points[:, None] - near.starts
+        share = np.clip((offset * near.steps).sum(axis=-1) / near.squares, 0.0, 1.0)
+        distance = np.linalg.norm(offset - share[..., None] * near.steps, axis=-1)
+        lacking = np.clip(1 - (distance - near.radii) / clearance, 0.0, 1.5)
+        return float((lacking * near.weights).max(axis=1).sum())
 
     def covered(self, line: Numbers) -> int:
         """Count the labels that a line ``(points, 2)`` would cover."""
-        return sum(label.holds_any(line) for label in self.labels)
+        (left, top), (right, bottom) = line.min(axis=0), line.max(axis=0)
+        return sum(
+            label.holds_any(line)
+            for label in self.labels
+            if left - label.half_width < label.x < right + label.half_width
+            and top - label.half_height < label.y < bottom + label.half_height
+        )
 
     def crossings(self, line: Numbers) -> int:
         """Count the labels and the strokes of full weight that a line ``(points, 2)`` crosses."""
         written = self.covered(line)
         if not self._starts:
             return written
-        starts, ends, _, weights = self._strokes()
+        strokes = self._strokes()
+        starts, ends, weights = strokes.starts, strokes.ends, strokes.weights
         first, last = line[0], line[-1]
         # Two segments cross if each has its ends on both sides of the other.
         parted = _turn(first, last, starts) * _turn(first, last, ends) < 0

@@ -2,20 +2,22 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterable
 from typing import Final
 
 from service.formats.shared.plain_text import visible
 
-# Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection").
-_FORMULA_SIGNS: Final = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
+# Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection"). Where a
+# comma is the decimal sign, they also end a cell at a semicolon, whatever quotes are around it.
+_FORMULA: Final = re.compile(r"""(?:^|(?<=;))(?=[\s"]*[=+\-@＝＋－＠])""")
 
 # The headings of a list of grades, as Moodle names them.
 GRADEBOOK_HEAD: Final = ("Identifier", "Grade", "Maximum Grade", "Feedback comments")
 
 
 def line(cells: Iterable[str | float | None]) -> bytes:
-    """Return one line of visible texts; one like a formula gets a leading apostrophe."""
+    """Return one line of visible texts; what begins like a formula gets a leading apostrophe."""
     written = io.StringIO(newline="")
     csv.writer(written, lineterminator="\r\n").writerow([_cell(cell) for cell in cells])
     return written.getvalue().encode()
@@ -26,5 +28,4 @@ def _cell(value: str | float | None) -> str:
         return ""
     if not isinstance(value, str):
         return f"{value:.6f}".rstrip("0").rstrip(".")
-    text = visible(value)
-    return f"'{text}" if text.lstrip().startswith(_FORMULA_SIGNS) else text
+    return _FORMULA.sub("'", visible(value))

@@ -191,6 +191,7 @@ UNEXPLAINED = "value"
     of=WrongValue,
     rank=10,
     code="undefined",
+    rule="dependence",
     means="the formula has no value: it divides by zero, takes the root of a negative number, "
     "or is too large",
     example=("stanford-arm", "table", {"2/d": "d2/0"}),

@@ -13,6 +13,7 @@ from service.kinematics.dh import Convention
 _TAKEN = register(
     of=StudentTable,
     code="convention_taken",
+    rule="convention",
     means="either convention will do and the answer names none: it was read in the one that fits "
     "best (an info)",
     example=("skew", "table", "a, alpha, d, theta ↵ 0, 60°, 0, theta1 ↵ a2, 0, 0, theta2"),
@@ -21,6 +22,7 @@ _TAKEN = register(
 _NOT_ASKED_FOR = register(
     of=StudentTable,
     code="convention_not_asked_for",
+    rule="convention",
     means="the answer, or the links of a script, name another convention than the part; it was "
     "graded in the part's, and costs nothing by that",
     example=(

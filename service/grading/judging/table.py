@@ -220,6 +220,7 @@ def _judged_as_read(
 _TOOL_NOT_REACHED = register(
     of=StudentTable,
     code="tool_not_reached",
+    rule="rows",
     means="each row could stand in a right table, but all of them together do not lead to the "
     "given end-effector frame; it costs what a wrong cell costs",
     example=(

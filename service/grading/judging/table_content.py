@@ -75,11 +75,26 @@ def _of_reference(task: _Task) -> Content:
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)
-    content = of_rows(_differs_from_lazy(table, joints, grading))
-    usual: tuple[int, int] | None = (len(content.known), content.count)
+    content = _without_given(of_rows(_differs_from_lazy(table, joints, grading)), task.part)
+    usual: tuple[int, int] | None = (sum(content.earning), content.count)
     if task.convention != task.exercise.robot.convention:
         usual = _of_reference(replace(task, convention=task.exercise.robot.convention)).usual
     return replace(content, empty_is_wrong=True, usual=usual)
+
+
+def _without_given(content: Content, part: DhTableSpec) -> Content:
+    """Return the content without that of the given rows, which share the group of another row."""
+    if not part.given:
+        return content
+    given = tuple(i + 1 in part.given for i in range(len(content.known)))
+    first = content.groups[given.index(False)]
+    rows = list(zip(content.known, content.groups, given, strict=True))
+    return replace(
+        content,
+        known=tuple((False,) * len(row) if is_given else row for row, _, is_given in rows),
+        groups=tuple(first if is_given else group for _, group, is_given in rows),
+        given=given,
+    )
 
 
 def _own_grading(exercise: Exercise) -> Grading:

@@ -1,4 +1,4 @@
-"""Fill the empty or unreadable cells of a table."""
+"""Fill cells of a table with other numbers, or empty them."""
 
 from dataclasses import replace
 
@@ -10,7 +10,14 @@ from service.grading.judging.own_frames.nearest.spoiled_row import out_of_place
 from service.grading.judging.own_frames.row_roles import joint_variables
 from service.grading.numerics.samples import SAMPLES
 from service.grading.part import Grading
-from service.grading.reading.tables.table import COMPUTED, StudentRow, StudentTable
+from service.grading.reading.entry import Entry
+from service.grading.reading.tables.table import (
+    COMPUTED,
+    EMPTY,
+    GIVEN_UP,
+    StudentRow,
+    StudentTable,
+)
 from service.grading.report import Verdict
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
@@ -23,34 +30,39 @@ def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Gradi
     return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)
 
 
-def with_wrong_cells(answer: StudentTable, grading: Grading) -> StudentTable | None:
-    """Return the table with a wrong number in each empty cell; None if no cell is empty."""
-    empty = _empty_cells(answer)
-    if not empty.any():
-        return None
+def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) -> StudentTable:
+    """Return the table with numbers that are wrong in any frames in ``cells`` ``(rows, 4)``."""
     numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
-    return _filled(answer, empty, np.repeat(numbers, SAMPLES, axis=-1))
+    return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
+
+
+def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:
+    """Return the table without its entries in ``cells`` ``(rows, 4)``."""
+    return _filled(answer, cells, np.full_like(answer.values, np.nan), EMPTY)
 
 
 def with_zeros(answer: StudentTable) -> Table:
     """Return the numbers of the table, with 0 in empty cells, so that their joints do not move."""
-    return np.where(_empty_cells(answer)[..., None], 0.0, answer.values)
+    return np.where(empty_cells(answer)[..., None], 0.0, answer.values)
 
 
-def _empty_cells(answer: StudentTable) -> KnownCells:
+def empty_cells(answer: StudentTable) -> KnownCells:
+    """Return a mask ``(rows, 4)`` of the empty cells."""
     return np.array(
         [[entry.verdict is Verdict.MISSING for entry in row.entries] for row in answer.rows]
     )
 
 
-def _filled(answer: StudentTable, unread: KnownCells, numbers: Table) -> StudentTable:
-    """Return the table with these numbers ``(rows, 4, SAMPLES)`` in the ``unread`` cells."""
-    values = np.where(unread[..., None], numbers, answer.values)
+def _filled(
+    answer: StudentTable, cells: KnownCells, numbers: Table, filling: Entry = COMPUTED
+) -> StudentTable:
+    """Return the table with these numbers ``(rows, 4, SAMPLES)`` in ``cells``."""
+    values = np.where(cells[..., None], numbers, answer.values)
     rows = tuple(
         StudentRow(
             tuple(
-                COMPUTED if is_unread else entry
-                for entry, is_unread in zip(row.entries, unread[i].tolist(), strict=True)
+                filling if is_filled else entry
+                for entry, is_filled in zip(row.entries, cells[i].tolist(), strict=True)
             ),
             values[i],
         )

@@ -1,7 +1,7 @@
 """The answer kinds. Each kind has a file with its name, which reads and judges its answers.
 
-The file has the functions ``read`` and ``judge`` of AnswerKind. A file without ``judge`` has code
-that several kinds share.
+The file has the functions ``read`` and ``judge`` of AnswerKind. The package
+``shared`` has code of several kinds.
 """
 
 from collections.abc import Mapping

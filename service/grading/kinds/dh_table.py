@@ -13,7 +13,7 @@ from service.grading.diagnosis.tables.table_explained import explained, freedom_
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
-from service.grading.judging.marking.marks import steps_lost
+from service.grading.judging.marking.fair_points import with_fair_points
 from service.grading.judging.own_frames.best_roles import (
     roles_in,
     rows_of_mechanism,
@@ -36,7 +36,8 @@ from service.grading.judging.row_places import (
 )
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content
-from service.grading.judging.table_filled import with_lazy_cells, with_wrong_cells, with_zeros
+from service.grading.judging.table_filled import with_lazy_cells, with_zeros
+from service.grading.kinds.shared.given_rows import with_given_rows
 from service.grading.numerics.comparison import Match
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
@@ -70,7 +71,7 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
     """Read the rows of a table; return None if there are none."""
     empty_is_zero = part.empty_cells == "zero"
     table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
-    return table if table.rows else None
+    return with_given_rows(part, table, grading) if table.rows else None
 
 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
@@ -79,17 +80,26 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     If all joints are numbered differently, or the columns are in another order, the intended table
     is judged.
     """
+    budget = grading.reader.budget
     has_unread_cells = bool(np.isnan(answer.values).any())
+    work = _search_work(part, answer, grading)
     # Values for unread cells are looked for with what the judging itself leaves.
     if has_unread_cells:
-        grading.reader.budget.charge_search(_search_work(part, answer, grading))
+        budget.charge_search(work)
     judged = _judged_as_read(part, answer, grading)
     if judged.is_right:
         return judged
-    work = _search_work(part, answer, grading)
     if not has_unread_cells:
-        grading.reader.budget.charge_search(work)
-    return _as_intended(part, answer, judged, work, grading)
+        budget.charge_search(work)
+    judged = _as_intended(part, answer, judged, work, grading)
+
+    def judged_again(table: StudentTable) -> Judged:
+        """Judge a table with numbers that are wrong in any frames; only its points count."""
+        in_silence = replace(grading, explains=False)
+        again = _judged_as_read(part, table, in_silence)
+        return _as_intended(part, table, again, work, in_silence)
+
+    return with_fair_points(part, answer, judged, judged_again, work, grading)
 
 
 def _as_intended(
@@ -185,7 +195,7 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
 
     A wrong table earns no more than it would without its extra rows, because the points belong to
     the rows of the mechanism. It earns no more than with lazy entries in its unread cells, whose
-    right values are unknown, or with wrong entries in its empty cells.
+    right values are unknown.
     """
     convention, first, findings = judged_in_convention(part, answer, grading)
     judged = _judged(part, answer, convention, first, findings, grading)
@@ -198,15 +208,9 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
     unread = np.isnan(answer.values).any(axis=-1)
     # A table without any readable cell earns nothing anyway.
     if unread.any() and not unread.all():
+        filled = with_lazy_cells(fixed, convention, grading)
         in_silence = replace(grading, explains=False)
-        filled = [with_lazy_cells(fixed, convention, grading)]
-        # The search must not find more beside an empty cell than beside a wrong one.
-        if judged.is_wrong and (wrong := with_wrong_cells(fixed, grading)):
-            grading.reader.budget.charge_search(_search_work(part, wrong, grading))
-            filled.append(wrong)
-        bounds = [_judged_as_read(part, table, in_silence) for table in filled]
-        at_most = max(bounds, key=lambda bound: steps_lost(part, bound))
-        return replace(judged, at_most=at_most)
+        return replace(judged, at_most=_judged_as_read(part, filled, in_silence))
     return judged
 
 
@@ -318,7 +322,8 @@ def _of_the_whole(
         return judgement, (), ()
     roles = judgement.roles or roles_in(rows, convention, grading)
     found: tuple[Finding, ...] = ()
-    if judgement.wrong + len(judgement.extra) > 1:
+    # No slip explains a number that is wrong in any frames.
+    if judgement.wrong + len(judgement.extra) > 1 and not any(row.is_given_up for row in rows):
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
     # An explained table is not the intended one, so its lost motion is irrelevant. Axes that are

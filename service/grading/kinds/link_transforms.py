@@ -18,7 +18,7 @@ from service.grading.judging.content import of_links
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
-from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.kinds.shared.matrix_rows import matrix_rows
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.numerics.tolerances import LINK_TRANSFORM
 from service.grading.part import Content, Grading, Judged, StudentChain

@@ -4,7 +4,7 @@ from service.catalogue.parts.matrix import MatrixSpec
 from service.grading.judging.content import of_matrix
 from service.grading.judging.expected import given_values
 from service.grading.judging.matrix import ExpectedMatrix
-from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.kinds.shared.matrix_rows import matrix_rows
 from service.grading.part import Grading, Judged
 from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix
 

@@ -17,7 +17,7 @@ from service.grading.judging.expected import (
     is_whole_chain,
 )
 from service.grading.judging.matrix import ExpectedMatrix
-from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.kinds.shared.matrix_rows import matrix_rows
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged
 from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix

@@ -15,7 +15,7 @@ from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.matrix import ExpectedMatrix
-from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.kinds.shared.matrix_rows import matrix_rows
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix

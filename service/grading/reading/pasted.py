@@ -1,7 +1,9 @@
 """Read the grids in pasted texts; convert grid errors and spans for reports."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
@@ -18,6 +20,10 @@ from service.grids import (
     read_robot,
 )
 
+# An index in square brackets: theta[1], l[2].
+_INDEX: Final = re.compile(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
+_JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
+
 
 def pasted_grid(text: str, reader: Reader) -> Grid:
     """Return the table or matrix in a pasted text.
@@ -25,7 +31,7 @@ def pasted_grid(text: str, reader: Reader) -> Grid:
     Raises GridError if there is none, or if the pasted texts of a submission are too long.
     """
     _charge(text, reader)
-    return read_grid(text)
+    return read_grid(_with_indices_from_one(text, reader))
 
 
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
@@ -42,7 +48,30 @@ def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
     """Return the matrices in a pasted text, with their names. Raises GridError, see pasted_grid."""
     _charge(text, reader)
-    return read_grids(text)
+    return read_grids(_with_indices_from_one(text, reader))
+
+
+def _with_indices_from_one(text: str, reader: Reader) -> str:
+    """Return the text with theta(1) for theta[1] if its indices count from 1, as in Maple.
+
+    They count from 0 if a joint variable has the index 0, and from 1 if one has the number of the
+    last joint. Raises GridError for other indices, because they have two readings. Every character
+    keeps its place.
+    """
+    found = [each for each in _INDEX.finditer(text) if each[1].rstrip("_") in _JOINT_VARIABLES]
+    numbers = {int(each[2]) for each in found}
+    joints = reader.vocabulary.joints
+    if not numbers or 0 in numbers or not joints:
+        return text
+    if joints[-1] not in numbers:
+        name, index = found[0][1].rstrip("_"), int(found[0][2])
+        raise GridError(
+            "ambiguous_index",
+            f"`{name}[{index}]` is joint {index + 1} in Python and joint {index} in Maple. "
+            f"Write {name}{index + 1} or {name}{index}.",
+            found[0].span(),
+        )
+    return _INDEX.sub(r"\1(\2)", text)
 
 
 def _charge(text: str, reader: Reader) -> None:

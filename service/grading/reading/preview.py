@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from service.catalogue import Exercise, PartSpec
+from service.catalogue.parts.frames import COORDINATES, FRAME_CELLS, FramesSpec, frame_labels
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.expressions import AngleUnit, Kind, Note
@@ -13,6 +14,7 @@ from service.expressions.errors import Span
 from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.numerics.samples import draw
 from service.grading.reading.entry import Entry, Reader
+from service.grading.reading.lists.frame_list import pasted_frames
 from service.grading.reading.matrices.matrix_list import grids_in_order
 from service.grading.reading.matrices.screw_list import screw_grid
 from service.grading.reading.pasted import pasted_grid, placed
@@ -134,6 +136,8 @@ def _preview(text: str, exercise: Exercise, spec: PartSpec, reader: Reader) -> P
         return _table(text, reader)
     if isinstance(spec, LinkTransformsSpec):
         return _matrices(text, exercise.robot.tables[spec.convention].labels, reader)
+    if isinstance(spec, FramesSpec):
+        return _frames(text, frame_labels(exercise.robot, spec.convention), reader)
     if isinstance(spec, ScrewAxesSpec):
         grid = screw_grid(text, spec.count(exercise.joints), reader)
     else:
@@ -188,6 +192,22 @@ def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview
             rows += _rows(grid, "number", reader, f"A{label}.")
             notes += grid.notes
     return PastedPreview(tuple(rows), tuple(notes))
+
+
+def _frames(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
+    """Return the rows of placed frames. Joints and directions are shown as they were typed."""
+    found = pasted_frames(text, labels, reader)
+
+    def preview(place: tuple[str, str], cell: GridCell) -> CellPreview:
+        if place[1] in COORDINATES:
+            return _cell(placed(reader.read(cell.text, "length"), cell), cell, place, reader.budget)
+        return CellPreview(*place, cell.whole, cell.text, cell.text)
+
+    rows = (
+        tuple(preview((label, name), cell) for name, cell in zip(FRAME_CELLS, row, strict=True))
+        for label, row in found.items()
+    )
+    return PastedPreview(tuple(rows))
 
 
 def _rows(

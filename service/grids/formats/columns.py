@@ -8,6 +8,7 @@ from service.expressions.errors import Note, counted
 from service.grids.cutting.blanks import continues, split_blanks
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
+from service.grids.formats.data_frame import with_row_numbers
 
 _GAP: Final = re.compile(r"[^\S\r\n]{2,}")
 _DASHES: Final = frozenset("-=_─━═")
@@ -16,6 +17,9 @@ _DASHES: Final = frozenset("-=_─━═")
 def _matches(text: str) -> bool:
     lines = [line.strip() for line in text.strip().splitlines()]
     lines = [line for line in lines if line and not _is_rule(line)]
+    if len(lines) > 3:
+        # pandas prints the name of the index alone on the second line.
+        del lines[1]
     return len(lines) > 1 and all(any(c.isspace() for c in line) for line in lines)
 
 
@@ -24,6 +28,7 @@ def _parse(source: SourceText) -> Grid:
     lines = [line for line in lines if line.text and not _is_rule(line.text)]
     wide = [_at_gaps(line) for line in lines]
     narrow = [list(split_blanks(line).elements) for line in lines]
+    wide, narrow = with_row_numbers(wide), with_row_numbers(narrow)
     readings = [rows for rows in (wide, narrow) if _is_table(rows)]
     if not readings:
         raise _uneven(lines, narrow)

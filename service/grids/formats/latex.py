@@ -12,6 +12,7 @@ ARGUMENTS: Final = {
     "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
     "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
     "psmallmatrix": 0, "matrix*": 0, "bmatrix*": 0, "pmatrix*": 0,
+    "tblr": 1, "longtblr": 1, "talltblr": 1,
 }  # fmt: skip
 # Plain TeX, as Maxima prints it: \pmatrix{a & b \cr c & d \cr}.
 PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
@@ -44,9 +45,11 @@ _RULES: Final = re.compile(
 # An escaped % does not begin a comment.
 _COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
 _POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
+# The outer options of tabularray: [t], [caption={…}].
+_OUTER: Final = re.compile(r"(?:\s{0,40}\[[^\[\]]{0,400}\])?\s{0,40}")
 # Commands for bracket sizes mean nothing; they are half of the LaTeX that SymPy prints.
 _SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
-_SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
+_SPANNING: Final = frozenset({"\\multicolumn", "\\multirow", "\\SetCell"})
 _WRAPPERS: Final = (
     re.compile(r"\s|[$,.;]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
     re.compile(
@@ -171,15 +174,15 @@ def _after_arguments(source: SourceText, begin: re.Match[str]) -> int:
     if not arguments and begin[2].endswith("*"):
         return _after_position(source, at)
     for _ in range(arguments):
-        following = _after_position(source, at)
+        following = _after_position(source, at, _OUTER if "tblr" in begin[2] else _POSITION)
         if source.text[following : following + 1] != "{":
             break
         at = after_brace(source, following)
     return at
 
 
-def _after_position(source: SourceText, at: int) -> int:
-    position = _POSITION.match(source.text, at)
+def _after_position(source: SourceText, at: int, options: re.Pattern[str] = _POSITION) -> int:
+    position = options.match(source.text, at)
     return position.end() if position else at
 
 

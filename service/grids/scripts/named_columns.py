@@ -1,6 +1,7 @@
-"""Read a DH table that is written as a dictionary in Python.
+"""Read a DH table that is written as dictionaries in Python, or as objects in JSON.
 
-The dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in
+A list may hold one dictionary for each row: ``[{'a': a1, 'alpha': 0, …}, dict(a=a2, …)]``. A
+single dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in
 ``pd.DataFrame(…)``, or single parameters, as for SymPy's ``subs``:
 ``{alpha0: 0, a0: 0, d1: 0.75, alpha1: -pi/2, …}``.
 """
@@ -22,6 +23,7 @@ from service.grids.scripts.script import arguments, excerpt, split_call, stateme
 
 _DICTIONARY: Final = re.compile(
     r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
+    r"|(?<!\w)dict\(\s{0,40}\w{1,20}\s?="
 )
 _NAME: Final = re.compile(r"[A-Za-z]\w{0,60}[ \t]*=(?!=)[ \t]*")
 _KEY: Final = re.compile(r"(alpha|al|a|d|theta|th|q|α|θ)_?(\d{1,2})")
@@ -31,6 +33,7 @@ _COLUMNS: Final = {
 }  # fmt: skip
 _PARAMETERS: Final = frozenset(_COLUMNS.values())
 _FRAME: Final = "DataFrame"
+_OPENS_ITEMS: Final = re.compile(r"\{|dict\(")
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +45,11 @@ class _Item:
 def describes_columns(text: str) -> bool:
     """True if a text seems to contain a dictionary."""
     # LaTeX has braces and colons, too.
-    return ":" in text and "\\" not in text and _DICTIONARY.search(text) is not None
+    return (
+        (":" in text or "dict(" in text)
+        and "\\" not in text
+        and _DICTIONARY.search(text) is not None
+    )
 
 
 def read_columns(source: SourceText) -> RobotTable | None:
@@ -51,6 +58,8 @@ def read_columns(source: SourceText) -> RobotTable | None:
     Raises GridError if the text cannot be read.
     """
     for statement in statements(source):
+        if rows := _row_items(statement):
+            return _by_row(rows, source)
         found = _items(statement)
         if not found:
             continue
@@ -65,11 +74,10 @@ def read_columns(source: SourceText) -> RobotTable | None:
 
 def _items(statement: SourceText) -> list[_Item]:
     """Return the items of a statement that is a dictionary, or assigns one to a name."""
-    name = _NAME.match(statement.text)
-    value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
+    value = _value(statement)
     call = split_call(value)
-    if call and call[0] == _FRAME:
-        value = (arguments(call[1]) or [call[1]])[0]
+    if call and call[0] == "dict":
+        return _keywords(call[1])
     if not value.text.startswith("{") or strict_pairs(value)[0] != len(value.text):
         return []
     items = []
@@ -80,6 +88,62 @@ def _items(statement: SourceText) -> list[_Item]:
         after_colon = piece.cut(len(key) + 1, len(piece.text)).strip()
         items.append(_Item(unquoted(piece.cut(0, len(key)).strip()), after_colon))
     return items
+
+
+def _value(statement: SourceText) -> SourceText:
+    """Return the value of an assignment, without ``DataFrame(…)`` around it."""
+    name = _NAME.match(statement.text)
+    value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
+    call = split_call(value)
+    if call and call[0] == _FRAME:
+        value = (arguments(call[1]) or [call[1]])[0]
+    return value
+
+
+def _keywords(inside: SourceText) -> list[_Item]:
+    """Return the items of ``dict(a=l1, d=0)``; [] if an argument has no name."""
+    items = []
+    for piece in arguments(inside):
+        key, equals, _ = piece.text.partition("=")
+        if not equals or not key.strip().isidentifier():
+            return []
+        value = piece.cut(len(key) + 1, len(piece.text)).strip()
+        items.append(_Item(piece.cut(0, len(key)).strip(), unquoted(value)))
+    return items
+
+
+def _row_items(statement: SourceText) -> list[list[_Item]]:
+    """Return the items of each dictionary in a list of them, or []."""
+    value = _value(statement)
+    if value.text.startswith("{"):
+        # JSON may name the list: {"table": [{…}, {…}]}.
+        items = _items(value)
+        if len(items) != 1:
+            return []
+        value = items[0].value
+    if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
+        return []
+    pieces = arguments(value.cut(1, len(value.text) - 1))
+    if len(pieces) > GRID_LIMITS.rows or not all(_OPENS_ITEMS.match(each.text) for each in pieces):
+        return []
+    found = [_items(piece) for piece in pieces]
+    return found if all(len(items) >= len(_PARAMETERS) for items in found) else []
+
+
+def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
+    """Return the table of dictionaries with the same keys. Raises GridError for other keys."""
+    first = [item.key.text for item in rows[0]]
+    cells = [[item.key for item in rows[0]]]
+    for row in rows:
+        named = {item.key.text: unquoted(item.value) for item in row}
+        if len(named) < len(row) or named.keys() != set(first):
+            raise unread_script(
+                f"The rows do not have the same names: the first has {', '.join(first)[:80]}. "
+                "Give each row the same names.",
+                row[0].key,
+            )
+        cells.append([named[name] for name in first])
+    return RobotTable(grid("dictionaries", cells, source.whole), has_headers=True)
 
 
 def _list(value: SourceText) -> list[SourceText] | None:

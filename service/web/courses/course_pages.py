@@ -1,8 +1,8 @@
 """The pages of courses as HTML. Scripts send their forms to the routes of the service."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from service.api.http.lookup import Catalogue
 from service.contract.courses import (
@@ -10,11 +10,18 @@ from service.contract.courses import (
     CourseAssignment,
     CourseLearner,
     Gradebook,
+    LearnerVariant,
     MissingLearner,
-    OwnCourse,
 )
+from service.contract.own_courses import OwnCourse
+from service.contract.scores import PlatformScore
 from service.web.assets import Assets
 from service.web.pages import page
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Row
+
+    from service.lti.roster.enrolment import RosterChange
 
 # The number of groups in the distribution of points.
 _GROUPS: Final = 10
@@ -23,13 +30,15 @@ _GROUPS: Final = 10
 class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
-    ``handed_in`` has the number of learners with a readable attempt, by assignment.
+    ``handed_in`` has the number of learners with a readable attempt, by assignment; ``roster`` is
+    the context of a platform that tells its roster, or None.
     """
 
     course: Course
     learners: Sequence[CourseLearner]
     assignments: Sequence[CourseAssignment]
     handed_in: dict[str, int]
+    roster: "Row[Any] | None"
 
 
 class PointsGroup(NamedTuple):
@@ -46,18 +55,25 @@ def courses_page(courses: Sequence[Course], assets: Assets, *, creates: bool) ->
 
 
 def course_page(
-    state: CourseState, catalogue: Catalogue, assets: Assets, *, has_secret: bool, has_keys: bool
+    state: CourseState,
+    catalogue: Catalogue,
+    assets: Assets,
+    *,
+    has_secret: bool,
+    has_keys: bool,
+    deletes: bool,
 ) -> bytes:
-    """Return the page of a course: its assignments, learners and links."""
+    """Return the page of a course; with ``deletes``, the caller may delete it."""
     return _page(
         "course",
         assets,
         "../../",
-        ["course_forms.js"],
+        ["course_forms.js", "deletion.js"],
         **state._asdict(),
         catalogue=catalogue,
         has_secret=has_secret,
         has_keys=has_keys,
+        deletes=deletes,
         shown=_shown,
     )
 
@@ -67,6 +83,7 @@ def assignment_page(
     chosen: CourseAssignment,
     missing: Sequence[MissingLearner],
     book: Gradebook,
+    scores: Sequence[PlatformScore],
     catalogue: Catalogue,
     assets: Assets,
 ) -> bytes:
@@ -76,7 +93,7 @@ def assignment_page(
         "assignment",
         assets,
         "../../../../",
-        ["course_forms.js"],
+        ["course_forms.js", "deletion.js"],
         course=state.course,
         learners=state.learners,
         names=names,
@@ -84,6 +101,7 @@ def assignment_page(
         missing=missing,
         groups=distribution(book),
         columns=_columns(book),
+        scores=scores,
         catalogue=catalogue,
         shown=_shown,
     )
@@ -94,18 +112,37 @@ def gradebook_page(course: Course, assets: Assets) -> bytes:
     return _page("gradebook", assets, "../../../", ["gradebook.js"], course=course)
 
 
-def learner_page(course: OwnCourse, learner: str, now: datetime, assets: Assets) -> bytes:
-    """Return the page of a learner: what the learner sees, and the learner's link."""
+def learner_page(
+    course: OwnCourse,
+    learner: str,
+    variants: Mapping[str, Sequence[LearnerVariant]],
+    scores: Sequence[PlatformScore],
+    now: datetime,
+    assets: Assets,
+) -> bytes:
+    """Return the page of a learner: what the learner sees, the variants, scores and the link.
+
+    ``variants`` has the learner's variants by assignment.
+    """
     return _page(
         "learner",
         assets,
         "../../../",
-        ["course_forms.js"],
+        ["course_forms.js", "deletion.js"],
         course=course,
         learner=learner,
+        variants=variants,
+        scores=scores,
         now=now,
         shown=_shown,
     )
+
+
+def roster_page(
+    course: Course, change: "RosterChange | None", message: str, assets: Assets
+) -> bytes:
+    """Return the page that says what a roster has changed, or why it was not read."""
+    return _page("roster", assets, "../../../", [], course=course, change=change, message=message)
 
 
 def distribution(book: Gradebook) -> list[PointsGroup]:

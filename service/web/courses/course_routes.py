@@ -13,6 +13,7 @@ from service.api.http.bodies import validated
 from service.api.http.lookup import Catalogue
 from service.contract.attempts import Learner
 from service.contract.courses import LinksRequest
+from service.contract.scores import SendAgainRequest
 from service.courses.errors import CourseError
 from service.web.assets import Assets
 from service.web.courses.course_pages import (
@@ -23,6 +24,7 @@ from service.web.courses.course_pages import (
     gradebook_page,
     learner_page,
 )
+from service.web.courses.roster_routes import roster_routes
 from service.web.page_headers import FORM_HEADERS, NO_STORE
 from service.web.tutor.tutor_routes import Tutoring
 
@@ -35,6 +37,7 @@ def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> A
     router = APIRouter(include_in_schema=False)
     router.include_router(_set_up_routes(catalogue, assets, tutoring))
     router.include_router(_learner_routes(catalogue, assets, tutoring))
+    router.include_router(roster_routes(assets, tutoring))
     return router
 
 
@@ -62,6 +65,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
             assets,
             has_secret=access.keys is not None and access.keys.secret is not None,
             has_keys=bool(access.caller(request).key_id),
+            deletes=access.caller(request).course is None,
         )
         return _answer(drawn)
 
@@ -69,7 +73,8 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     async def assignment(course_id: CourseId, assignment_id: AssignmentId) -> Response:
         """Answer with the page of an assignment."""
         from service.courses.assignments import assignment_of
-        from service.courses.gradebook import gradebook, missing
+        from service.courses.results.gradebook import gradebook, missing
+        from service.lti.scores.overview import scores_of
 
         def drawn(connection: "Connection") -> bytes:
             return assignment_page(
@@ -77,6 +82,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
                 assignment_of(connection, course_id, assignment_id),
                 missing(connection, course_id, assignment_id),
                 gradebook(connection, course_id, assignment_id),
+                scores_of(connection, course_id, SendAgainRequest(assignment=assignment_id)),
                 catalogue,
                 assets,
             )
@@ -102,14 +108,26 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     @router.get("/{course_id}/learner")
     async def learner(course_id: CourseId, learner: Annotated[Learner, Query()]) -> Response:
         """Answer with the page of a learner. An id may have a slash: it is not in the path."""
+        from service.courses.dealing import learner_variants
         from service.courses.learner_view import own_view
+        from service.lti.scores.overview import scores_of
 
         now = datetime.now(UTC)
-        view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))
-        if not view.courses:
-            message = f"The course has no learner {learner}."
-            raise course_problem(CourseError("unknown-learner", message))
-        return _answer(learner_page(view.courses[0], learner, now, assets))
+
+        def drawn(connection: "Connection") -> bytes:
+            view = own_view(connection, learner, course_id, catalogue, now)
+            if not view.courses:
+                message = f"The course has no learner {learner}."
+                raise CourseError("unknown-learner", message)
+            [own] = view.courses
+            variants = {
+                each.id: learner_variants(connection, course_id, each.id, learner, catalogue)
+                for each in own.assignments
+            }
+            scores = scores_of(connection, course_id, SendAgainRequest(learner=learner))
+            return learner_page(own, learner, variants, scores, now, assets)
+
+        return _answer(await read(store, drawn))
 
     @router.post("/{course_id}/links.csv")
     async def links(request: Request, course_id: CourseId) -> Response:
@@ -142,11 +160,14 @@ def _state(connection: "Connection", course_id: str) -> CourseState:
     """Return a course with all that its page shows. Raises CourseError."""
     from service.courses import roll
     from service.courses.assignments import assignments_of
-    from service.courses.gradebook import handed_in
+    from service.courses.results.gradebook import handed_in
+    from service.lti.roster.enrolment import roster_context
 
+    roster = roster_context(connection, course_id)
     return CourseState(
         roll.course(connection, course_id),
         roll.learners(connection, course_id, datetime.now(UTC)),
         assignments_of(connection, course_id),
         handed_in(connection, course_id),
+        roster,
     )

@@ -46,9 +46,7 @@ def attempt_page(attempt_id: str, assets: Assets) -> bytes:
     return _page("attempt", assets, "../../", "attempt.js", attempt_id=attempt_id)
 
 
-def statistics_page(
-    exercise: Exercise, assets: Assets, place: CoursePlace, *, regrades: bool = True
-) -> bytes:
+def statistics_page(exercise: Exercise, assets: Assets, place: CoursePlace) -> bytes:
     """Return the page of an exercise with the statistics of its attempts, export, and regrade."""
     return _page(
         "statistics",
@@ -56,7 +54,6 @@ def statistics_page(
         "../../",
         "statistics.js",
         exercise=exercise,
-        regrades=regrades,
         **place._asdict(),
     )
 

@@ -55,10 +55,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     async def statistics(request: Request, exercise_id: str) -> Response:
         """Answer with the page of an exercise's statistics and regrade."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        regrades = access.caller(request).course is None
-        return answer(
-            statistics_page(exercise, assets, _place(request), regrades=regrades), "../../"
-        )
+        return answer(statistics_page(exercise, assets, _place(request)), "../../")
 
     return router
 

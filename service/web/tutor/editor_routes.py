@@ -20,6 +20,7 @@ from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
 from service.web.tutor.exercise_check import CheckRequest, exercise_of
 from service.web.tutor.exercise_folder import ExerciseFolder, SaveRequest
+from service.web.tutor.importing.import_request import ImportRequest, imported
 from service.web.tutor.tutor_pages import editor_page
 
 _NEW: Final = "my-exercise"
@@ -39,7 +40,7 @@ def editor_routes(
     checking: Checking,
     drafts: Drafts,
 ) -> APIRouter:
-    """Return the routes of the editor: its page, the checks, the preview, and saving."""
+    """Return the routes of the editor: its page, the checks, the preview, imports, and saving."""
     router = APIRouter(prefix="/tutor")
 
     @router.get("/editor")
@@ -69,6 +70,13 @@ def editor_routes(
         """Answer with the findings on a text, which is not stored."""
         body = await read_body(CheckRequest, request)
         content = await work.do(partial(checking.checked, body))
+        return Response(content, headers=NO_STORE, media_type="application/json")
+
+    @router.post("/import")
+    async def import_robot(request: Request) -> Response:
+        """Answer with the text of an exercise about a robot, which is not stored."""
+        body = await read_body(ImportRequest, request)
+        content = await work.do(partial(imported, body))
         return Response(content, headers=NO_STORE, media_type="application/json")
 
     @router.post("/drafts")

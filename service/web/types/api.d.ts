@@ -13,6 +13,7 @@ declare namespace Api {
     feedback?: FeedbackLevel[];
     practice?: Practice;
     solution?: ShowSolution;
+    variants?: boolean;
   };
   type AssignmentState = "not_open" | "open" | "late" | "closed";
   type Attempt = {
@@ -64,9 +65,11 @@ declare namespace Api {
     awarded?: number;
     version: string;
     grader: string;
+    variant?: string;
   };
   type CellFigures = { answered: number; correct: number; share?: number; label: string; };
   type CellReport = { label: string; verdict: Verdict; feedback: Feedback[]; read?: ReadEntry; };
+  type ChoicesRequest = { part: string; rows: TableRow[]; angle_unit?: AngleUnit; };
   type Convention = "standard" | "modified";
   type ConvertedRow = { label: string; cells: PrintedFormula[]; };
   type Correction = { text: string; latex?: string; };
@@ -83,12 +86,23 @@ declare namespace Api {
     feedback?: FeedbackLevel[];
     practice: Practice;
     solution: ShowSolution;
+    variants: boolean;
     extensions: Extension[];
   };
   type CourseAssignmentList = { assignments: CourseAssignment[]; };
   type CourseChange = { title?: string; zone?: string; };
   type CourseLearner = { learner: string; name: string; email?: string; link_until?: string; };
   type CourseList = { courses: Course[]; };
+  type DealRequest = { learner: string; exercise: string; };
+  type DeletedData = {
+    deleted: boolean;
+    assignments: number;
+    learners: number;
+    extensions: number;
+    keys: number;
+    attempts: number;
+  };
+  type DeletionRequest = { apply?: boolean; with_attempts?: boolean; };
   type DhRowShape = { form: "dh_row"; columns: string[]; convention: Convention; };
   type DhTableShape = {
     form: "dh_table";
@@ -100,6 +114,7 @@ declare namespace Api {
     tool: FrameFreedom;
     directions: FrameFreedom;
     empty_cells: EmptyCells;
+    given?: Record<string, string[]>;
   };
   type DrawnConfiguration = {
     centres: number[][];
@@ -191,6 +206,14 @@ declare namespace Api {
     values?: Record<string, number | string>;
   };
   type FeedbackLevel = "full" | "hints" | "verdicts" | "score";
+  type FindSlipShape = {
+    form: "find_slip";
+    columns: string[];
+    rows: string[];
+    convention: Convention;
+    frames: FrameFreedom;
+    given: string[][];
+  };
   type ForgetRequest = { learner: string; apply?: boolean; };
   type ForgottenData = {
     learner: string;
@@ -201,14 +224,17 @@ declare namespace Api {
     courses: number;
     erased?: boolean;
   };
+  type FrameChoices = { choices: ValidTable[]; };
   type FrameFreedom = "given" | "free";
   type Frames = {
     symbols: Record<string, number>;
     joints: MovingJoint[];
     table?: FramesOfTable;
+    placed?: FramesAsPlaced;
     mechanism?: DrawnMechanism;
     figure?: string;
   };
+  type FramesAsPlaced = { labels: string[]; frames: number[][][][]; left_out: UnreadCell[]; error?: PreviewError; };
   type FramesOfTable = {
     complete: boolean;
     frames: number[][][][];
@@ -223,18 +249,20 @@ declare namespace Api {
   type FramesRequest = {
     exercise?: string;
     table?: TableToDraw;
+    placed?: PlacedToDraw;
     joints?: number[][];
     symbols?: Record<string, number>;
     angle_unit?: AngleUnit;
     figure?: Theme;
   };
+  type FramesShape = { form: "frames"; columns: string[]; rows: string[]; joints: string[]; convention: Convention; };
   type GradeManyRequest = { submissions: ExerciseSubmission[]; };
   type GradeManyResponse = { results: GradeResult[]; };
   type GradeRequest = { answers: Record<string, unknown>; angle_unit?: AngleUnit; feedback?: FeedbackLevel; echo?: boolean; };
   type GradeResult = { report?: Report; problem?: Problem; };
   type Gradebook = { course: string; columns: GradebookColumn[]; rows: GradebookRow[]; };
   type GradebookColumn = { assignment: string; exercise: string; points: number; };
-  type GradebookFormat = "json" | "csv" | "moodle" | "canvas";
+  type GradebookFormat = "json" | "csv" | "moodle" | "canvas" | "xlsx";
   type GradebookRow = { learner: string; name: string; email?: string; points: (number | null)[]; total: number; };
   type GradesFormat = "csv" | "jsonl" | "canvas" | "moodle";
   type HandInRequest = {
@@ -245,9 +273,23 @@ declare namespace Api {
     exercise: string;
     learner?: string;
   };
+  type Hint = { step: number; steps: number; title: string; text: string; picture?: string; };
+  type HintRequest = {
+    answers: Record<string, unknown>;
+    angle_unit?: AngleUnit;
+    feedback?: FeedbackLevel;
+    echo?: boolean;
+    part: string;
+    code: string;
+    row?: string;
+    cell?: string;
+    step: number;
+  };
   type IdenticalAnswers = { learners: number; attempts: number; wrong: string[]; among: string[]; };
   type JointKind = "R" | "P";
   type LearnerList = { learners: CourseLearner[]; };
+  type LearnerVariant = { exercise: string; variant: string; seed: string; deals: number; };
+  type LearnerVariants = { learner: string; variants: LearnerVariant[]; };
   type LearnersRequest = { learners?: NewLearner[]; csv?: string; };
   type LinkList = { links: PersonalLink[]; };
   type LinkTransform = { text: string; latex: string; label: string; };
@@ -291,6 +333,7 @@ declare namespace Api {
     feedback?: FeedbackLevel[];
     practice?: Practice;
     solution?: ShowSolution;
+    variants?: boolean;
     id: string;
   };
   type NewCourse = { id: string; title: string; zone: string; };
@@ -341,7 +384,7 @@ declare namespace Api {
     points: number;
     marking: Marking;
     follows?: string;
-    shape: DhRowShape | DhTableShape | ListShape | LinkTransformsShape | MatrixShape | ScrewAxesShape;
+    shape: DhRowShape | DhTableShape | ListShape | FindSlipShape | FramesShape | LinkTransformsShape | MatrixShape | ScrewAxesShape;
   };
   type PartFigures = { answered: number; correct: number; share?: number; part: string; rows: RowFigures[]; };
   type PartReport = {
@@ -360,7 +403,23 @@ declare namespace Api {
   type PartSummary = { id: string; kind: string; points: number; };
   type PersonalLink = { learner: string; name: string; email?: string; link: string; expires_at: string; };
   type Place = { row: string; cell?: string; correction?: Correction; };
+  type PlacedToDraw = { part: string; rows: unknown; };
+  type PlatformScore = {
+    learner: string;
+    name: string;
+    assignment: string;
+    link: string;
+    state: ScoreState;
+    sent_points?: number;
+    sent_at?: string;
+    max_points: number;
+    tries: number;
+    next_try_at?: string;
+    problem?: string;
+  };
+  type PlatformScores = { scores: PlatformScore[]; };
   type Practice = "open" | "after" | "none";
+  type PracticeRobot = { id: string; level: number; convention: Convention; difficulty: number; };
   type Preview = {
     ok: boolean;
     rows?: PreviewCell[][];
@@ -406,6 +465,7 @@ declare namespace Api {
   type Readiness = { status: "ready"; exercises: number; };
   type RegradeAnswer = { applied: boolean; regraded: number; left: number; changes: AttemptChange[]; next?: string; };
   type RegradeRequest = { apply?: boolean; cursor?: string; };
+  type RemovalRequest = { apply?: boolean; with_attempts?: boolean; learner: string; };
   type Report = {
     exercise: string;
     version: string;
@@ -429,15 +489,21 @@ declare namespace Api {
     cells: CellReport[];
     feedback: Feedback[];
   };
+  type ScoreState = "waiting" | "sent" | "refused";
   type ScrewAxesShape = { form: "screw_axes"; columns: string[]; rows: string[]; frame: ScrewFrame; directions: FrameFreedom; };
   type ScrewFrame = "space" | "body";
+  type SendAgainRequest = { assignment?: string; learner?: string; failed?: boolean; };
+  type SentAgain = { queued: number; };
   type Severity = "error" | "warning" | "hint" | "info";
   type ShowSolution = "never" | "after_full" | "after_due";
+  type Situation = "offset" | "sliding" | "parallel" | "turned";
   type TableInFormulas = { cells: PrintedFormula[][]; converted?: ConvertedRow[]; pose?: PrintedFormula[][]; };
+  type TableRow = { a: string; alpha: string; d: string; theta: string; };
   type TableToDraw = { rows: unknown; convention?: Convention; structure?: string; formulas?: boolean; };
   type Theme = "auto" | "light" | "dark";
   type TokenRequest = { learner: string; exercises?: string[]; minutes?: number; };
   type TokenResponse = { token: string; learner: string; expires_at: string; };
   type UnreadCell = { row: string; column: string; error: PreviewError; };
+  type ValidTable = { change: string; rows: TableRow[]; };
   type Verdict = "correct" | "partial" | "incorrect" | "unreadable" | "missing";
 }

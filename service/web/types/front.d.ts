@@ -6,12 +6,14 @@ declare namespace Front {
   type Attributes = Record<string, string | number | boolean | null | undefined | ((event: any) => unknown)>;
 
   // A part of an exercise: its grids of cells, and their contents.
-  type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity };
-  type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity; prefill?: string[] };
+  type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity; offers?: string[]; help?: string };
+  type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity; prefill?: string[]; isGiven?: boolean };
   type Grid = { title: string; look: "table" | "matrix" | "list"; columns: Column[]; rows: Row[] };
   type Layout = {
     grids: Grid[];
     choices: Record<string, string> | null;
+    // The texts of a given table whose wrong cells are marked; the marks are the choice.
+    marks?: string[][];
     answer(texts: string[], choice: string): unknown;
   };
   type PartState = { cells: string[]; choice: string };
@@ -19,7 +21,9 @@ declare namespace Front {
   type Context = { exercise: string; angle_unit: Api.AngleUnit };
 
   // A cell: its place, how its text is read, and the owner that gets its events.
-  type CellPlace = { id: string; label: string; spoken: string };
+  // `offers` are names that the cell proposes; its text is no formula then.
+  // Nobody can write into a given cell.
+  type CellPlace = { id: string; label: string; spoken: string; offers?: string[]; isGiven?: boolean };
   type PartPlace = CellPlace & { part: string; quantity: Api.Quantity; row: RowView; prefill?: string };
   // What a cell holds, and what the form has filled in by itself.
   type Written = { text: string; prefill?: string };
@@ -30,6 +34,7 @@ declare namespace Front {
   type PartCell = Cell<PartPlace>;
   type PlayCell = Cell<PlayPlace>;
   type PartView = import("../static/student/part_view.js").PartView;
+  type SlipMarks = import("../static/student/slip/slip_marks.js").SlipMarks;
   type RowView = import("../static/student/grid_view.js").RowView;
   type Reading = {
     text?: string;
@@ -52,6 +57,12 @@ declare namespace Front {
   type PreviewService = {
     preview(body: Api.PreviewRequest): Promise<Api.Preview>;
     previews(body: Api.PreviewManyRequest): Promise<Api.PreviewManyResponse>;
+  };
+  // What the bar of generated robots needs from its host.
+  type PracticeHost = HTMLElement & {
+    exercise: Api.Exercise;
+    service: import("../static/shared/service.js").Service;
+    failed(error: Error | null): void;
   };
   // What a part needs from its host.
   interface PartHost {
@@ -104,9 +115,28 @@ declare namespace Front {
     showReport(report: Api.Report): void;
   };
 
+  // A place of a message, and the message as it is shown.
+  type Topic = { row?: string; cell?: string };
+  type Told = { element: HTMLElement; feedback: Api.Feedback; place: Topic };
+
+  // What hints need from the exercise.
+  type HintHost = HTMLElement & {
+    service: import("../static/shared/service.js").Service;
+    exercise: Api.Exercise;
+    answers: Record<string, unknown>;
+    angleUnit: Api.AngleUnit;
+    colours: import("../static/student/embedding/page_colours.js").PageColours;
+    announce(text: string): void;
+  };
+
   // The 3D view: pictures from the service, drawn by three.js or shown as a drawing.
   type Frame = number[][];
-  type Picture = { frames: Frame[] | null; values?: number[][] | null; mechanism: Api.DrawnConfiguration | null };
+  type Picture = {
+    frames: Frame[] | null;
+    values?: number[][] | null;
+    mechanism: Api.DrawnConfiguration | null;
+    placed?: Frame[] | null;
+  };
   type Subject = {
     kinds: Api.JointKind[];
     rowKinds: (Api.JointKind | null)[];
@@ -120,6 +150,8 @@ declare namespace Front {
     shown(i: number): boolean;
     labels: string[];
     given(): boolean;
+    placed: string[];
+    shownPlaced(): boolean;
     gap(picture: Picture): Gap | null;
     row(shapes: Shapes, size: number, stage: HTMLElement): RowShape | null;
     shownRow(picture: Picture): ShownRow | null;
@@ -138,12 +170,14 @@ declare namespace Front {
   type Move = import("../static/robot/rows/row_moves.js").Move;
   type RowShape = import("../static/robot/rows/row_shape.js").RowShape;
   type RowShapeClass = typeof import("../static/robot/rows/row_shape.js").RowShape;
+  type AxisClicks = import("../static/robot/placing/axis_clicks.js").AxisClicks;
   type RowPlayer = import("../static/robot/rows/row_player.js").RowPlayer;
   type RowHost = { host: ViewHost; isFlat(): boolean; draw(): void; build(): void };
   type LabelRoom = import("../static/robot/frames/label_places.js").Room;
   type DrawSvg = (theme: Api.Theme) => Promise<string | null | undefined>;
   type RobotView = import("../static/robot/robot_view.js").RobotView;
   type RobotFigure = import("../static/student/robot_figure.js").RobotFigure;
+  type Stage = import("../static/robot/stage.js").Stage;
   type RobotScene = import("../static/robot/scene.js").RobotScene;
   type FlatScene = import("../static/robot/flat_scene.js").FlatScene;
   type Shapes = import("../static/robot/shapes.js").Shapes;
@@ -160,6 +194,8 @@ declare namespace Front {
     descriptions?: Record<string, string>;
     unit?: string;
     cells?(): TableCell[][];
+    // The part that asks for frames, if there is one.
+    placing?(): PartView | undefined;
     announce(text: string): void;
     answered?(answer: Api.Frames, isKept: boolean): void;
     moved?(picture: Picture): void;

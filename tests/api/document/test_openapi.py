@@ -30,13 +30,17 @@ ROUTES = {**EXAMPLE_URLS, "grade": "/v1/exercises/{exercise_id}/grade"}
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
 # Written out, because they are names of functions in programs of other people.
 OPERATIONS = {
-    "listExercises", "getExercise", "getFigure", "getFrames", "getSolution", "grade",
+    "listExercises", "getExercise", "getFigure", "getFrames", "getFrameChoices", "getHint",
+    "getRulePicture", "getSolution", "grade",
     "gradeMany", "createToken", "recordAttempt", "listAttempts", "getAttempt", "getStatistics",
     "preview", "previewMany", "getLiveness", "getReadiness", "exportAttempts", "overrideAttempt",
-    "forgetLearner", "regradeAttempts", "listCourses", "createCourse", "getCourse", "changeCourse",
+    "forgetLearner", "regradeAttempts", "getNextRobot", "listCourses", "createCourse",
+    "getCourse", "changeCourse",
     "listLearners", "addLearners", "getLearnerView", "createLinks", "revokeLinks", "getGradebook",
+    "listScores", "sendScores",
     "listAssignments", "createAssignment", "getAssignment", "changeAssignment",
-    "extendAssignment", "listMissing", "handIn", "getAssignedSolution", "getOwnView",
+    "extendAssignment", "deleteAssignment", "deleteCourse", "removeLearner",
+    "listMissing", "handIn", "getAssignedSolution", "getOwnView", "listVariants", "dealVariant",
 }  # fmt: skip
 NAMES = {
     "Exercise", "ExerciseList", "Part", "GradeRequest", "GradeManyRequest", "GradeManyResponse",

@@ -80,8 +80,8 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
     version = shown.pop("version")
     assert isinstance(version, str)
     assert version
-    given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
-    given |= {"empty_cells": "unread"}
+    given: dict[str, Any] = {"frames": "given", "base": "given", "tool": "given"}
+    given |= {"directions": "given", "empty_cells": "unread", "given": {}}
     table = {"form": "dh_table", "columns": ["a", "alpha", "d", "theta"], "rows": ["1", "2"]}
     four = ["1", "2", "3", "4"]
     assert shown == {
@@ -156,9 +156,25 @@ def test_no_shipped_table_leaks(client: httpx.Client, catalogue: Mapping[str, Ex
             continue
         shown = client.get(f"/v1/exercises/{exercise.id}").json()
         del shown["statement"]
+        for part in shown["parts"]:
+            part["shape"].pop("given", None)
         for table in exercise.robot.tables.values():
             twists = {row[1].text() for row in table.rows} - {"0"}
             assert not [text for text in twists if text in str(shown)]
+
+
+def test_a_table_with_a_slip_is_shown_but_not_where_it_is(client: httpx.Client) -> None:
+    shown = client.get("/v1/exercises/find-the-slip-scara").json()
+    [part] = shown["parts"]
+    assert part["shape"]["given"] == [
+        ["a1", "0", "0", "theta1"],
+        ["a2", "0", "0", "theta2"],
+        ["0", "0", "d3", "0"],
+        ["0", "0", "d4", "theta4"],
+    ]
+    assert part.keys().isdisjoint({"seed", "slip"})
+    assert "half_turn" not in str(shown)
+    assert "180" not in str(shown)
 
 
 def test_an_unknown_exercise_is_a_404_that_suggests_the_nearest(client: httpx.Client) -> None:

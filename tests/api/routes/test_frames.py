@@ -2,7 +2,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from math import cos, sin
+from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -186,3 +186,71 @@ def test_hostile_tables_are_only_unread(client: httpx.Client, rows: object) -> N
     found = answered(client, {"table": {"rows": rows, "structure": "RP"}})
     assert not found["table"]["complete"]
     assert found["table"]["unread"] or found["table"]["error"]
+
+
+STANFORD = [
+    {"axis": 2, "z": "+y", "origin": [0, 0, 0], "x": "+x"},
+    {"axis": 3, "z": "-z", "origin": [0, "d2", 0], "x": [1, 1, 0]},
+    {"axis": "", "z": "+z", "origin": [0, "d2", ""], "x": "+x"},
+    {"axis": 5, "z": "+y", "origin": [0, "d2", 0], "x": "-y"},
+    {"axis": "", "z": "", "origin": ["", "", ""], "x": ""},
+]
+
+
+def test_placed_frames_move_with_their_links(client: httpx.Client) -> None:
+    body = {
+        "exercise": "stanford-arm-frames",
+        "placed": {"part": "frames", "rows": STANFORD},
+        "symbols": {"d2": 0.2},
+        "joints": [[0, 0, 0, 0, 0, 0], [0, 0, 0.7, 0, 0, 0], [pi / 2, 0, 0, 0, 0, 0]],
+    }
+    found = answered(client, body)["placed"]
+    assert found["labels"] == ["1", "2"]
+    half = 0.5**0.5
+    first = [[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]
+    second = [[half, half, 0, 0], [half, -half, 0, 0.2], [0, 0, -1, 0], [0, 0, 0, 1]]
+    home, drawn_out, turned = found["frames"]
+    assert home[0] == [pytest.approx(row) for row in first]
+    assert home[1] == [pytest.approx(row) for row in second]
+    # Frame 2 is on link 2, which joint 3 does not move.
+    assert drawn_out == home
+    # Joint 1 takes y0 to -x0.
+    assert [row[2] for row in turned[0]] == pytest.approx([-1, 0, 0, 0])
+    assert [row[3] for row in turned[1]] == pytest.approx([-0.2, 0, 0, 1])
+    left_out = {(cell["row"], cell["column"]): cell["error"] for cell in found["left_out"]}
+    assert left_out.keys() == {("3", "origin_z"), ("4", "x")}
+    assert left_out["4", "x"]["message"] == "x and z are parallel, so they make no frame."
+
+
+def test_a_frame_behind_a_sliding_joint_slides(client: httpx.Client) -> None:
+    row = {"frame": 3, "axis": 4, "z": "+z", "origin": [0, "d2", 0], "x": "+y"}
+    body = {
+        "exercise": "stanford-arm-frames",
+        "placed": {"part": "frames", "rows": [row]},
+        "symbols": {"d2": 0.2},
+        "joints": [[0, 0, 0.7, 0, 0, 0]],
+    }
+    [[frame]] = answered(client, body)["placed"]["frames"]
+    assert [line[3] for line in frame] == pytest.approx([0, 0.2, 0.7, 1])
+
+
+@pytest.mark.parametrize("rows", [7, [{"why": 1}], "z is up", [{"z": "up"}] * 9])
+def test_placed_frames_of_another_shape_are_not_drawn(client: httpx.Client, rows: object) -> None:
+    body = {"exercise": "planar-rrr-frames", "placed": {"part": "frames", "rows": rows}}
+    found = answered(client, body)["placed"]
+    assert found["error"]["code"] == "wrong_shape"
+    assert found["frames"] == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"table": {"rows": [], "structure": "RR"}, "placed": {"part": "frames", "rows": []}},
+        {"exercise": "planar-rrr-frames", "placed": {"part": "table", "rows": []}},
+        {"exercise": "planar-rrr-frames", "placed": {"part": "none", "rows": []}},
+    ],
+)
+def test_placed_frames_need_a_part_that_asks_for_them(client: httpx.Client, body: object) -> None:
+    response = client.post(URL, json=body)
+    assert response.status_code == 422
+    assert "a part of it that asks for frames" in response.text

@@ -8,7 +8,7 @@ HINTS, SCORE = FeedbackLevel.HINTS, FeedbackLevel.SCORE
 
 
 def report(text: str) -> WrittenReport:
-    return WrittenReport(text, 1.0, 2.0, {}, Outcome("scara", "{}"))
+    return WrittenReport(text, 1.0, 2.0, {}, Outcome("scara", "{}"), "v1")
 
 
 def graded_again() -> WrittenReport:

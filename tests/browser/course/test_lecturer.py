@@ -126,6 +126,29 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         page.goto(f"{server.address}/tutor/courses/robots/learner?learner=u1")
         expect(page.get_by_role("cell", name="10 / 20")).to_be_visible()
         check()
+        page.goto(f"{server.address}/tutor/courses/robots/assignments/homework-1")
+        _delete(page, "1 assignment, 1 extension, 1 attempt with answers and reports", check)
+        expect(page.get_by_text("There is no assignment yet.")).to_be_visible()
+        page.goto(f"{server.address}/tutor/courses/robots/learner?learner=u1")
+        page.get_by_text("Remove from the course").click()
+        page.get_by_role("button", name="Delete the learner").click()
+        expect(page.get_by_text("0 attempts of this learner will stay.")).to_be_visible()
+        page.get_by_role("button", name="Delete permanently").click()
+        expect(page.get_by_role("link", name="Ada Lovelace")).to_have_count(0)
+        _delete(page, "the place of 1 learner, 1 link", check)
+        expect(page).to_have_url(f"{server.address}/tutor/courses")
+        expect(page.get_by_role("link", name="Robots 2026")).to_have_count(0)
+
+
+def _delete(page: Page, said: str, check: Callable[[], None]) -> None:
+    """Delete the course or the assignment of a page, which first says what goes."""
+    page.get_by_text("Delete", exact=True).click()
+    page.get_by_role("button", name="Delete the").click()
+    expect(page.get_by_text(said)).to_be_visible()
+    check()
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_role("button", name="Delete the").click()
+    page.get_by_role("button", name="Delete permanently").click()
 
 
 def _set_homework(page: Page) -> None:

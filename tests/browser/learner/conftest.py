@@ -32,6 +32,7 @@ ASSIGNMENTS: Mapping[str, dict[str, Any]] = {
     "over": {"due": -1},
     "soon": {"opens": 1},
     "homework-1": {"limit": 3},
+    "own": {"exercises": [{"exercise": "planar-rr-numbers", "points": 8}], "variants": True},
 }
 
 
@@ -80,7 +81,7 @@ def course(
             for date in {"opens", "due", "closes"} & fields.keys():
                 new[date] = (now + timedelta(days=fields[date])).isoformat()
             assignment = NewAssignment.model_validate(new)
-            add_assignment(connection, COURSE, assignment, {"scara"})
+            add_assignment(connection, COURSE, assignment, {"scara", "planar-rr-numbers"})
         digest, until = Secret(SECRET).key_digest(names["KEY"]), now + timedelta(days=1)
         add_key(connection, "", digest, {Scope.RECORD}, None, now, until, COURSE)
         [link] = issue_links(connection, COURSE, LinksRequest(), Secret(SECRET), "", now)

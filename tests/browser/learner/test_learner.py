@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, Route, expect
 
+from service.catalogue import load_exercise, shipped_folder
 from tests.browser.fixtures import Visit
 from tests.browser.learner.conftest import Course
 from tests.browser.steps import cells
@@ -76,7 +77,7 @@ def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     assert page.url == f"{course.address}/learn"
     assert [url for url in opened.requests if "dhg_" in url and "#dhg_" not in url] == []
     states = page.locator(".assignment header .badge")
-    expect(states).to_have_text(["open", "late", "closed", "not open yet", "open"])
+    expect(states).to_have_text(["open", "late", "closed", "not open yet", "open", "open"])
     expect(page.locator(".assignment").first).to_contain_text(re.compile(r"Due .* GMT\+9 \("))
     assert violations(page, "") == []
 
@@ -152,6 +153,25 @@ def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     expect(page.get_by_role("heading", name="This link is not valid any more")).to_be_visible()
     assert violations(page, "") == []
     opened.complaints.clear()
+
+
+def test_a_learner_sees_the_own_variant(course: Course, visit: Opening) -> None:
+    opened = visit()
+    page = opened.page
+    page.goto(course.link)
+    page.locator(".assignment").last.get_by_role("link").click()
+    expect(page.get_by_text("two links moves in the plane")).to_be_visible()
+    drawing = page.locator("figure img")
+    expect(drawing).to_have_attribute("src", re.compile("^blob:"))
+    page.wait_for_function("each => each.naturalWidth > 100", arg=drawing.element_handle())
+    # The numbers are not those of the exercise without a seed, whose id the page shows.
+    plain = load_exercise(shipped_folder() / "planar-rr-numbers.toml")
+    [own] = {re.sub(r"\s+", " ", text) for text in page.locator(".statement").all_inner_texts()}
+    assert "length 0." in own
+    assert not set(re.findall(r"length (0\.\d+)", own)) >= set(
+        re.findall(r"length\s+(0\.\d+)", plain.statement)
+    )
+    assert not [url for url in opened.requests if "~" in url]
 
 
 def test_the_element_hands_in_from_a_course_site(course: Course, visit: Opening) -> None:

@@ -52,7 +52,7 @@ def test_several_ends_ask_for_the_tool(run: Run, file: Path) -> None:
     file.write_text(text)
     made = run("exercises", "import", file)
     assert made.exit_code == 2
-    assert "name the tool's link by --tip; the tree ends at: l4, camera" in made.stderr
+    assert "name the tool's link; the tree ends at: l4, camera. Use --tip LINK." in made.stderr
 
 
 def test_a_table_that_differs_too_much_is_refused(run: Run, file: Path) -> None:

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sqlalchemy import insert
+from sqlalchemy import insert, update
 from typer.testing import CliRunner, Result
 
 from service.attempts.learner_data import months_before
 from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import attempts, outcomes, overrides
+from service.attempts.storage.tables import assignments, attempts, extensions, outcomes, overrides
 from service.cli.program import program
 from service.contract.courses import NewAssignment, NewCourse, NewLearner
 from service.courses import roll
@@ -55,7 +55,8 @@ def database(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
             for each in ("ada", "grace", "emmy")
         ]
         roll.add_learners(connection, "robots", people)
-        fields = {"id": "hw", "title": "H", "exercises": [{"exercise": "scara", "points": 10}]}
+        exercises, due = [{"exercise": "scara", "points": 10}], NOW - timedelta(days=700)
+        fields = {"id": "hw", "title": "H", "exercises": exercises, "due": due}
         add_assignment(connection, "robots", NewAssignment.model_validate(fields), {"scara"})
         connection.execute(insert(outcomes).values(id=1, exercise="scara", digest="", content=""))
         record(connection, "ada", NOW, 1)
@@ -142,6 +143,41 @@ def test_old_attempts_are_deleted_and_no_others(
     assert learners(database) == ["ada"]
     assert months_before(datetime(2026, 3, 31, 8, tzinfo=UTC), 1).isoformat()[:10] == "2026-02-28"
     assert months_before(datetime(2026, 1, 5, 8, tzinfo=UTC), 13).isoformat()[:10] == "2024-12-05"
+
+
+@pytest.mark.parametrize(
+    ("due", "closes", "extended", "left"),
+    [
+        (-700, None, None, ["ada"]),
+        (-400, -300, None, ["ada", "grace"]),
+        (-700, -400, None, ["ada"]),
+        (-700, None, -300, ["ada", "grace"]),
+        (-700, None, -400, ["ada"]),
+        (None, None, None, ["ada", "grace"]),
+    ],
+)
+def test_attempts_are_kept_until_their_assignment_has_been_closed_for_as_long(
+    database: Path, due: int | None, closes: int | None, extended: int | None, left: list[str]
+) -> None:
+    def moment(days: int | None) -> datetime | None:
+        return None if days is None else NOW + timedelta(days=days)
+
+    def change(connection: Any) -> None:
+        values = {"due": moment(due), "closes": moment(closes)}
+        connection.execute(update(assignments).values(values))
+        if extended is not None:
+            given = {"assignment": 1, "learner": "emmy", "due": moment(extended)}
+            connection.execute(insert(extensions).values(given))
+
+    engine = open_database(str(database))
+    in_transaction(engine, change)
+    engine.dispose()
+    count = 2 - len(left)
+    told = run("attempts", "expire", "--months", 12).output
+    assert told.startswith(f"{count} attempts are from before")
+    assert ("1 older attempts are kept" in told) is (count == 0)
+    assert run("attempts", "expire", "--months", 12, "--apply").exit_code == 0
+    assert learners(database) == left
 
 
 def test_the_service_deletes_old_attempts_at_its_start(

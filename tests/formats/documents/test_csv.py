@@ -1,6 +1,9 @@
 import csv
 import io
 
+import pytest
+
+from service.formats.shared import spreadsheet
 from tests.formats.submissions import HOSTILE, cases, document
 
 COLUMNS = [
@@ -40,6 +43,28 @@ def test_a_hostile_file_name_stays_in_one_line() -> None:
     text = document("csv", *(cases()[name] for name in names))
     assert text.count("\r\n") == len(lines)
     assert "\n" not in text.replace("\r\n", "")
+
+
+@pytest.mark.parametrize(
+    ("cell", "written"),
+    [
+        ("=1+1", "'=1+1"),
+        ('x;=cmd|"/c calc"!A0', 'x;\'=cmd|"/c calc"!A0'),
+        ('x;"=1+1"', 'x;\'"=1+1"'),
+        ("x; +1;@SUM(A1);－1", "x;' +1;'@SUM(A1);'－1"),
+        ("\t=1", "\ufffd=1"),
+        ("x\r\n=1", "x\ufffd\ufffd=1"),
+        ("a; b; c=1", "a; b; c=1"),
+        ("1-2;3", "1-2;3"),
+    ],
+)
+def test_no_cell_is_a_formula_even_if_semicolons_end_cells(cell: str, written: str) -> None:
+    line = spreadsheet.line((cell, "end"))
+    [cells] = csv.reader(io.StringIO(line.decode(), newline=""), strict=True)
+    assert cells == [written, "end"]
+    for each in csv.reader(io.StringIO(line.decode(), newline=""), delimiter=";"):
+        for text in each:
+            assert not text.lstrip().startswith(("=", "+", "-", "@", "－"))
 
 
 def test_no_cell_starts_like_a_formula() -> None:

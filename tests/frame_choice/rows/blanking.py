@@ -1,8 +1,8 @@
 """``python -m tests.frame_choice.rows.blanking --tries 20000``: an empty cell earns no more.
 
 Empty a row or a cell in wrong tables of all kinds, under each policy: that should never raise the
-points. It still does in a few tables: the search misses a better reading of some tables with
-several wrong rows, or with a wrong first or last row if the base or the tool is free.
+points. It still does in a few tables with several wrong rows: an empty cell in a right row can lead
+the search to a better reading, and the work budget limits the readings of a table with extra rows.
 """
 
 import argparse
@@ -26,7 +26,7 @@ from tests.frame_choice.rows.student_rows import Texts, wrong_row
 from tests.frame_choice.trials import grade_rows
 
 # The largest share of tries that may raise the points; the aim is 0.
-MOST = 0.01
+MOST = 0.002
 # Tolerance for points that are rounded to hundredths.
 DUST = 1e-9
 PLACES = 4

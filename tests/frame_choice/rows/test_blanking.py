@@ -3,12 +3,14 @@
 import pytest
 
 from tests.frame_choice.robots import GIVEN, POLICIES, Policy, Robot, exercise
+from tests.frame_choice.rows import careless
 from tests.frame_choice.rows.blanking import run
 from tests.frame_choice.rows.shipped_robots import shipped_robots
 from tests.frame_choice.rows.student_rows import Texts
 from tests.frame_choice.trials import grade_rows
 
 EACH = 22
+SOME_ROBOTS = 4
 
 FREE = {policy.name: policy for policy in POLICIES}
 JOINTS = ("q1", "q2", "q3", "q4")
@@ -22,6 +24,55 @@ STANFORD = (
 )
 REVERSED = [*([*row[:3], f"-{row[3]}"] if row[3] != "0" else [*row] for row in STANFORD)]
 PLANAR = (("0", "0", "0", "q1"), ("l1", "0", "0", "q2"), ("l2", "0", "0", "q3"))
+SIX = ("q1", "q2", "q3", "q4", "q5", "q6")
+COLLINEAR = (
+    ("0", "0", "0", "q1"),
+    ("l2", "0", "l2", "q2+pi/2"),
+    ("0", "0", "l3", "q3+pi"),
+    ("0", "pi", "0", "q4"),
+    ("0.607", "0", "0.5316", "q5"),
+    ("l4", "pi/2", "0", "q6"),
+)
+FLIPPED = [
+    ["0", "0", "0", "-q1"],
+    ["l2", "0", "l2", "-q2 + pi/2"],
+    ["0", "0", "l3", "q3 + pi"],
+    ["0.607", "0", "0.5316", "q5"],
+    ["l4", "pi/2", "0", "-q6"],
+]
+PARALLEL = (
+    ("0", "0", "0", "q1"),
+    ("0", "0", "0.155", "q2"),
+    ("0", "pi/2", "0.4", "q3+pi/6"),
+    ("0.081", "0", "0.6", "q4"),
+    ("0.5", "0", "0.442", "q5"),
+    ("0.63", "pi/6", "0.5", "q6"),
+    ("0", "pi", "0", "pi/2"),
+)
+LAST = [
+    ["0", "pi/2", "0.4", "q3 - 5*pi/6"],
+    ["-0.081", "pi", "-0.9", "-q4"],
+    ["-0.5", "pi", "0.142", "q5 + pi"],
+    ["0.63", "pi/6", "0.5", "q6 - pi/2"],
+    ["0", "pi", "0", "0"],
+]
+SEVEN = (
+    ("0.4797", "0", "0.449", "q1"),
+    ("0.8", "0.3", "0", "q2"),
+    ("0.278", "2*pi/3", "0", "q3"),
+    ("0.6", "-40*pi/180", "0", "q4"),
+    ("0", "0", "0", "q5+-40*pi/180"),
+    ("0", "0", "0", "q6"),
+    ("0", "pi/2", "0.590", "q7"),
+    ("0.228", "-pi/2", "0.1229", "0"),
+)
+SEVEN_MOVED = [
+    *([*row] for row in SEVEN[:3]),
+    ["0.6", "-2*pi/9", "0.68", "q4"],
+    ["0", "0", "-0.96", "q5 - 2*pi/9"],
+    ["0", "0", "0.28", "q6"],
+    ["0", "-pi/2", "0", "-q7"],
+]
 # Tables in which an empty place once earned more: a number in place of a joint variable, a wrong
 # cell in a row of zeros, and wrong rows that hide the frames in which all others are right.
 ONCE_GAINED = [
@@ -105,12 +156,36 @@ ONCE_GAINED = [
         [["0", "pi", "0.33", "q1"], ["0.3", "0", "-(q2)", "pi"], ["0.36", "0", "0.12", "q3"]],
         [["0", "pi", "0.33", "q1"], ["", "", "", ""], ["0.36", "0", "0.12", "q3"]],
     ),
+    (
+        Robot("RRRRRR", "RRRRRR", "modified", SIX, COLLINEAR, ("l2", "l3", "l4")),
+        FREE["all free"],
+        [*FLIPPED[:3], ["0.607", "pi", "0", "q4"], *FLIPPED[3:]],
+        [*FLIPPED[:3], ["", "", "", ""], *FLIPPED[3:]],
+    ),
+    (
+        Robot("RRRRRR, exchanged", "RRRRRR", "modified", SIX, PARALLEL, ()),
+        GIVEN,
+        [["0", "0", "0.155", "q2 + pi/2"], ["0", "0", "0", "q1 - pi/2"], *LAST],
+        [["0", "0", "0.155", "q2 + pi/2"], ["", "", "", ""], *LAST],
+    ),
+    (
+        Robot("RRRRRRR", "RRRRRRR", "modified", (*SIX, "q7"), SEVEN, ()),
+        FREE["free tool"],
+        [*SEVEN_MOVED, ["-0.44", "pi/2", "0.12", "-q7"]],
+        [*SEVEN_MOVED, ["", "", "", ""]],
+    ),
 ]
 
 
 def test_an_empty_row_or_cell_earns_no_more() -> None:
     found = run(range(len(shipped_robots())), EACH, seed=3, unseen=0, policies=(GIVEN,))
     assert found.tries.total() >= EACH * len(shipped_robots())
+    assert not found.misses, "\n".join(found.misses)
+
+
+def test_an_empty_place_earns_no_more_after_slips_in_whole_rows() -> None:
+    found = careless.run(range(SOME_ROBOTS), EACH, seed=4)
+    assert found.tries.total() > 0.8 * EACH * SOME_ROBOTS
     assert not found.misses, "\n".join(found.misses)
 
 
@@ -123,3 +198,7 @@ def test_an_empty_place_earns_no_more_in_known_tables(
     compiled = exercise(robot, policy)
     written, blank = (grade_rows(compiled, t, robot.convention) for t in (texts, empty))
     assert 0 < blank.points <= written.points < written.max_points
+    for report in (written, blank):
+        assert sum(row.points for row in report.rows) == pytest.approx(report.points)
+        lost = sum(each.points for each in report.lost)
+        assert lost == pytest.approx(report.max_points - report.points)

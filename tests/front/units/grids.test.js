@@ -92,6 +92,18 @@ test("an answer that does not fit its cells fills none", () => {
   for (const answer of odd) assert.equal(cellsOf(layout, answer), null, JSON.stringify(answer));
 });
 
+test("a recorded mark and a mended table fill their cells; an unknown mark fits none", () => {
+  const marked = { grids: [{ columns, rows: [{ label: "1" }, { label: "e" }] }], marks: [] };
+  const cells = ["1", "0", "0", "q1", "2", "0", "0", "q2"];
+  const table = { rows: [["1", "0", 0, "q1"], { a: "2", alpha: 0, d: "0", theta: "q2" }] };
+  assert.deepEqual(cellsOf(marked, { marked: "1.alpha, e.d", table }), { cells, choice: "1.alpha, e.d" });
+  const row = "e.a, e.alpha, e.d, e.theta";
+  assert.deepEqual(cellsOf(marked, { marked: ["e"] }), { cells: Array(8).fill(""), choice: row });
+  assert.deepEqual(cellsOf(marked, null), { cells: Array(8).fill(""), choice: "" });
+  for (const odd of ["2.alpha", 7, ["1.alpha", 3]]) assert.equal(cellsOf(marked, { marked: odd, table }), null);
+  assert.equal(cellsOf(marked, { marked: "1.a", rows: [] }), null);
+});
+
 test("cells are named as the student sees them", () => {
   assert.deepEqual(["alpha", "d", "3"].map((label) => cellsInWords([label])), ["α", "d", "column 3"]);
 });

@@ -76,3 +76,26 @@ test("screw axes are six-vectors, named after their frame", () => {
   assert.deepEqual(of("space").grids[0].rows.map((row) => row.head), ["S1", "S2"]);
   assert.deepEqual(of("body").grids[0].rows.map((row) => row.head), ["B1", "B2"]);
 });
+
+test("a frame is posted with its number, and its directions are offered by name", () => {
+  const columns = ["axis", "z", "origin_x", "origin_y", "origin_z", "x"];
+  const shape = { form: "frames", columns, rows: ["1", "2"], joints: ["1", "2", "3"], convention: "standard" };
+  const { grids: [grid], answer } = layoutOf({ kind: "frames", shape });
+  assert.deepEqual(answer(["2", "+y", "0", "d1", "0", "-x", "3", "+z", "", "", "", ""], ""), [
+    { frame: "1", axis: "2", z: "+y", origin: ["0", "d1", "0"], x: "-x" },
+    { frame: "2", axis: "3", z: "+z", origin: ["", "", ""], x: "" },
+  ]);
+  assert.deepEqual(grid.columns.map(({ offers }) => offers?.length), [3, 6, undefined, undefined, undefined, 6]);
+  assert.deepEqual(grid.rows.map(({ spoken }) => spoken), ["frame 1", "frame 2"]);
+});
+
+test("a slip is posted with its marks, and with the table if a cell was changed", () => {
+  const given = [["a1", "0", "0", "q1"], ["0", "0", "d2", "0"]];
+  const shape = { form: "find_slip", columns: DH, rows: ["1", "e"], convention: "modified", given };
+  const { answer, grids: [grid], marks } = layoutOf({ kind: "find_slip", shape });
+  assert.deepEqual(marks, given);
+  assert.deepEqual(grid.rows.map(({ prefill }) => prefill), given);
+  assert.deepEqual(answer(Array(8).fill(""), "1.alpha"), { marked: "1.alpha" });
+  const rows = [{ a: "a1", alpha: "pi", d: "0", theta: "q1" }, { a: "0", alpha: "0", d: "d2", theta: "0" }];
+  assert.deepEqual(answer(["a1", "pi", "0", "q1", "0", "0", "d2", "0"], ""), { table: { rows } });
+});

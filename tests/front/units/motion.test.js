@@ -33,8 +33,8 @@ test("an answer has a picture for each set of joint values, or none", () => {
     table: { frames: ["first", "second"], values: [[], ["numbers"]] },
     mechanism: { configurations: ["one", "two"] },
   };
-  assert.deepEqual(pictureOf(answer, 1), { frames: "second", values: ["numbers"], mechanism: "two" });
-  assert.deepEqual(pictureOf({}), { frames: null, values: null, mechanism: null });
+  assert.deepEqual(pictureOf(answer, 1), { frames: "second", values: ["numbers"], mechanism: "two", placed: null });
+  assert.deepEqual(pictureOf({}), { frames: null, values: null, mechanism: null, placed: null });
 });
 
 test("half of a quarter turn is an eighth turn, and the frame stays orthonormal", () => {
@@ -49,6 +49,11 @@ test("half of a quarter turn is an eighth turn, and the frame stays orthonormal"
   close(column(frame, 1), [-r, r, 0]);
   close(column(frame, 2), [0, 0, 1]);
   close(column(frame, 3), [1, 2, 0]);
+});
+
+test("placed frames are interpolated, too", () => {
+  const at = (x) => ({ frames: null, mechanism: null, placed: [turned(0, x, 0)] });
+  close(column(between(at(1), at(3), 0.5).placed[0], 3), [2, 0, 0]);
 });
 
 test("frames that only one of two pictures has are left out", () => {

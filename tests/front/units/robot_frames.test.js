@@ -2,6 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gapBetween, gapText, isClosed } from "../../../service/web/static/robot/frames/gap.js";
 import { takePlace } from "../../../service/web/static/robot/frames/label_places.js";
+import { directionText, nearestAxes } from "../../../service/web/static/robot/placing/axis_words.js";
+import { leftOutText } from "../../../service/web/static/robot/placing/placed_words.js";
 import { viewText } from "../../../service/web/static/robot/frames/view_text.js";
 
 const IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
@@ -48,4 +50,32 @@ test("the text says where the tool and the frames are", () => {
   );
   const closed = viewText({ frames: [QUARTER], mechanism: null }, [], gapBetween(QUARTER, QUARTER));
   assert.match(closed, /lies on the tool frame\.$/);
+});
+
+test("the text says where the placed frames are, and why others are left out", () => {
+  const text = viewText({ frames: null, mechanism: null, placed: [QUARTER] }, [], null, ["2"]);
+  assert.equal(text, "Your frame {2}: origin (3, 4, 0), x along the base's y, z along the base's z.");
+  const cell = { row: "1", column: "origin_x", error: { message: "Nothing is written here." } };
+  assert.equal(
+    leftOutText({ left_out: [cell] }),
+    "Frame 1, origin x: Nothing is written here. The view leaves this frame out.",
+  );
+  assert.equal(leftOutText({ left_out: [] }), "");
+  assert.equal(leftOutText(undefined), "");
+});
+
+test("a click is on the nearest axes, and on none from afar", () => {
+  const axes = [[[0, 0], [0, 100]], [[50, 0], [50, 100]], [[51, 0], [51, 100]]];
+  assert.deepEqual(nearestAxes([5, 50], axes), [0]);
+  assert.deepEqual(nearestAxes([60, 50], axes), [2, 1]);
+  assert.deepEqual(nearestAxes([25, 50], axes), []);
+  // Beyond its end, an axis is a point.
+  assert.deepEqual(nearestAxes([0, 117], axes), [0]);
+  assert.deepEqual(nearestAxes([0, 119], axes), []);
+});
+
+test("a direction is written as a student would", () => {
+  assert.equal(directionText([0, -1, 0]), "-y");
+  assert.equal(directionText([1, 1e-9, 0]), "+x");
+  assert.equal(directionText([0.6, -1e-12, -0.8]), "[0.6, 0, -0.8]");
 });

@@ -98,7 +98,9 @@ def _write(rows: Any, row: str, cell: str, written: str) -> None:
         matrix, _, row = row[1:].partition(".")
         rows = rows[int(matrix) - 1]
     target = rows[int(row) - 1]
-    if isinstance(target, dict):
+    if cell.startswith("origin_"):
+        target["origin"]["xyz".index(cell[-1])] = written
+    elif isinstance(target, dict):
         assert cell in target
         target[cell] = written
     elif isinstance(target, list):

@@ -116,4 +116,4 @@ BARE = (
     BareExercise("dh_row", f"transform = {_toml(SKEW)}", {"none": True}, (ROW,)),
 )
 # The kinds that need a robot with a table.
-OF_A_ROBOT = {"dh_table", "link_transforms"}
+OF_A_ROBOT = {"dh_table", "find_slip", "frames", "link_transforms"}

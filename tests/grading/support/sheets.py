@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.catalogue import Exercise, PartSpec
+from service.catalogue.parts.find_slip import FindSlipSpec
+from service.grading.kinds.find_slip import slip_of
 from tests.grading.support.robots import COLUMNS
 
 Grid = list[list[str]]
@@ -12,11 +14,15 @@ Grid = list[list[str]]
 
 @dataclass(frozen=True)
 class Sheet:
-    """The labels of an answer's rows and columns, and the JSON shape of the answer."""
+    """The labels of an answer's rows and columns, and the JSON shape of the answer.
+
+    ``marked`` are the right marks on a slip, which every answer to such a part gets.
+    """
 
     kind: str
     rows: tuple[str, ...]
     columns: tuple[str, ...]
+    marked: tuple[str, ...] = ()
 
     def filled(self, text: str) -> Grid:
         return [[text] * len(self.columns) for _ in self.rows]
@@ -26,22 +32,32 @@ class Sheet:
         if self.kind in ("dh_table", "dh_row"):
             rows = [dict(zip(COLUMNS, row, strict=True)) for row in grid]
             return {"rows": rows} if self.kind == "dh_table" else rows[0]
+        if self.kind == "find_slip":
+            rows = [dict(zip(COLUMNS, row, strict=True)) for row in grid]
+            return {"marked": list(self.marked), "table": {"rows": rows}}
         if self.kind == "link_transforms":
             return [list(map(list, grid[i : i + 4])) for i in range(0, len(grid), 4)]
+        if self.kind == "frames":
+            rows = [dict(zip(self.columns, row, strict=True)) for row in grid]
+            return [{"frame": label, **row} for label, row in zip(self.rows, rows, strict=True)]
         if len(self.columns) == 1:
             return [row[0] for row in grid]
         return list(map(list, grid))
 
     def grid_of(self, answer: Any) -> Grid:
         """Return the grid of a posted answer, the inverse of ``posted``."""
-        if self.kind == "dh_table":
+        if self.kind == "find_slip":
+            answer = answer["table"]
+        if self.kind in ("dh_table", "find_slip"):
             answer = answer["rows"]
         if self.kind == "dh_row":
             answer = [answer]
         if self.kind == "link_transforms":
             answer = [row for matrix in answer for row in matrix]
-        if self.kind in ("dh_table", "dh_row"):
+        if self.kind in ("dh_table", "dh_row", "find_slip"):
             return [[str(row[column]) for column in COLUMNS] for row in answer]
+        if self.kind == "frames":
+            answer = [[row["axis"], row["z"], *row["origin"], row["x"]] for row in answer]
         rows = [row if isinstance(row, list) else [row] for row in answer]
         return [list(map(str, row)) for row in rows]
 
@@ -52,4 +68,8 @@ def sheet_of(part: PartSpec, exercise: Exercise) -> Sheet:
     rows = tuple(shape.get("rows") or ("1",))
     if "matrices" in shape:
         rows = tuple(f"{matrix}.{row}" for matrix in shape["matrices"] for row in rows)
-    return Sheet(part.kind, rows, tuple(shape.get("columns") or ("1",)))
+    marked: tuple[str, ...] = ()
+    if isinstance(part, FindSlipSpec):
+        cells = sorted(slip_of(part, exercise).cells)
+        marked = tuple(f"{rows[i]}.{COLUMNS[j]}" for i, j in cells)
+    return Sheet(part.kind, rows, tuple(shape.get("columns") or ("1",)), marked)

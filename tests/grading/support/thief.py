@@ -9,6 +9,8 @@ from typing import Any
 from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import ExpressionError, Vocabulary, read
 from service.grading import PartReport, Submission, Verdict, grade
+from service.grading.report import messages_of
+from service.hints.steps import STEPS, Topic, hint_step
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
 
 ROUNDS = 10
@@ -77,7 +79,7 @@ class Thief:
     """A thief at work on one part, at one level.
 
     ``known`` are the values that need no theft. The trivial values 0, 1 and -1, which are in most
-    cells of every answer, do not count as stolen either.
+    cells of every answer, do not count as stolen either. ``hints`` are all hints that a thief had.
     """
 
     exercise: Exercise
@@ -85,8 +87,10 @@ class Thief:
     level: FeedbackLevel
     grid: Grid
     known: set[str]
+    with_hints: bool = False
     tried: int = 0
     stolen: list[str] = field(default_factory=list)
+    hints: set[str] = field(default_factory=set)
 
     @property
     def sheet(self) -> Sheet:
@@ -98,6 +102,22 @@ class Thief:
         report = grade(self.exercise, Submission(answers, feedback=self.level))
         return next(part for part in report.parts if part.part == self.part.id)
 
+    def _hints(self, report: PartReport) -> Iterator[str]:
+        """Yield all steps of the hints for all messages, if the thief asks for hints."""
+        if not self.with_hints:
+            return
+        answers = {self.part.id: self.sheet.posted(self.grid)}
+        whole = grade(self.exercise, Submission(answers, feedback=self.level))
+        for message, places, _ in messages_of(report):
+            for place in places or (None,):
+                at = (place.row, place.cell) if place else (None, None)
+                topic = Topic(self.part.id, message.code, *at)
+                for step in range(1, STEPS + 1):
+                    hint = hint_step(self.exercise, topic, step, answers, whole)
+                    if hint is not None:
+                        self.hints.add(hint.text)
+                        yield from (hint.title, hint.text)
+
     def steal(self) -> tuple[float, float]:
         """Return the points of the first answer, and those after ten rounds of copying."""
         report = self.report(self.grid)
@@ -106,7 +126,7 @@ class Thief:
             before = worth(report)
             found = [
                 text
-                for saying in dict.fromkeys(said(report))
+                for saying in dict.fromkeys((*said(report), *self._hints(report)))
                 for text in expressions_in(saying, self.exercise.vocabulary)
                 if not is_trivial(text) and shortened(text) not in self.known
             ]

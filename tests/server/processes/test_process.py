@@ -7,7 +7,7 @@ import socket
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -15,7 +15,7 @@ import pytest
 from service.server.limits import MAX_CONNECTIONS
 from tests.attack.floods import many_costly
 from tests.guards import ANSWER
-from tests.server.raw import HEALTH, Service, answers, preview, received, service, until
+from tests.server.raw import HEALTH, Service, answers, preview, received, service, until, workers
 from tests.web.tutor.test_checking import COSTLY
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
@@ -39,19 +39,6 @@ def runs(process: int) -> bool:
     except OSError:
         return False
     return state != "Z"
-
-
-def workers(running: Service) -> set[int]:
-    """Return the child processes of the service, without multiprocessing's resource tracker."""
-    found = set()
-    for folder in Path("/proc").glob("[0-9]*"):
-        with suppress(OSError):
-            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == running.process.pid and b"resource_tracker" not in (
-                (folder / "cmdline").read_bytes()
-            ):
-                found.add(int(folder.name))
-    return found
 
 
 def check_end(running: Service) -> None:

@@ -17,8 +17,7 @@ from service.settings import Settings
 from service.submissions.strict_json import MAX_BODY_SIZE
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import NO_TWIST, RIGHT
-from tests.server.processes.test_process import workers
-from tests.server.raw import Service, service, until
+from tests.server.raw import Service, service, until, workers
 
 ROUTE = "/v1/exercises/{exercise_id}/attempts"
 Samples = Mapping[tuple[str, frozenset[str]], float]

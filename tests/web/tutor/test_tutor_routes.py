@@ -30,6 +30,7 @@ ROUTES = [
     ("GET", "/tutor/misconceptions/{exercise_id}"),
     ("GET", "/tutor/editor?exercise=scara"),
     ("POST", "/tutor/check"),
+    ("POST", "/tutor/import"),
     ("POST", "/tutor/drafts"),
     ("POST", "/tutor/files"),
     ("GET", "/tutor/class"),

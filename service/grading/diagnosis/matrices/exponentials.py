@@ -46,6 +46,7 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
     of=Exponentials,
     rank=10,
     code="home_on_wrong_side",
+    rule="exponentials",
     means="M is on the wrong side of the exponentials: it comes after those of space axes and "
     "before those of body axes",
     example=(
@@ -73,6 +74,7 @@ def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=20,
     code="missing_home",
+    rule="exponentials",
     means="M is missing in the product of exponentials",
     example=(
         "planar-rpr-poe",
@@ -98,6 +100,7 @@ def missing_home(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=30,
     code="reversed_product",
+    rule="exponentials",
     means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "planar-rpr-poe",
@@ -125,6 +128,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     of=Exponentials,
     rank=40,
     code="moment_sign",
+    rule="exponentials",
     means="v is ω × q instead of −ω × q in the exponentials",
     example=(
         "planar-rpr-poe",

@@ -14,6 +14,7 @@ from service.grading.reading.entry import Entry
 NOT_AT_HOME = register(
     of=WrongScrews,
     code="not_at_home",
+    rule="screw_axis",
     means="an answer for the home position, such as a screw axis or the home pose M, contains "
     "a joint variable",
     example=("planar-rpr-poe", "space-screws", {"3/4": "q1 q2"}),

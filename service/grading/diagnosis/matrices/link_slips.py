@@ -56,6 +56,7 @@ class LinkAmongOthers:
     of=LinkAmongOthers,
     rank=10,
     code="absolute_angle",
+    rule="product",
     means="a link transform also contains the angles of the joints before it: θ1 + θ2 in A2",
     example=(
         "planar-rr",
@@ -87,6 +88,7 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     of=LinkAmongOthers,
     rank=20,
     code="pose_for_link",
+    rule="product",
     means="a link transform is replaced by the product of all up to it",
     example=(
         "planar-rr",
@@ -112,6 +114,7 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     of=LinkAmongOthers,
     rank=30,
     code="translation_not_turned",
+    rule="convention",
     means="the position of a link transform holds a and d as they are, not turned",
     example=("spatial-rrr", "links", {"A1.1/4": "R", "A1.2/4": "0"}),
     unlike={"A1.2/4": "R*s2"},

@@ -43,6 +43,7 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     of=Step,
     rank=10,
     code="fixed_for_moving_axes",
+    rule="elementary_turn",
     means="a turn about a moving axis is multiplied as one about a fixed axis, or the other "
     "way round",
     example=(
@@ -70,6 +71,7 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=20,
     code="turn_sign",
+    rule="elementary_turn",
     means="a turn has the opposite sense",
     example=("fundamental-rotations", "about-y", {"1/3": "-sin(phi)", "3/1": "sin(phi)"}),
     unlike={"1/1": "1"},
@@ -90,6 +92,7 @@ def turned_back(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=30,
     code="turn_axis",
+    rule="elementary_turn",
     means="a turn is about the wrong axis",
     example=(
         "composite-rotations",
@@ -117,6 +120,7 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=40,
     code="turn_angle",
+    rule="elementary_turn",
     means="a turn has the angle of another turn",
     example=("rigid-motion-chain", "rotation", "[cφ, -sφ cφ, sφ sφ; sφ, cφ cφ, -cφ sφ; 0, sφ, cφ]"),
     unlike={"3/2": "0"},
@@ -146,6 +150,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=50,
     code="missing_turn",
+    rule="elementary_turn",
     means="a turn is missing",
     example=(
         "composite-rotations",
@@ -167,6 +172,7 @@ def left_out(steps: Sequence[Step]) -> Hypotheses:
     of=Step,
     rank=60,
     code="reversed_product",
+    rule="elementary_turn",
     means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "composite-rotations",

@@ -55,6 +55,7 @@ class Lines:
     of=MatrixCase,
     rank=10,
     code=("transposed_matrix", "transposed_rotation"),
+    rule="rotation_columns",
     means=(
         "the whole matrix is transposed",
         "the rotation is transposed: its columns are the axes of the first frame in the last",
@@ -74,6 +75,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     of=UpperRows,
     rank=50,
     code="inverse_transform",
+    rule="inverse",
     means="the answer is the inverse: the first frame in the last",
     example=(
         "homogeneous-inverse",
@@ -118,6 +120,7 @@ def other_pose(case: MatrixCase) -> Hypotheses:
     of=UpperRows,
     rank=70,
     code=("inverse_transform",),
+    rule="inverse",
     means="the answer is the inverse: the first frame in the last",
     example=(
         "scara",
@@ -139,6 +142,7 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     of=RotationBlock,
     rank=10,
     code="transposed_rotation",
+    rule="rotation_columns",
     means="the rotation is transposed: its columns are the axes of the first frame in the last",
     example=("planar-rrr", "pose", {"1/2": "s123", "2/1": "-s123"}),
     unlike={"1/3": "1", "4/4": "0"},
@@ -157,6 +161,7 @@ def transposed_rotation(case: MatrixCase) -> Hypotheses:
     of=RotationBlock,
     rank=50,
     code="columns_exchanged",
+    rule="rotation_columns",
     means="the columns of the rotation are in the wrong order",
     example=("rigid-motion-chain", "parallel-axes", "[0, 1, 0; 0, 0, -1; 1, 0, 0]"),
     unlike={"1/1": "0", "1/3": "1"},
@@ -197,6 +202,7 @@ def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypothese
     of=Lines,
     rank=10,
     code=("column_sign", "row_sign"),
+    rule="rotation_columns",
     means=(
         "a whole column has the wrong sign: an axis of the last frame points the opposite way",
         "a whole row has the wrong sign: an axis of the first frame points the opposite way",
@@ -235,9 +241,6 @@ def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
     )
 
 
-# --- slips of the table
-
-
 @check(of=UpperRows, rank=20)
 def slip_of_rows(case: MatrixCase) -> Explained | None:
     """A slip of the table explains rotation and position."""
@@ -274,13 +277,11 @@ def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
     return found
 
 
-# --- checks
-
-
 @check(
     of=BottomRow,
     rank=10,
     code="bottom_row",
+    rule="rotation_columns",
     means="the bottom row is not 0 0 0 1",
     example=("homogeneous-inverse", "numbers", {"4/3": "1"}),
     unlike={"3/3": "1"},
@@ -305,6 +306,7 @@ class WrongAxes:
     of=WrongAxes,
     rank=10,
     code="left_handed_rotation",
+    rule="rotation_columns",
     means="the columns form a left-handed frame (a warning)",
     example=("rigid-motion-chain", "parallel-axes", {"2/3": "1"}),
     unlike={"2/3": "0"},
@@ -324,6 +326,7 @@ def left_handed_rotation(axes: WrongAxes) -> Finding | None:
     of=WrongAxes,
     rank=20,
     code="rotation_not_orthonormal",
+    rule="rotation_columns",
     when=lambda axes: UNEXPLAINED in axes.codes,
     means="the columns are not unit vectors at right angles; appears only with an unexplained "
     "entry (a hint)",

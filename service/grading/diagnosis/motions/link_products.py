@@ -85,6 +85,7 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     of=Chain,
     rank=10,
     code="reversed_product",
+    rule="product",
     means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=("planar-rr", "position", "[a2 c2 + a1 c12, a2 s2 + a1 s12]"),
     unlike={"1/1": "a0*c1 + a2*c12"},
@@ -104,6 +105,7 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=20,
     code="other_convention",
+    rule="convention",
     means="the table is multiplied out with the link transform of the other convention",
     example=("planar-rr", "position", "[a1 + a2 c1, a2 s1]"),
     unlike={"2/1": "0"},
@@ -123,6 +125,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=30,
     code="wrong_frame",
+    rule="product",
     means="the answer is the pose of a frame before the last one",
     example=(
         "spherical-wrist",
@@ -147,6 +150,7 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=40,
     code="wrong_base",
+    rule="product",
     means="the answer is the pose in a frame after the first one",
     example=("planar-rr", "position", "[a2 c2, a2 s2]"),
     unlike={"2/1": "0"},
@@ -166,6 +170,7 @@ def wrong_base(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=50,
     code="missing_link",
+    rule="product",
     means="a link transform is missing in the product",
     example=(
         "scara",
@@ -191,6 +196,7 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=60,
     code="premultiplied",
+    rule="product",
     means="one link transform, or every turn and shift, is multiplied from the left",
     example=(
         "scara",
@@ -227,6 +233,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     of=Chain,
     rank=70,
     code="row_order",
+    rule="product",
     means="a link transform is at the wrong place in the product",
     example=(
         "planar-rrr-standard",

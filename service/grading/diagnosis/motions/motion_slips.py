@@ -49,6 +49,7 @@ SUM = "The position is the sum of all displacements, each turned by the turns be
     of=Displacements,
     rank=10,
     code="displacement_not_turned",
+    rule="product",
     means="a displacement is added without the turns before it: d1 + d2 for d1 + R1 d2",
     example=("rigid-motion-chain", "origin", "[l1, l2, h]"),
     unlike="[l1, 0, h]",
@@ -85,6 +86,7 @@ def _not_turned(found: Sequence[Displacement], straight: Sequence[tuple[str, ...
     of=Displacements,
     rank=20,
     code="missing_displacement",
+    rule="product",
     means="the displacement of one motion is missing in the sum, or is the whole answer",
     example=("rigid-motion-chain", "origin", "[l1, 0, h]"),
     unlike={"1/1": "0"},
@@ -101,6 +103,7 @@ def missing_displacement(motion: GivenMotion) -> Hypotheses:
     of=Displacements,
     rank=30,
     code="missing_displacement",
+    rule="product",
     means="the displacement of one motion is missing in the sum, or is the whole answer",
     example=("rigid-motion-chain", "point", "[l1, 0, h]"),
     unlike="[0, 0, 0]",
@@ -124,6 +127,7 @@ def _which(found: Sequence[Displacement], i: int) -> str:
     of=TurnsOfMotion,
     rank=20,
     code="missing_turn",
+    rule="product",
     means="a turn is missing",
     example=(
         "rigid-motion-chain",
@@ -144,6 +148,7 @@ def turn_left_out(motion: GivenMotion) -> Hypotheses:
     of=TurnsOfMotion,
     rank=30,
     code="turn_sign",
+    rule="product",
     means="a turn has the opposite sense",
     example=(
         "rigid-motion-chain",
@@ -165,6 +170,7 @@ def turn_reversed(motion: GivenMotion) -> Hypotheses:
     of=TurnsOfMotion,
     rank=10,
     code="reversed_product",
+    rule="product",
     means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "rigid-motion-chain",
@@ -189,6 +195,7 @@ OTHER_ORDER = says(
     of=WholeMotion,
     rank=10,
     code="reversed_product",
+    rule="product",
     means="the link transforms, exponentials, turns or motions are multiplied in the wrong order",
     example=(
         "rigid-motion-chain",

@@ -49,6 +49,7 @@ class WrongScrews(WrongNumbers):
     of=WrongScrews,
     rank=10,
     code="exchanged_halves",
+    rule="screw_axis",
     means="the axis is written as (v; ω) instead of (ω; v)",
     example=("simple-twist", "infinite-pitch", "1, 0, 0, 0, 0, 0"),
     unlike={"1/2": "90"},
@@ -62,6 +63,7 @@ def exchanged_halves(case: WrongScrews) -> Hypotheses:
     of=WrongScrews,
     rank=20,
     code="axis_reversed",
+    rule="screw_axis",
     when=lambda case: case.several,
     means="the axis points the opposite way, but the exercise asks for one direction",
     example=(
@@ -80,6 +82,7 @@ def axes_reversed(case: WrongScrews) -> Hypotheses:
     of=WrongScrews,
     rank=30,
     code="moment_sign",
+    rule="screw_axis",
     when=lambda case: case.several,
     means="v is ω × q instead of −ω × q",
     example=("planar-rpr-poe", "body-screws", {"1/5": "-L1 - L2", "3/5": "-L2"}),
@@ -98,6 +101,7 @@ def moment_signs(case: WrongScrews) -> Hypotheses:
     of=WrongScrews,
     rank=40,
     code=("body_for_space", "space_for_body"),
+    rule="screw_axis",
     when=lambda case: case.several,
     means=(
         "the body axis is given for the space axis",

@@ -37,6 +37,7 @@ _MAX_ORDERS: Final = 2
 _PERMUTED = register(
     of=StudentTable,
     code="columns_permuted",
+    rule="convention",
     means="the columns are in another order, such as θ, d, a, α, without headers that say so",
     example=("planar-rr", "table", "theta1, 0, a1, 0 ↵ theta2, 0, a2, 0"),
     unlike={"1/a": "0"},

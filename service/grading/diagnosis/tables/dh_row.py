@@ -37,6 +37,7 @@ class WrongRow(WrongNumbers):
     of=WrongRow,
     rank=10,
     code="exchanged_parameters",
+    rule="convention",
     means="a and d, or α and θ, are exchanged",
     example=("dh-conditions", "fourth", {"a": "2", "alpha": "0", "d": "3", "theta": "pi/2"}),
     unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
@@ -59,6 +60,7 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
     of=WrongRow,
     rank=20,
     code="other_convention",
+    rule="convention",
     means="the row follows the other convention",
     example=("several-kinds", "turned-row", "l, 0, a, pi"),
     unlike="l, 0, 2*a, pi",
@@ -79,6 +81,7 @@ def other_convention(case: WrongRow) -> Hypotheses:
     of=WrongRow,
     rank=30,
     code="inverse_transform",
+    rule="rows",
     means="the row describes the inverse transform",
     example=("several-kinds", "turn-row", "0, 0, -a, -phi"),
     unlike="0, 0, -a, phi",
@@ -97,6 +100,7 @@ def inverse_row(case: WrongRow) -> Hypotheses:
 _NOT_PERPENDICULAR = register(
     of=WrongRow,
     code="dh_not_perpendicular",
+    rule="convention",
     means="a row is given, but the transform has none: x is not perpendicular to z",
     example=("dh-conditions", "second", {"a": "l", "alpha": "0", "d": "h", "theta": "phi"}),
     unlike="l, 0, h",
@@ -104,6 +108,7 @@ _NOT_PERPENDICULAR = register(
 _NOT_INTERSECTING = register(
     of=WrongRow,
     code="dh_not_intersecting",
+    rule="convention",
     means="a row is given, but the transform has none: the lines of x and z do not meet",
     example=("dh-conditions", "third", {"a": "l", "alpha": "phi", "d": "h", "theta": "0"}),
     unlike="l, 0, h",
@@ -111,6 +116,7 @@ _NOT_INTERSECTING = register(
 _ROW_EXISTS = register(
     of=WrongRow,
     code="dh_row_exists",
+    rule="convention",
     means='the answer is "none", but the transform has a row',
     example=("dh-conditions", "fourth", {"none": True}),
     unlike={"a": "3", "alpha": "0", "d": "2", "theta": "0"},

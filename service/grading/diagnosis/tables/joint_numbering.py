@@ -18,6 +18,7 @@ Meanings = Mapping[str, str]
 _NUMBERED = register(
     of=StudentTable,
     code="joint_numbering",
+    rule="joint_variable",
     means="the joint numbers start at another number: θ0, θ1, θ2 for θ1, θ2, θ3",
     example=("planar-rr", "table", {"1/theta": "theta0"}),
     unlike={"1/a": "0", "1/d": "a1"},
@@ -25,6 +26,7 @@ _NUMBERED = register(
 _NUMBERED_BY_KIND = register(
     of=StudentTable,
     code="joint_numbering_by_kind",
+    rule="joint_variable",
     means="turning and sliding joints are numbered separately: θ1, θ2, d3, θ3 for θ1, θ2, d3, θ4",
     example=(
         "stanford-arm",

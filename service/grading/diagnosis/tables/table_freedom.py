@@ -30,6 +30,7 @@ TOO_LONG = 300.0
 _LOST = register(
     of=StudentTable,
     code="lost_freedom",
+    rule="joint_variable",
     means="some joints share an axis or depend on each other, so the arm has fewer degrees of "
     "freedom than the robot; the message itself costs no points",
     example=("planar-rrr-drawn", "table", {"2/a": "0"}),

@@ -109,6 +109,14 @@ def steps_lost(part: PartSpec, judged: Judged) -> int:
     return _marks(judged, part.marking, part.points).lost
 
 
+def least_lost(part: PartSpec, judged: Judged, cells: int) -> int:
+    """Return the steps that a wrong row loses at least if it has ``cells`` content cells."""
+    if part.marking != "content":
+        return 0
+    worth = worth_of(judged.content, part.marking, part.points)
+    return cells * worth.unit + worth.least_besides
+
+
 def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
     """Return the marks of an answer to a part of ``points`` points."""
     if judged.is_right:
@@ -155,6 +163,8 @@ def _losses(
             losses, lost = whole, once
     if judged.at_most is not None:
         lost = max(lost, _marks(judged.at_most, marking, points).lost)
+    if judged.at_least is not None:
+        lost = min(lost, max(1, _marks(judged.at_least, marking, points).lost))
     if not losses:
         return (_Loss(OUTSIDE, lost),) if lost else ()
     shares = apportioned(lost, [loss.steps for loss in losses])

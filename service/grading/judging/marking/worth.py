@@ -96,13 +96,17 @@ def worth_of(content: Content, marking: Marking, points: float) -> CellWorth:
     step, total = _steps(content, points)
     if marking == "content" or marking == "whole":
         return _by_content(content, step, total)
-    rows = len(content.known)
-    slip = max(1, total // rows)
+    earning = content.earning
+    rows, sharing = len(content.known), sum(earning)
+    slip = max(1, total // sharing)
     if marking == "rows":
-        worth = tuple(evenly(total, rows))
+        shares = iter(evenly(total, sharing))
+        worth = tuple(next(shares) if earns else 0 for earns in earning)
         cells = tuple((0,) * len(row) for row in content.known)
         return CellWorth(step, total, content, cells, worth, slip, slip)
-    all_known = tuple((True,) * len(row) for row in content.known)
+    all_known = tuple(
+        (earns,) * len(row) for earns, row in zip(earning, content.known, strict=True)
+    )
     equal = Content(all_known, tuple((0,) * len(row) for row in content.known))
     cells = _cells(equal, evenly(total, equal.count))
     return CellWorth(step, total, equal, cells, (0,) * rows, max(1, total // equal.count), slip)
@@ -113,7 +117,7 @@ def _steps(content: Content, points: float) -> tuple[float, int]:
 
     It does not depend on the answer.
     """
-    rows, cells = content.usual or (len(content.known), content.most or content.count)
+    rows, cells = content.usual or (sum(content.earning), content.most or content.count)
     is_coarse = points >= max(POINTS_PER_ROW * rows, POINTS_PER_CELL * cells)
     quarters = round(points / QUARTER)
     if is_coarse and abs(points - quarters * QUARTER) < _ROUNDING_ERROR:
@@ -153,7 +157,9 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
     groups = evenly(left, len(counts))
     besides = [0] * rows
     for share, number in zip(groups, counts, strict=True):
-        members = [i for i, row in enumerate(content.groups) if row[0] == number]
+        members = [
+            i for i, row in enumerate(content.groups) if row[0] == number and content.earning[i]
+        ]
         for i, steps in zip(members, evenly(share, len(members)), strict=True):
             besides[i] = steps
     if is_fixed:

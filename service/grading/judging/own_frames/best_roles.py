@@ -1,6 +1,7 @@
 """Choose the roles of the submitted rows that give the nearest valid table."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from service.catalogue import Joint
 from service.catalogue.parts.dh_table import DhTableSpec
@@ -50,7 +51,10 @@ def _best_as_written(
     if other is None or _pairing(other) == _pairing(roles):
         return roles, nearest
     found = nearest_for_roles(other, convention, freedom, grading)
-    return (other, found) if found.cost + price < nearest.cost else (roles, nearest)
+    lost = min(found.lost, nearest.lost)
+    if found.cost + price < nearest.cost:
+        return other, replace(found, lost=lost)
+    return roles, replace(nearest, lost=lost)
 
 
 def roles_in(
@@ -81,7 +85,8 @@ def nearest_with_tool_row(
     if nearest.cost < WRONG_CELL or len(roles) >= usual_rows(convention, grading):
         return nearest
     longer = nearest_for_roles((*roles, Role(None, None)), convention, freedom, grading)
-    return longer if longer.cost + WRONG_CELL <= nearest.cost else nearest
+    is_longer = longer.cost + WRONG_CELL <= nearest.cost
+    return replace(longer if is_longer else nearest, lost=min(longer.lost, nearest.lost))
 
 
 def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple[StudentRow, ...]:

@@ -82,6 +82,7 @@ def written_table(
     of=Rereadable,
     rank=10,
     code="other_convention",
+    rule="convention",
     means="the table follows the other convention: standard instead of modified, or modified "
     "instead of standard",
     example=("three-link-cartesian", "table", {"1/alpha": "0", "3/alpha": "-90deg"}, "degrees"),
@@ -103,6 +104,7 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     of=Rereadable,
     rank=20,
     code="degrees_as_radians",
+    rule="angle_unit",
     means="all angles are numbers of degrees, but were read in radians",
     example=(
         "stanford-arm",
@@ -129,6 +131,7 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     of=Rereadable,
     rank=30,
     code="radians_as_degrees",
+    rule="angle_unit",
     means="all angles are numbers of radians, but were read in degrees",
     example=(
         "stanford-arm",

@@ -7,6 +7,16 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from service.expressions import AngleUnit, Kind
+from service.grading.reading.tables.words import (
+    ANGLE_UNITS,
+    ASIDES,
+    FILLERS,
+    LETTERS,
+    METRES,
+    PLACES,
+    TERMS,
+    in_plain_words,
+)
 
 LABEL: Final = "label"
 ASIDE: Final = "aside"
@@ -22,6 +32,9 @@ _LONGEST: Final = 60
 _SIGNS: Final = str.maketrans(
     {"⍺": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
 )
+# An accent in LaTeX: \'e. And "n°", a number in French, Spanish and Italian.
+_ACCENT: Final = re.compile(r"\\['`\"^~](?=[a-z{])")
+_NUMERO: Final = re.compile(r"(?<![a-z])n\s?°")
 _STYLE: Final = re.compile(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf)"
     r"(?![a-z])|\\[,;:! ]"
@@ -37,38 +50,11 @@ _NUMBER: Final = re.compile(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
 _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
 _DIGITS_OR_OPERATORS: Final = re.compile(r"[0-9+\-*/=^]")
 
-_ANGLE_UNITS: Final[Mapping[str, AngleUnit]] = {
-    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°"), "degrees"),
-    **dict.fromkeys(("rad", "rads", "radian", "radians"), "radians"),
-}  # fmt: skip
-METRES: Final[Mapping[str, float]] = {
-    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
-    **dict.fromkeys(("dm",), 0.1),
-    **dict.fromkeys(("cm", "centimetre", "centimetres", "centimeter", "centimeters"), 0.01),
-    **dict.fromkeys(("mm", "millimetre", "millimetres", "millimeter", "millimeters"), 0.001),
-    **dict.fromkeys(("in", "inch", "inches"), 0.0254),
-    **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
-}
-_UNIT_NAMES: Final = "|".join(sorted((*_ANGLE_UNITS, *METRES), key=len, reverse=True))
+_UNIT_NAMES: Final = "|".join(sorted((*ANGLE_UNITS, *METRES), key=len, reverse=True))
 _BRACKETED_UNIT: Final = re.compile(rf"[(\[]\s{{0,4}}(?:in\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
 # "in" before a unit is a preposition, not inches.
 _TRAILING_UNIT: Final = re.compile(
     rf"(?:[\s,;:/_]|(?<=[^a-z]))(?:in\s)?({_UNIT_NAMES})\s{{0,4}}$|(°)\s{{0,4}}$"
-)
-
-_LETTERS: Final[Mapping[str, str]] = {
-    "a": "a", "r": "a", "alpha": "alpha", "al": "alpha", "d": "d", "theta": "theta",
-    "th": "theta", "q": "theta",
-}  # fmt: skip
-_TERMS: Final[Mapping[str, str]] = {
-    "length": "a", "twist": "alpha", "offset": "d", "angle": "theta", "rotation": "theta",
-}  # fmt: skip
-_PLACES: Final = frozenset(
-    {"link", "joint", "row", "frame", "axis", "index", "no", "nr", "number", "name", "label", "#"}
-)
-_FILLERS: Final = frozenset({"of", "the", "about", "along", "parameter", "value", "in"})
-_ASIDE: Final = re.compile(
-    r"(?:joint )?(?:type|variables?|range|limits?)|comments?|notes?|remarks?|home(?: position)?"
 )
 
 
@@ -87,7 +73,7 @@ class Header:
     @property
     def angle_unit(self) -> AngleUnit | None:
         """The unit of angles in the header, if there is one."""
-        return _ANGLE_UNITS.get(self.unit)
+        return ANGLE_UNITS.get(self.unit)
 
     @property
     def metres(self) -> float | None:
@@ -120,7 +106,7 @@ def read_header(text: str) -> Header | None:
     if len(text) > _LONGEST:
         return None
     plain, unit = _plain(text)
-    if _ASIDE.fullmatch(plain):
+    if ASIDES.fullmatch(plain):
         return Header(ASIDE)
     found: set[str] = set()
     terms: set[str] = set()
@@ -128,17 +114,17 @@ def read_header(text: str) -> Header | None:
     places = False
     for word in _WORD.findall(plain):
         if glued := _GLUED.fullmatch(word):
-            found.add(_LETTERS[glued[1]])
+            found.add(LETTERS[glued[1]])
             indices.append(glued[2])
-        elif word in _LETTERS:
-            found.add(_LETTERS[word])
-        elif word in _TERMS:
-            terms.add(_TERMS[word])
+        elif word in LETTERS:
+            found.add(LETTERS[word])
+        elif word in TERMS:
+            terms.add(TERMS[word])
         elif _INDEX.fullmatch(word):
             indices.append(word)
-        elif word in _PLACES:
+        elif word in PLACES:
             places = True
-        elif word not in _FILLERS and word not in _IGNORED:
+        elif word not in FILLERS and word not in _IGNORED:
             return None
     return _decided(found, terms, unit, indices, places=places)
 
@@ -165,7 +151,8 @@ def is_wordy(text: str) -> bool:
 
 def _plain(text: str) -> tuple[str, str]:
     """Return a header in small plain letters, and its unit; ``~`` replaces -1."""
-    plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS).lower()
+    plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS)
+    plain = _NUMERO.sub("no", _ACCENT.sub("", in_plain_words(plain)))
     plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
     plain = plain.replace("α", " alpha ").replace("θ", " theta ")
     for mark in "\\$`*":

@@ -9,7 +9,8 @@ from service.expressions.tree import Binary, Node, Number
 from service.grading.feedback import reading_error, reading_note
 from service.grading.numerics.tolerances import EXACT_VALUE, SAME_FACTOR
 from service.grading.reading.entry import Entry, Reader, unreadable
-from service.grading.reading.tables.column_headers import METRES, Header
+from service.grading.reading.tables.column_headers import Header
+from service.grading.reading.tables.words import METRES
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:

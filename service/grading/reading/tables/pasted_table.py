@@ -1,15 +1,18 @@
 """Read a pasted DH table as rows of entries. Spans count in the whole pasted text."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Final
 
+from service.expressions.errors import Span
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.pasted import pasted_grid, pasted_robot, place_of, placed, quoted
 from service.grading.reading.tables import column_headers
 from service.grading.reading.tables.cell_names import arranged_row, first_number, row_entries
 from service.grading.reading.tables.column_headers import (
-    METRES,
     QUANTITIES,
     SHOWN,
     Header,
@@ -18,9 +21,15 @@ from service.grading.reading.tables.column_headers import (
 )
 from service.grading.reading.tables.length_units import in_unit
 from service.grading.reading.tables.row_labels import in_order, is_label
+from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.kinematics.chain import COLUMNS
+
+# A comment of a program, and the separators between the names in it.
+_COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//)[ \t]{0,40}([^\n%#]{7,80})")
+_MOST_COMMENTS: Final = 40
+_BETWEEN_NAMES: Final = re.compile(r"[\s,;|&:]+")
 
 ColumnOrder = tuple[int | None, Header]
 
@@ -61,7 +70,28 @@ class PastedTable:
 def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     """Read the rows of a pasted DH table; see ``table_of``. Raises GridError if there is none."""
     robot = pasted_robot(text, reader)
-    return table_of_robot(robot, reader) if robot else table_of(pasted_grid(text, reader), reader)
+    if robot:
+        return table_of_robot(robot, reader)
+    return table_of(pasted_grid(text, reader), reader, order_in_comments(text) or COLUMNS)
+
+
+def order_in_comments(text: str) -> Sequence[str] | None:
+    """Return the order of the columns in a comment such as ``% theta d a alpha``, or None.
+
+    Raises GridError if two comments name two orders.
+    """
+    found: dict[tuple[str, ...], Span] = {}
+    for comment in islice(_COMMENT.finditer(text), _MOST_COMMENTS):
+        headers = [read_header(word) for word in _BETWEEN_NAMES.split(comment[1].strip(" \t[]()"))]
+        names = [header.column if header and not header.unit else "" for header in headers]
+        for i in range(len(names) - len(COLUMNS) + 1):
+            order = tuple(names[i : i + len(COLUMNS)])
+            if sorted(order) == sorted(COLUMNS):
+                found[order] = comment.span(1)
+    if len(found) > 1:
+        message = "Two comments name the columns in two orders. Put headers above the columns."
+        raise GridError("unknown_header", message, [*found.values()][1])
+    return next(iter(found), None)
 
 
 def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
@@ -210,6 +240,7 @@ def _columns_by_headers(
                 row[i].whole,
             )
         places[header.column] = i
+    _check_names(row, places)
     missing = [SHOWN[column] for column in COLUMNS if column not in places]
     if missing:
         raise GridError(
@@ -224,6 +255,20 @@ def _columns_by_headers(
     if labels is None and found[0] is None:
         labels = 0
     return columns, labels, (*_left_aside(row, found), *_convention_hint(row, columns))
+
+
+def _check_names(row: Sequence[GridCell], places: Mapping[str, int]) -> None:
+    """Raise GridError for the columns α, d, θ, r of Khalil, in which d and r mean a and d."""
+    order = [places.get(column, -1) for column in ("alpha", "d", "theta", "a")]
+    name = row[order[-1]]
+    if -1 in order or order != sorted(order) or not name.text.strip("$\\ ").startswith("r"):
+        return
+    raise GridError(
+        "unknown_header",
+        "With the columns α, d, θ, r, some books call the link length d and the offset r, others "
+        "the offset d and the link length r. Use the headers a and d.",
+        name.whole,
+    )
 
 
 def _header(found: Sequence[Header | None], place: int) -> Header:
@@ -286,6 +331,9 @@ def _columns_in_order(
         "The columns have no headers and were read in the order a, α, d, θ. If yours is different, "
         "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
     )
+    if tuple(order) != tuple(COLUMNS):
+        shown = ", ".join(SHOWN[column] for column in order)
+        message = f"The columns were read in the order of your comment: {shown}."
     finding = _note("column_order", message, grid.rows[0][0])
     return columns, 0 if has_labels else None, (finding,)
 

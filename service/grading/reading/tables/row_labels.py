@@ -6,11 +6,16 @@ from collections.abc import Sequence
 from typing import Final
 
 from service.grading.feedback import Finding, reading_note
+from service.grading.reading.tables.words import PLACES, in_plain_words
 from service.grids import GridCell, GridError
 
 LAST: Final = 10_000
 _LONGEST: Final = 30
-_NUMBER: Final = re.compile(r"(?:(?:link|joint|row|frame|axis|no|[ijklnta#])[\s.]?)?(\d{1,2})\.?")
+_WORDS: Final = "|".join(sorted(PLACES - {"#", "name", "label"}, key=len, reverse=True))
+_NUMBER: Final = re.compile(rf"(?:(?:{_WORDS}|[ijklnta#])[\s.]?)?(\d{{1,2}})\.?")
+# 第1关节, and the numbers of Chinese.
+_ORDINAL: Final = re.compile(r"第\s?(\d{1,2})(?:\s?joint)?")
+_NUMERALS: Final = str.maketrans("一二三四五六七八九", "123456789")
 _STEP: Final = re.compile(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
 _END: Final = frozenset(
     {"e", "ee", "tool", "tcp", "tip", "end", "effector", "end effector", "end-effector", "n+1"}
@@ -24,7 +29,7 @@ def label_place(text: str) -> int | None:
     """
     if len(text) > _LONGEST:
         return None
-    plain = unicodedata.normalize("NFKC", text).lower()
+    plain = in_plain_words(unicodedata.normalize("NFKC", text).translate(_NUMERALS))
     for mark in "${}_\\()*`":
         plain = plain.replace(mark, "")
     plain = " ".join(plain.split())
@@ -32,7 +37,7 @@ def label_place(text: str) -> int | None:
         return LAST
     if step := _STEP.fullmatch(plain):
         return int(step[2]) if int(step[2]) == int(step[1]) + 1 else None
-    number = _NUMBER.fullmatch(plain)
+    number = _NUMBER.fullmatch(plain) or _ORDINAL.fullmatch(plain)
     return int(number[1]) if number else None
 
 

@@ -24,6 +24,7 @@ from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.reading.tables.pasted_table import (
     PastedTable,
     entries_of,
+    order_in_comments,
     table_of,
     table_of_robot,
 )
@@ -72,6 +73,11 @@ class StudentRow:
     def expressions(self) -> list[Expression | None]:
         """The expressions of the cells; None for a cell that could not be read."""
         return [entry.expression for entry in self.entries]
+
+    @property
+    def is_given_up(self) -> bool:
+        """True if the number of some cell is wrong in any frames (``GIVEN_UP``)."""
+        return any(entry is GIVEN_UP for entry in self.entries)
 
     @property
     def has_decimal(self) -> bool:
@@ -180,7 +186,10 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
     try:
         robot = pasted_robot(text, reader)
         grid = robot.grid if robot else pasted_grid(text, reader)
-        pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader)
+        order = None if robot else order_in_comments(text)
+        pasted = (
+            table_of_robot(robot, reader) if robot else table_of(grid, reader, order or COLUMNS)
+        )
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
@@ -199,7 +208,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
             return StudentTable((), _NO_ROWS, None)
 
     table = read(pasted, reader)
-    return table if pasted.is_named else replace(table, reread=reread)
+    return table if pasted.is_named or order else replace(table, reread=reread)
 
 
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:
@@ -255,11 +264,13 @@ ZERO = Entry(
 
 # The entry of a cell whose number was computed instead of read.
 COMPUTED = Entry(read_expression(0, Vocabulary([])))
+# The entry of a cell whose number is wrong in any frames, to see what the other cells are worth.
+GIVEN_UP = Entry(read_expression(0, Vocabulary([])))
 
 
-def computed_row(values: Table) -> StudentRow:
+def computed_row(values: Table, entry: Entry = COMPUTED) -> StudentRow:
     """Return a row with the numbers ``(4, SAMPLES)``, as if a student had submitted them."""
-    return StudentRow((COMPUTED,) * len(COLUMNS), values)
+    return StudentRow((entry,) * len(COLUMNS), values)
 
 
 _NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))

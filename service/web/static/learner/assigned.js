@@ -58,12 +58,13 @@ export function handedIn({ course, exercise }, place, showSolution) {
  * @param {Front.Own} own
  */
 export async function report(service, place, { course, exercise: own }) {
+  const assigned = service.within(place.path);
   const [found, exercise] = await Promise.all([
     service.attempt(place.attempt ?? ""),
-    service.exercise(place.exercise).catch(() => null),
+    assigned.exercise(place.exercise).catch(() => null),
   ]);
   const attempt = own.attempts.find(({ id }) => id === found.attempt.id);
-  const drawn = new RecordedReport(exercise, found.submission, service);
+  const drawn = new RecordedReport(exercise, found.submission, assigned);
   drawn.show(found.report);
   const facts = attempt
     ? [attemptName(own, attempt.id), momentIn(attempt.at, course.zone), attemptPoints(attempt, own)].join(" · ")

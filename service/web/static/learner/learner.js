@@ -4,11 +4,12 @@ import { byId, h, visible } from "../shared/dom.js";
 import { Service } from "../shared/service.js";
 import { ownState } from "../student/handin/own_state.js";
 import { back, form, handedIn, report, solution } from "./assigned.js";
-import { forgetKey, placeIn, takeKey } from "./link_key.js";
+import { forgetKey, placeIn, takeKey, takePageKey } from "./link_key.js";
 import { overview } from "./overview.js";
 
 const HOME = new URL("../", import.meta.url).href;
 const main = byId("learner", HTMLElement);
+const isLaunched = takePageKey();
 let key = takeKey();
 let turn = 0;
 const service = new Service(HOME, () => key);
@@ -22,7 +23,7 @@ async function show() {
   try {
     const view = await service.own();
     const shown = place ? await exercise(view, place) : overview(view);
-    if (now === turn) put(...shown, h("p", { class: "leave" }, signOut()));
+    if (now === turn) put(...shown, ...(isLaunched ? [] : [h("p", { class: "leave" }, signOut())]));
   } catch (error) {
     if (now === turn) failed(error);
   }
@@ -31,6 +32,10 @@ async function show() {
 
 /** @param {Error & { status?: number }} error */
 function failed(error) {
+  if ((error.status === 401 || error.status === 403) && isLaunched) {
+    const told = "Open it again from your course. What you have handed in is not lost.";
+    return advise("The page was open for too long", told);
+  }
   if (error.status === 401 || error.status === 403) {
     const told = "It has expired, or was replaced by a newer one. Use the newest link that you got, or ask your " +
       "lecturer for a new one. What you have handed in is not lost.";

@@ -5,9 +5,23 @@ const LINK = /^#(dhg_[\w.-]+)$/;
 const PLACE = /^#\/([^/]+)\/([^/]+)\/([^/]+)(?:\/([^/]+))?$/;
 
 let inMemory = "";
+let isOfPage = false;
+
+/** Return true if the platform of a course has opened the page, with a key in it. It is only kept in memory. */
+export function takePageKey() {
+  const { key = "", place = "" } = document.getElementById("learner")?.dataset ?? {};
+  if (key) {
+    inMemory = key;
+    isOfPage = true;
+    document.getElementById("learner")?.removeAttribute("data-key");
+    if (place && !location.hash) history.replaceState(null, "", place);
+  }
+  return isOfPage;
+}
 
 /** Return the key of the link in the address, or of an earlier one in this tab; an empty text if there is none. */
 export function takeKey() {
+  if (isOfPage) return inMemory;
   const [, key] = LINK.exec(location.hash) ?? [];
   try {
     if (key) sessionStorage.setItem(NAME, key);

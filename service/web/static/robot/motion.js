@@ -6,18 +6,19 @@ const PICTURES = 30;
 const REQUESTS = 3;
 
 /**
- * Return a picture of an answer: `{frames, values, mechanism}`; each may be null.
+ * Return a picture of an answer: `{frames, values, mechanism, placed}`; each may be null.
  *
  * @param {Api.Frames} answer
  * @param {number} [i]
  * @returns {Front.Picture}
  */
 export function pictureOf(answer, i = 0) {
-  const { table, mechanism } = answer;
+  const { table, mechanism, placed } = answer;
   return {
     frames: table?.frames[i] ?? null,
     values: table?.values[i] ?? null,
     mechanism: mechanism?.configurations[i] ?? null,
+    placed: placed?.frames[i] ?? null,
   };
 }
 
@@ -97,6 +98,7 @@ export function between(from, to, share) {
   /** @type {(a: number[][], b: number[][]) => number[][]} */
   const points = (a, b) => a.map((each, i) => point(each, b[i]));
   const after = to.frames;
+  const placed = to.placed ?? null;
   const one = from.mechanism;
   const other = to.mechanism;
   return {
@@ -113,6 +115,7 @@ export function between(from, to, share) {
       tool_direction: direction(one.tool_direction, other.tool_direction),
       frames: one.frames.map((frame, i) => frameBetween(frame, other.frames[i], point)),
     },
+    placed: placed && (from.placed?.map((frame, i) => frameBetween(frame, placed[i], point)) ?? null),
   };
 }
 
@@ -139,6 +142,19 @@ function frameBetween(from, to, point) {
   const x = unit(mixedX.map((value, i) => value - along * z[i]));
   const y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]];
   return [0, 1, 2].map((i) => [x[i], y[i], z[i], origin[i]]);
+}
+
+/**
+ * Return a size for the parts of a chain without a mechanism.
+ *
+ * @param {Front.Frame[]} frames
+ */
+export function sizeOf(frames) {
+  const origins = frames.map((frame) => column(frame, 3));
+  const spans = [0, 1, 2].map((i) =>
+    Math.max(0, ...origins.map((each) => each[i])) - Math.min(0, ...origins.map((each) => each[i]))
+  );
+  return 0.9 * Math.hypot(...spans) || 1;
 }
 
 /** @param {number[]} a @param {number[]} b */

@@ -143,14 +143,14 @@ function linkOf(from, to, convention) {
   return [start, start.map((value, i) => value + far * first[i]), end];
 }
 
-/** The frames of a table with their names. */
+/** The frames of a table, or those that the student placed, with their names. */
 export class FramesShape {
-  /** @param {Front.Shapes} shapes @param {number} count @param {number} length */
-  constructor(shapes, count, length) {
+  /** @param {Front.Shapes} shapes @param {string[]} names @param {number} length */
+  constructor(shapes, names, length) {
     this.length = length;
     this.group = new Group();
-    this.frames = Array.from({ length: count }, () => shapes.frame(length));
-    this.labels = Array.from({ length: count }, (_, i) => shapes.label(`{${i}}`, "ink", 18));
+    this.frames = names.map(() => shapes.frame(length));
+    this.labels = names.map((name) => shapes.label(`{${name}}`, "ink", 18));
     this.group.add(...this.frames, ...this.labels);
   }
 

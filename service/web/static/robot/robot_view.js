@@ -3,7 +3,9 @@
 
 import { h, message } from "../shared/dom.js";
 import { ViewWords } from "./frames/view_words.js";
-import { column, pictureOf, Sweep } from "./motion.js";
+import { pictureOf, sizeOf, Sweep } from "./motion.js";
+import { leftOutText } from "./placing/placed_words.js";
+import { PlacingLoader } from "./placing/placing_loader.js";
 import { RowLoader } from "./rows/row_loader.js";
 import { Stage } from "./stage.js";
 import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
@@ -43,7 +45,7 @@ export class RobotView {
    */
   constructor(host) {
     this.host = host;
-    this.words = new ViewWords((text) => host.announce?.(text));
+    this.words = new ViewWords((text) => this.rows.isOpen || host.announce?.(text)); // the player of rows has its own words
     this.stage = new Stage((theme) => this.#drawing(theme), this.words.text.id);
     this.told = h("p", { class: "told" });
     const [draw, build] = [
@@ -51,6 +53,7 @@ export class RobotView {
       () => this.#answer && this.picture && this.#showScene(this.#answer, this.picture),
     ];
     this.rows = new RowLoader({ host, isFlat: () => this.stage.isFlat, draw, build });
+    this.placing = new PlacingLoader(host, this.stage);
     this.numbers = new PoseNumbers();
     this.sliders = new JointSliders(this);
     this.symbols = new SymbolFields((name, value) => this.#chosen(name, value), host.descriptions);
@@ -63,6 +66,7 @@ export class RobotView {
       "Home configuration",
     );
     this.given = this.#switch("Given frames", true);
+    this.placed = this.#switch("Your frames", true);
     this.over = h("div", { class: "switches" }, this.robot.label, this.beside.label);
     this.element = h(
       "section",
@@ -74,7 +78,7 @@ export class RobotView {
       this.told,
       this.rows.element,
       this.sliders.element,
-      h("div", { class: "switches" }, this.home, this.given.label, this.over),
+      h("div", { class: "switches" }, this.home, this.given.label, this.placed.label, this.over),
       this.frames.element,
       this.numbers.element,
       this.symbols.element,
@@ -85,6 +89,7 @@ export class RobotView {
   async open() {
     await this.stage.open();
     this.rows.open();
+    this.placing.open();
     await this.#refresh();
   }
 
@@ -93,6 +98,7 @@ export class RobotView {
     clearTimeout(this.#timer);
     this.words.close();
     this.rows.close();
+    this.placing.close();
     this.stage.close();
     this.element.remove();
   }
@@ -240,6 +246,7 @@ export class RobotView {
     this.picture = pictureOf(answer);
     this.words.show(answer);
     this.given.label.hidden = this.stage.isFlat || !answer.mechanism?.frames.length;
+    this.placed.label.hidden = this.stage.isFlat || !answer.placed?.labels.length;
     this.sliders.show(answer.joints, this.#values);
     this.symbols.show(answer.symbols);
     this.#showTold(answer);
@@ -251,7 +258,7 @@ export class RobotView {
   }
 
   /** @param {Api.Frames} answer @param {Front.Picture} picture */
-  #showScene({ joints, mechanism, table }, picture) {
+  #showScene({ joints, mechanism, table, placed }, picture) {
     const { frames } = picture;
     const kinds = new Map(joints.map(({ joint, kind }) => [joint, kind]));
     // The sizes of parts do not change while joints move.
@@ -269,6 +276,8 @@ export class RobotView {
       shown: (i) => this.frames.isShown(i),
       labels: mechanism?.frames ?? [],
       given: () => this.given.box.checked,
+      placed: placed?.labels ?? [],
+      shownPlaced: () => this.placed.box.checked,
       gap: (shown) => this.words.gap(shown),
       row: this.rows.shape,
       shownRow: (shown) => this.rows.shown(shown),
@@ -345,7 +354,7 @@ export class RobotView {
   }
 
   /** @param {Api.Frames} answer */
-  #showTold({ table }) {
+  #showTold({ table, placed }) {
     const [cell] = table?.unread ?? [];
     const place = cell ? `Row ${cell.row}, ${cell.column}: ` : "";
     const reason = table?.error?.message ?? (cell && `${place}${cell.error.message}`);
@@ -356,7 +365,9 @@ export class RobotView {
       : reason && table?.frames[0]?.length
       ? " The view shows the frames before it."
       : "";
-    this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
+    this.told.replaceChildren(
+      ...message([reason && reason + ends, leftOutText(placed), ...lost].filter(Boolean).join(" ")),
+    );
     this.told.hidden = !this.told.textContent;
   }
 
@@ -383,17 +394,4 @@ const isUnread = ({ table }) => Boolean(table?.error || table?.unread.length);
  */
 function withoutFormulas({ table, ...body }) {
   return table ? { ...body, table: { ...table, formulas: false } } : body;
-}
-
-/**
- * Return a size for the parts of a chain without a mechanism.
- *
- * @param {Front.Frame[]} frames
- */
-function sizeOf(frames) {
-  const origins = frames.map((frame) => column(frame, 3));
-  const spans = [0, 1, 2].map((i) =>
-    Math.max(0, ...origins.map((each) => each[i])) - Math.min(0, ...origins.map((each) => each[i]))
-  );
-  return 0.9 * Math.hypot(...spans) || 1;
 }

@@ -21,6 +21,8 @@ import { Shapes, vector } from "./shapes.js";
 
 const FIELD_OF_VIEW = 28;
 const STEEPEST = 1.55;
+// Half the length at which a click is on a joint axis, as a share of the size.
+const AXIS = 0.3;
 // Without a graphics card, the scene is drawn coarsely while something moves, and finely after this many
 // milliseconds of rest.
 const AT_REST = 200;
@@ -85,7 +87,7 @@ export class RobotScene {
 
   /**
    * Draw a subject: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot, labels, given,
-   * gap, row, shownRow}`.
+   * placed, shownPlaced, gap, row, shownRow}`.
    *
    * @param {Front.Subject} subject
    * @param {Front.Picture} picture
@@ -100,7 +102,7 @@ export class RobotScene {
 
   #build() {
     this.#clear();
-    const { kinds, rowKinds, size, convention, solid, labels, row } = this.#subject;
+    const { kinds, rowKinds, size, convention, solid, labels, placed, row } = this.#subject;
     const { frames, mechanism } = this.#picture;
     this.palette = paletteOf(this.stage);
     const [below, above] = (this.shapes = [
@@ -110,10 +112,12 @@ export class RobotScene {
     this.mechanism = mechanism && new MechanismShape(below, kinds, size, mechanism);
     const count = frames?.length ?? 0;
     this.chain = count > 1 ? new ChainShape(solid ? below : above, rowKinds, convention, size, count, solid) : null;
-    this.frames = count ? new FramesShape(above, count, 0.2 * size) : null;
+    this.frames = count ? new FramesShape(above, [...Array(count).keys()].map(String), 0.2 * size) : null;
     if (this.mechanism) this.solids.add(this.mechanism.group);
     if (this.chain) (solid ? this.solids : this.over).add(this.chain.group);
     if (this.frames) this.over.add(this.frames.group);
+    this.placed = placed.length ? new FramesShape(above, placed, 0.2 * size) : null;
+    if (this.placed) this.over.add(this.placed.group);
     // The labels of later parts give way to those of earlier ones.
     this.ghosts = mechanism && new GhostFrames(above, labels, 0.26 * size);
     this.gap = mechanism && new GapShape(above, size, this.stage);
@@ -124,7 +128,7 @@ export class RobotScene {
   }
 
   #clear() {
-    const parts = [this.mechanism, this.chain, this.frames, this.ghosts, this.gap, this.row];
+    const parts = [this.mechanism, this.chain, this.frames, this.placed, this.ghosts, this.gap, this.row];
     for (const part of parts) part?.group.removeFromParent();
     this.gap?.dispose();
     this.row?.dispose();
@@ -145,10 +149,11 @@ export class RobotScene {
    */
   move(picture) {
     this.#picture = picture;
-    const { shown, robot, beside, given, gap, shownRow } = this.#subject;
+    const { shown, robot, beside, given, shownPlaced, gap, shownRow } = this.#subject;
     if (this.mechanism && picture.mechanism) this.mechanism.put(picture.mechanism);
     if (this.ghosts && picture.mechanism) this.ghosts.put(picture.mechanism.frames);
     if (this.ghosts) this.ghosts.group.visible = given();
+    this.placed?.put(picture.placed ?? [], shownPlaced);
     this.gap?.put(beside() ? null : gap(picture));
     if (this.mechanism) this.mechanism.group.visible = robot();
     if (picture.frames) {
@@ -165,13 +170,26 @@ export class RobotScene {
 
   /** Return all points that the view must contain. */
   #points() {
-    const { mechanism, frames } = this.#picture;
+    const { mechanism, frames, placed } = this.#picture;
     const { beside } = this.#subject;
     const robot = mechanism
       ? [mechanism.base, mechanism.tool, ...mechanism.centres, ...mechanism.links.flat()].map(vector)
       : [];
     const chain = (frames ?? []).map((frame) => vector(column(frame, 3)));
+    robot.push(...(placed ?? []).map((frame) => vector(column(frame, 3))));
     return [...robot, ...chain.map((point) => (beside() ? point.add(this.aside) : point))];
+  }
+
+  /** Return the two ends of each joint axis on the stage, in pixels from its upper left corner. */
+  axesOnStage() {
+    const { centres = [], axes = [] } = this.#picture.mechanism ?? {};
+    this.camera.updateMatrixWorld();
+    return centres.map((centre, i) =>
+      [-AXIS, AXIS].map((share) => {
+        const end = vector(centre).addScaledVector(vector(axes[i]), share * this.#subject.size).project(this.camera);
+        return [((end.x + 1) / 2) * this.size.x, ((1 - end.y) / 2) * this.size.y];
+      })
+    );
   }
 
   /** True if all points are in the picture. */

@@ -59,6 +59,11 @@ export class Stage {
     }
   }
 
+  /** The scene if it is in 3D and open, or else null. */
+  get scene() {
+    return this.isFlat ? null : /** @type {Front.RobotScene | null} */ (this.#scene);
+  }
+
   /** @param {string} reason */
   async #openFlat(reason) {
     this.isFlat = true;

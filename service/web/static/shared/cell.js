@@ -16,7 +16,7 @@ export class Cell {
    * @param {Front.CellOwner<Place>} owner
    */
   constructor(place, owner) {
-    const { id, spoken } = place;
+    const { id, spoken, offers, isGiven } = place;
     this.place = place;
     this.owner = owner;
     /** @type {Front.Reading | null} */
@@ -33,6 +33,8 @@ export class Cell {
       autocapitalize: "off",
       autocorrect: "off",
       spellcheck: "false",
+      readonly: isGiven,
+      list: offers ? `${id}-offers` : null,
       "aria-label": spoken,
       "aria-describedby": `${id}-shown`,
       oninput: () => this.#typed(),
@@ -44,6 +46,7 @@ export class Cell {
     });
     const entry = h("div", { class: "entry" }, this.echo, this.input, this.sign);
     this.element = h("td", {}, entry, this.shown);
+    if (offers) entry.append(h("datalist", { id: `${id}-offers` }, ...offers.map((value) => h("option", { value }))));
   }
 
   get text() {

@@ -18,13 +18,26 @@ export class ServiceError extends Error {
 export class Service {
   /**
    * `base` is the address of the service, with a slash at its end. `token` returns the learner's token, or null.
+   * With `assignment`, "course/assignment", exercises are the learner's own variants in it.
    *
    * @param {string} base
    * @param {() => string | null} [token]
+   * @param {() => string | null} [assignment]
    */
-  constructor(base, token = () => null) {
+  constructor(base, token = () => null, assignment = () => null) {
     this.base = base;
     this.token = token;
+    this.assignment = assignment;
+  }
+
+  /** Return this service for the exercises of an assignment. @param {string} path "course/assignment" */
+  within(path) {
+    return new Service(this.base, this.token, () => path);
+  }
+
+  /** True if exercises are those of an assignment of a learner. */
+  get isAssigned() {
+    return Boolean(this.token() && this.assignment());
   }
 
   /** @param {string} path */
@@ -34,27 +47,71 @@ export class Service {
 
   /** @param {string} id @returns {Promise<Api.Exercise>} */
   exercise(id) {
-    return this.#ask(`v1/exercises/${encodeURIComponent(id)}`);
+    return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}`), undefined, { own: this.isAssigned });
   }
 
   /** @param {Api.PreviewRequest} body @returns {Promise<Api.Preview>} */
   preview(body) {
-    return this.#ask("v1/preview", body);
+    return this.#ask(this.#own("v1/preview"), body);
   }
 
   /** @param {Api.PreviewManyRequest} body @returns {Promise<Api.PreviewManyResponse>} */
   previews(body) {
-    return this.#ask("v1/previews", body);
+    return this.#ask(this.#own("v1/previews"), body);
   }
 
   /** @param {string} id @param {Api.GradeRequest} body @returns {Promise<Api.Report>} */
   grade(id, body) {
-    return this.#ask(`v1/exercises/${encodeURIComponent(id)}/grade`, body);
+    return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/grade`), body);
+  }
+
+  /** @param {string} id @param {Api.HintRequest} body @returns {Promise<Api.Hint>} */
+  hint(id, body) {
+    return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/hints`), body);
+  }
+
+  /** @param {string} id @param {Api.ChoicesRequest} body @returns {Promise<Api.FrameChoices>} */
+  choices(id, body) {
+    return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/choices`), body);
   }
 
   /** @param {Api.FramesRequest} body @returns {Promise<Api.Frames>} */
   frames(body) {
-    return this.#ask("v1/frames", body);
+    return this.#ask(this.#own("v1/frames"), body);
+  }
+
+  /** The drawing at an address of this service, as an address that needs no token. Revoke it after use. @param {string} address */
+  async picture(address) {
+    const headers = { Authorization: `Bearer ${this.token()}` };
+    /** @type {RequestInit} */
+    const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
+    const answer = await fetch(this.#own(address), options);
+    if (!answer.ok) throw failure(answer.status, {});
+    // The policy of our pages allows pictures of this kind, and none in data URLs.
+    return URL.createObjectURL(await answer.blob());
+  }
+
+  /** Return the path with the assignment, if there is one. @param {string} path */
+  #own(path) {
+    if (!this.isAssigned) return path;
+    const [course = "", assignment = ""] = (this.assignment() ?? "").split("/");
+    return `${path}${path.includes("?") ? "&" : "?"}${new URLSearchParams({ course, assignment })}`;
+  }
+
+  /**
+   * A generated robot; the next one after the id `after`, if possible with the situation `favour`.
+   *
+   * @param {number} level
+   * @param {string} convention
+   * @param {string | null} after
+   * @param {string | null} favour
+   * @returns {Promise<Api.PracticeRobot>}
+   */
+  nextRobot(level, convention, after, favour) {
+    const query = new URLSearchParams({ level: String(level), convention });
+    if (after) query.set("after", after);
+    if (favour) query.set("favour", favour);
+    return this.#ask(`v1/practice/next?${query}`, undefined, { own: true });
   }
 
   /** The courses and assignments of the learner with this token. @returns {Promise<Api.OwnCourses>} */

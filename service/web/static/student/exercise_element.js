@@ -12,12 +12,14 @@ import { PageColours } from "./embedding/page_colours.js";
 import { Form } from "./form/form.js";
 import { textsOf } from "./handin/cell_texts.js";
 import { HandIn } from "./handin/hand_in.js";
-import { offer } from "./handin/notice.js";
+import { offer, trouble } from "./handin/notice.js";
 import { PartView } from "./part_view.js";
+import { PracticeBar } from "./practice/practice_bar.js";
 import { Previewer } from "./previewer.js";
+import { ATTRIBUTES } from "./embedding/attributes.js";
 import { lock } from "./embedding/readonly.js";
 import { typeset } from "../typeset/names.js";
-import { RobotFigure, tableToDraw, tableWords } from "./robot_figure.js";
+import { answersToDraw, RobotFigure, tableWords } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
 import { answersIn, Store } from "../shared/storage.js";
 
@@ -29,7 +31,7 @@ const HOME = new URL("../", import.meta.url).href;
 const SAVED_AFTER = 250;
 
 export class DhExercise extends HTMLElement {
-  static observedAttributes = ["exercise", "api", "parts", "readonly", "theme", "assignment", "submit", "token"];
+  static observedAttributes = ATTRIBUTES;
 
   /** @type {PartView[]} */
   #parts = [];
@@ -69,9 +71,10 @@ export class DhExercise extends HTMLElement {
     // Shows the page's own content until the exercise has been loaded.
     this.main = h("div", { class: "exercise" }, h("slot"));
     this.state = h("div", { class: "state" });
+    this.practice = new PracticeBar(this);
     this.received = h("div", { class: "card notice" });
     const sheets = [TOKENS, STYLE, HAND_IN, PAPER].map((href) => h("link", { rel: "stylesheet", href }));
-    const outer = h("div", { class: "outer" }, this.state, this.main, this.live);
+    const outer = h("div", { class: "outer" }, this.practice.element, this.state, this.main, this.live);
     this.colours = new PageColours(this, outer, () => this.robot?.recolour());
     root.append(...sheets, outer);
   }
@@ -112,14 +115,17 @@ export class DhExercise extends HTMLElement {
   /** @param {number} turn */
   async #load(turn) {
     const id = this.getAttribute("exercise");
-    if (!id) return this.#tell("No exercise is chosen", "Set the attribute “exercise” to the id of an exercise.");
+    if (!id && !this.hasAttribute("practice")) {
+      return this.#tell("No exercise is chosen", "Set the attribute “exercise” to the id of an exercise.");
+    }
     const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
-    this.service = new Service(base, () => this.getAttribute("token"));
+    this.service = new Service(base, () => this.getAttribute("token"), () => this.getAttribute("assignment"));
     this.main.setAttribute("aria-busy", "true");
     this.state.replaceChildren(
       h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }),
     );
     try {
+      if (!id) return await this.practice.deal();
       const [exercise, handIn] = await Promise.all([this.service.exercise(id), HandIn.of(this, id)]);
       if (turn === this.#loading) this.#show(exercise, handIn);
       else handIn?.close();
@@ -140,18 +146,7 @@ export class DhExercise extends HTMLElement {
    */
   #tell(title, text = "", again = false) {
     this.main.hidden = !again;
-    const button = again
-      ? h("button", { type: "button", class: "quiet-button", onclick: () => this.#begin() }, "Try again")
-      : null;
-    this.state.replaceChildren(
-      h(
-        "div",
-        { class: "card trouble", role: "alert" },
-        h("p", {}, h("strong", {}, visible(title))),
-        text ? h("p", {}, visible(text)) : null,
-        button,
-      ),
-    );
+    this.state.replaceChildren(trouble(title, text, again ? () => this.#begin() : null));
   }
 
   #online() {
@@ -306,6 +301,7 @@ export class DhExercise extends HTMLElement {
     if (own) this.#restore(own);
     if (shared) this.#takeShared(shared, own);
     this.#outdated();
+    this.practice.show();
     handIn?.begin();
     this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
   }
@@ -319,7 +315,7 @@ export class DhExercise extends HTMLElement {
     const address = () => this.colours.figure(figureAddress);
     const host = {
       service: this.service,
-      body: () => ({ ...this.context(), ...tableToDraw(this.#parts) }),
+      body: () => ({ ...this.context(), ...answersToDraw(this.#parts) }),
       ...tableWords(symbols, () => this.#parts),
       announce: (/** @type {string} */ text) => this.announce(text),
     };
@@ -395,6 +391,9 @@ export class DhExercise extends HTMLElement {
         `${titles.get(part)}: ${verdict}, ${points(earned, most)} points.`,
     );
     this.form.rail.update();
+    if (!this.handIn || this.handIn.mayPractise) {
+      import("./hints/hints.js").then(({ offerHints }) => offerHints(this, filled, report)).catch(() => {});
+    }
     this.announce([...told, this.form.leadToSlip(filled)].join(" "));
   }
 }

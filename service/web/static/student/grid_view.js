@@ -4,6 +4,8 @@ import { h, points } from "../shared/dom.js";
 import { Cell, SIGNS } from "../shared/cell.js";
 import { typeset } from "../typeset/names.js";
 
+const HOME = new URL("../", import.meta.url).href;
+
 /**
  * Return the rows of a layout in order (`rows`), and their tables (`elements`).
  *
@@ -53,7 +55,21 @@ function gridElement(grid, part, owner, id, rows) {
 function headOf(column) {
   const seen = h("span", { "aria-hidden": column.spoken ? "true" : null }, h("i", {}, column.head));
   if (column.index) seen.append(h("sub", {}, column.index));
-  return h("th", { scope: "col" }, seen, column.spoken ? h("span", { class: "aloud" }, column.spoken) : null);
+  return h(
+    "th",
+    { scope: "col" },
+    seen,
+    column.spoken ? h("span", { class: "aloud" }, column.spoken) : null,
+    helpOf(column),
+  );
+}
+
+/** Return the link that explains a column; it opens beside the exercise. @param {Front.Column} column */
+function helpOf({ head, help }) {
+  if (!help) return null;
+  const name = `What is ${head}?`;
+  const href = new URL(help, HOME).href;
+  return h("a", { class: "what", href, target: "_blank", rel: "noopener", title: name, "aria-label": name }, "?");
 }
 
 /** A row with its cells, mark and points, and with the row of messages below it. */
@@ -70,9 +86,11 @@ export class RowView {
     this.label = row.label;
     this.name = row.spoken || part.title;
     this.sign = h("span", { class: "sign" });
-    this.worth = h("td", { class: "worth" });
+    this.isGiven = Boolean(row.isGiven);
+    this.worth = h("td", { class: "worth" }, this.isGiven && "given");
     this.cells = grid.columns.map((column, j) => {
-      const where = [column.spoken, row.spoken && grid.look === "table" ? `row ${row.spoken}` : row.spoken];
+      const name = row.spoken && grid.look === "table" ? `row ${row.spoken}` : row.spoken;
+      const where = [column.spoken, name, row.isGiven && "given"];
       return new Cell(
         {
           id: `${id}-${j}`,
@@ -82,6 +100,8 @@ export class RowView {
           quantity: row.quantity ?? column.quantity,
           spoken: where.filter(Boolean).join(", "),
           prefill: row.prefill?.[j],
+          offers: column.offers,
+          isGiven: row.isGiven,
         },
         owner,
       );
@@ -94,7 +114,13 @@ export class RowView {
       aloud,
       this.sign,
     );
-    this.element = h("tr", {}, head, ...this.cells.map((cell) => cell.element), this.worth);
+    this.element = h(
+      "tr",
+      { class: this.isGiven ? "given" : null },
+      head,
+      ...this.cells.map((cell) => cell.element),
+      this.worth,
+    );
     this.list = h("ul");
     // The messages leave the first and the last column free, so that the brackets of a matrix go on beside them.
     const isMatrix = grid.look === "matrix";
@@ -110,7 +136,7 @@ export class RowView {
    */
   mark(report, items = []) {
     this.setVerdict(report?.verdict ?? null);
-    this.worth.textContent = report?.max_points ? points(report.points, report.max_points) : "";
+    this.#showWorth(report?.max_points ? points(report.points, report.max_points) : "");
     const cells = new Map(report?.cells.map((cell) => [cell.label, cell]));
     for (const cell of this.cells) cell.mark(cells.get(cell.place.label) ?? null);
     this.list.replaceChildren(...items);
@@ -124,7 +150,12 @@ export class RowView {
   /** Remove the mark of the row, because a cell has changed. */
   outdated() {
     this.setVerdict(null);
-    this.worth.textContent = "";
+    this.#showWorth("");
+  }
+
+  /** @param {string} text */
+  #showWorth(text) {
+    this.worth.textContent = this.isGiven ? "given" : text;
   }
 
   /** @param {Api.Verdict | null} verdict */

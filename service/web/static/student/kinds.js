@@ -14,6 +14,17 @@ export const SPOKEN = {
 /** @type {Record<string, string>} */
 export const LETTERS = { a: "a", alpha: "α", d: "d", theta: "θ" };
 
+/** @type {Record<string, Omit<Front.Column, "label">>} */
+const FRAME_COLUMNS = {
+  axis: { head: "axis", spoken: "joint axis along which z lies", quantity: "number" },
+  z: { head: "z", spoken: "direction of z", quantity: "number" },
+  origin_x: { head: "o", index: "x", spoken: "x of the origin", quantity: "length" },
+  origin_y: { head: "o", index: "y", spoken: "y of the origin", quantity: "length" },
+  origin_z: { head: "o", index: "z", spoken: "z of the origin", quantity: "length" },
+  x: { head: "x", spoken: "direction of x", quantity: "number" },
+};
+const DIRECTIONS = ["+x", "-x", "+y", "-y", "+z", "-z"];
+
 /** @template Value @param {Value[]} values @param {number} size */
 const chunks = (values, size) =>
   Array.from({ length: Math.ceil(values.length / size) }, (_, i) => values.slice(i * size, (i + 1) * size));
@@ -40,7 +51,11 @@ const FORMS = {
         title: "",
         look: "table",
         columns: parameters(shape),
-        rows: shape.rows.map((label) => row(label, label === "e" ? "e, end effector" : label)),
+        rows: shape.rows.map((label) => ({
+          ...row(label, label === "e" ? "e, end effector" : label),
+          prefill: shape.given?.[label],
+          isGiven: Boolean(shape.given?.[label]),
+        })),
       }],
       choices: either
         ? {
@@ -52,6 +67,47 @@ const FORMS = {
       answer: (texts, choice) => ({
         rows: chunks(texts, shape.columns.length).map((values) => named(shape.columns, values)),
         ...(choice ? { convention: choice } : {}),
+      }),
+    };
+  },
+
+  /** @param {Api.FramesShape} shape @returns {Front.Layout} */
+  frames(shape) {
+    return {
+      grids: [{
+        title: "",
+        look: "table",
+        columns: shape.columns.map((label) => ({
+          label,
+          ...FRAME_COLUMNS[label],
+          offers: label === "axis" ? shape.joints : label === "z" || label === "x" ? DIRECTIONS : undefined,
+        })),
+        rows: shape.rows.map((label) => row(label, `frame ${label}`, `{${label}}`)),
+      }],
+      choices: null,
+      answer: (texts) =>
+        chunks(texts, shape.columns.length).map(([axis, z, ox, oy, oz, x], i) => (
+          { frame: shape.rows[i], axis, z, origin: [ox, oy, oz], x }
+        )),
+    };
+  },
+
+  /** @param {Api.FindSlipShape} shape @returns {Front.Layout} */
+  find_slip(shape) {
+    const given = shape.given ?? [];
+    const rows = shape.rows.map((label, i) => ({
+      ...row(label, label === "e" ? "e, end effector" : label),
+      prefill: given[i],
+    }));
+    return {
+      grids: [{ title: "The mended table", look: "table", columns: parameters(shape), rows }],
+      choices: null,
+      marks: given,
+      answer: (texts, marked) => ({
+        ...(marked ? { marked } : {}),
+        ...(texts.some((text) => text !== "")
+          ? { table: { rows: chunks(texts, shape.columns.length).map((values) => named(shape.columns, values)) } }
+          : {}),
       }),
     };
   },
@@ -152,6 +208,7 @@ function parameters(shape) {
     index: label === "a" || label === "alpha" ? before : "i",
     spoken: SPOKEN[label],
     quantity: QUANTITIES[label],
+    help: `learn-dh?convention=${shape.convention === "modified" ? "modified" : "standard"}#${label}`,
   }));
 }
 

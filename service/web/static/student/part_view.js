@@ -11,11 +11,14 @@ import { pasteBox } from "./form/paste_box.js";
 import { Pasting } from "./form/pasting.js";
 import { proposal } from "./form/proposals.js";
 import { ReadingLine } from "./form/reading_line.js";
+import { SlipMarks } from "./slip/slip_marks.js";
 import { target, undoKey } from "../shared/keyboard.js";
 import { typeset } from "../typeset/names.js";
 
 export class PartView {
   changedAt = 0;
+  /** @type {Front.Told[]} the messages of the report, with their places */
+  told = [];
   #quiet = false;
 
   /**
@@ -34,7 +37,10 @@ export class PartView {
     this.rows = this.grids.rows;
     this.cells = this.grids.cells;
     this.pasting = new Pasting(this);
-    this.choice = this.layout.choices ? this.#choiceField(this.layout.choices) : null;
+    const { choices, marks } = this.layout;
+    this.choice = choices ? this.#choiceField(choices) : null;
+    this.marks = marks ? new SlipMarks(this.layout.grids[0], marks, this.symbols, () => this.#chosen()) : null;
+    this.mended = h("div", { class: "grids", hidden: Boolean(marks) }, ...this.grids.elements);
     this.badge = h("span", { class: "badge", hidden: true });
     this.worth = h("span", { class: "points" }, `${points(0, part.points).split(" / ")[1]} points`);
     this.list = h("ul", { class: "messages", hidden: true });
@@ -46,9 +52,9 @@ export class PartView {
       { class: "body", id: `part-${part.id}-body` },
       h("div", { class: "prompt" }, ...html(part.prompt_html)),
       this.list,
-      this.choice,
+      this.choice ?? this.marks?.element,
       this.grids.tabs?.element,
-      h("div", { class: "grids" }, ...this.grids.elements),
+      this.mended,
       this.reading,
       host.form && this.cells.length > 1 ? pasteBox(part, (text) => this.pasting.whole(text, this.grids.first)) : null,
     );
@@ -134,6 +140,8 @@ export class PartView {
   }
 
   #showChoice() {
+    this.marks?.show(null);
+    this.mended.hidden = Boolean(this.marks?.isUntouched(this.grids.texts));
     const none = this.choice?.value === "none";
     for (const cell of this.cells) cell.input.disabled = none;
     this.element.classList.toggle("without-row", none);
@@ -141,7 +149,7 @@ export class PartView {
 
   /** The answer as the browser saves it. */
   get state() {
-    return { cells: this.grids.texts, choice: this.choice?.value ?? "" };
+    return { cells: this.grids.texts, choice: (this.choice ?? this.marks)?.value ?? "" };
   }
 
   /**
@@ -156,11 +164,16 @@ export class PartView {
     }
     const saved = this.cells.map((_, i) => state.cells[i] ?? "");
     const texts = this.host.form ? this.grids.shown(saved) : saved;
-    return this.#fill(this.cells.map((cell, i) => [cell, texts[i]]));
+    const changes = this.#fill(this.cells.map((cell, i) => [cell, texts[i]]));
+    if (this.marks) {
+      this.marks.value = state.choice;
+      this.#showChoice();
+    }
+    return changes;
   }
 
   get isEmpty() {
-    return this.choice?.value !== "none" && this.state.cells.every((text) => text.trim() === "");
+    return this.choice?.value !== "none" && !this.marks?.value && this.state.cells.every((text) => text.trim() === "");
   }
 
   /** The answer as it is posted. */
@@ -171,7 +184,8 @@ export class PartView {
 
   /** @param {[Front.PartCell, string][]} pairs */
   #fill(pairs) {
-    const changes = pairs.map(([cell, after]) => ({ target: cell, before: cell.text, after }));
+    const allowed = pairs.filter(([{ place }, after]) => !place.isGiven || after === place.prefill);
+    const changes = allowed.map(([cell, after]) => ({ target: cell, before: cell.text, after }));
     this.#quiet = true;
     for (const { target: cell, before, after } of changes) if (before !== after) cell.put(after);
     this.#quiet = false;
@@ -285,15 +299,17 @@ export class PartView {
    */
   showReport(report) {
     for (const cell of this.cells) cell.mark(null);
+    this.told = [];
     const rows = new Map(report.rows.map((row) => [row.label, row]));
     for (const view of this.rows) {
       const row = rows.get(view.label);
       view.mark(row ?? null, row ? this.#items(row, view) : []);
       rows.delete(view.label);
     }
+    this.marks?.show(rows.get("marked")?.verdict ?? null);
     const more = [...rows.values()].flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]);
     const items = [...report.feedback, ...more].map((each) =>
-      this.#item(each, this.#at(each), { verdict: report.verdict, rows: report.rows })
+      this.#item(each, this.#at(each), { verdict: report.verdict, rows: report.rows }, each.places?.[0])
     );
     if (report.follow_through) {
       items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
@@ -312,9 +328,11 @@ export class PartView {
    * @param {Api.Feedback} feedback
    * @param {Front.PartCell[]} cells
    * @param {Parameters<typeof item>[1]} options
+   * @param {Front.Topic} [at]
    */
-  #item(feedback, cells, options) {
+  #item(feedback, cells, options, { row, cell } = {}) {
     const made = item(feedback, { ...options, symbols: this.symbols, action: proposal(this, feedback, cells) });
+    this.told.push({ element: made, feedback, place: { row, cell } });
     for (const cell of cells) cell.tell(made);
     return made;
   }
@@ -335,8 +353,7 @@ export class PartView {
 
   /** @param {Api.RowReport} row @param {Front.RowView} view */
   #items(row, view) {
-    const { symbols } = this;
-    const own = row.feedback.map((each) => item(each, { verdict: row.verdict, symbols }));
+    const own = row.feedback.map((each) => this.#item(each, [], { verdict: row.verdict }, { row: row.label }));
     /** @type {Map<string, [Api.Feedback, Api.CellReport[]]>} */
     const told = new Map();
     for (const cell of row.cells) {
@@ -351,7 +368,10 @@ export class PartView {
       const cells = view.cells.filter(({ place }) => labels.includes(place.label));
       const repair = cells.length === 1 ? (/** @type {string} */ suggestion) => cells[0].repair(suggestion) : null;
       const place = view.cells.length > 1 ? cellsInWords(labels) : "";
-      return this.#item(each, cells, { place, verdict: reports[0].verdict, repair });
+      return this.#item(each, cells, { place, verdict: reports[0].verdict, repair }, {
+        row: row.label,
+        cell: labels[0],
+      });
     });
     return [...own, ...ofCells];
   }
@@ -373,6 +393,7 @@ export class PartView {
     this.setVerdict(null);
     this.list.hidden = true;
     for (const row of this.rows) row.mark(null);
+    this.marks?.show(null);
     this.grids.markTabs();
     this.worth.textContent = `${points(0, this.part.points).split(" / ")[1]} points`;
   }

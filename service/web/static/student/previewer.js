@@ -35,7 +35,8 @@ export class Previewer {
     const text = cell.text;
     const known = this.#known.get(this.#key(cell, text));
     this.#waiting.delete(cell);
-    if (text.trim() === "") return cell.understood(null);
+    // Names of joints and directions are not formulas.
+    if (text.trim() === "" || cell.place.offers) return cell.understood(null);
     if (known) return cell.understood(known);
     this.#waiting.set(cell, text);
     clearTimeout(this.#timer);

@@ -9,6 +9,8 @@ export class RobotFigure {
   /** @type {Front.RobotView | null} */
   #view = null;
   #turn = 0;
+  /** The address of the drawing. */
+  #drawn = "";
 
   /**
    * The 3D view gets `host`. `shown` is called when the view opens or closes, `failed` if it cannot be loaded.
@@ -30,10 +32,10 @@ export class RobotFigure {
       CLOSED,
     );
     const drawing = this.drawing = h("img", {
-      src: address(),
       alt: `Drawing of the robot: ${visible(title)}`,
       class: "loading",
     });
+    this.recolour();
     // Reserves space, so that the text below does not jump when the drawing arrives.
     for (const name of ["load", "error"]) drawing.addEventListener(name, () => drawing.classList.remove("loading"));
     this.figure = h("figure", { part: "figure" }, drawing);
@@ -41,7 +43,19 @@ export class RobotFigure {
 
   /** Show the drawing in the colours of the page. */
   recolour() {
-    if (this.drawing.src !== this.address()) this.drawing.src = this.address();
+    const address = this.address();
+    if (this.#drawn === address) return;
+    this.#drawn = address;
+    if (this.host.service.isAssigned) this.#drawOwn(address);
+    else this.drawing.src = address;
+  }
+
+  /** Show the drawing of the learner's variant, which needs the token. @param {string} address */
+  async #drawOwn(address) {
+    const picture = await this.host.service.picture(address).catch(() => "");
+    this.drawing.addEventListener("load", () => URL.revokeObjectURL(picture), { once: true });
+    if (picture && this.#drawn === address) this.drawing.src = picture;
+    else this.drawing.classList.remove("loading");
   }
 
   /** Update the 3D view after the answers have changed. */
@@ -93,7 +107,8 @@ export class RobotFigure {
 }
 
 /**
- * Return the descriptions of symbols, the unit of lengths, and the cells of the table that is drawn.
+ * Return the descriptions of symbols, the unit of lengths, the cells of the table that is drawn, and the part that asks
+ * for frames.
  *
  * @param {Api.ExerciseSymbol[]} symbols
  * @param {() => Front.PartView[]} parts
@@ -102,6 +117,7 @@ export const tableWords = (symbols, parts) => ({
   descriptions: Object.fromEntries(symbols.map(({ name, description }) => [name, description])),
   unit: symbols.find(({ kind }) => kind === "length")?.unit,
   cells: () => drawnTable(parts())?.rows.map((row) => row.cells) ?? [],
+  placing: () => parts().find(({ part }) => part.kind === "frames"),
 });
 
 /**
@@ -115,11 +131,18 @@ function drawnTable(parts) {
 }
 
 /**
- * Return the fields of a request that draw the student's table.
+ * Return the fields of a request that draw the student's table and placed frames.
  *
  * @param {Front.PartView[]} parts
  */
-export function tableToDraw(parts) {
+export function answersToDraw(parts) {
+  const frames = parts.find(({ part, isEmpty }) => part.kind === "frames" && !isEmpty);
+  const placed = frames && { part: frames.part.id, rows: frames.answer };
+  return { ...tableToDraw(parts), ...(placed ? { placed } : {}) };
+}
+
+/** @param {Front.PartView[]} parts */
+function tableToDraw(parts) {
   const table = drawnTable(parts);
   if (!table) return {};
   const { shape } = table.part;

@@ -2,6 +2,7 @@
 
 import { byId, h, message, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
+import { importForm } from "./import_form.js";
 import { post, refusal } from "./tutor_service.js";
 
 // Milliseconds after the last key until the text is checked.
@@ -163,6 +164,21 @@ tryButton.addEventListener("click", tryOut);
 byId("download", HTMLButtonElement).addEventListener("click", download);
 document.getElementById("save")?.addEventListener("click", save);
 name.form?.addEventListener("submit", (event) => event.preventDefault());
+if (document.getElementById("import")) {
+  const proposed = name.value;
+  importForm({
+    id: () => name.value.trim(),
+    named: (id) => {
+      if (id && name.value === proposed) name.value = id;
+    },
+    written: (text) => {
+      area.value = text;
+      saved.textContent = "";
+      edited();
+    },
+  });
+  if (location.hash === "#import") byId("import", HTMLDetailsElement).open = true;
+}
 addEventListener("beforeunload", (event) => {
   if (area.value !== kept) event.preventDefault();
 });

@@ -115,7 +115,7 @@ def test_units_of_lengths(text: str, column: str, metres: float) -> None:
     [
         "", " ", "foo",
         "a1", "a_1", "theta1", "θ₁", "0", "-90", "pi/2", "a alpha", "a+d", "d_{i+1}",
-        "alpha (rad/s)", "b", "l", "x", "beta", "phi", "a, d", "Länge", "i [m]", "a" * 100, "cos",
+        "alpha (rad/s)", "b", "l", "x", "beta", "phi", "a, d", "Abstand", "i [m]", "a" * 100, "cos",
         "q1*", "=", "a=", "90deg", "\x00", "\ud800",
     ],
 )  # fmt: skip

@@ -124,7 +124,7 @@ def test_an_empty_paste_is_missing(text: str, catalogue: Mapping[str, Exercise])
         ("1, 2, 3\n4, 5, 6", "wrong_shape", "1, 2, 3"),
         ("x, 1, 2, 3, 4", "wrong_shape", "x, 1, 2, 3, 4"),
         ("foo, alpha, d, theta\n1, 2, 3, 4", "unknown_header", "foo"),
-        ("Länge, Winkel, b, c\n1, 2, 3, 4", "unknown_header", "Länge, Winkel, b, c"),
+        ("Weite, Kipp, b, c\n1, 2, 3, 4", "unknown_header", "Weite, Kipp, b, c"),
         ("a, r, d, theta\n1, 2, 3, 4", "two_headers", "r"),
         ("a, alpha, theta\n1, 2, 3", "missing_header", "a, alpha, theta"),
         ("a, alpha, d, theta", "no_rows", "a, alpha, d, theta"),

@@ -117,6 +117,20 @@ def nearest_by_few_cells(
     return replace(nearest, lost=min(_lost(repair, case) for repair in repairs))
 
 
+def single_repairs(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> frozenset[CellIndex]:
+    """Return the cells that can each be repaired alone, so that the table becomes valid.
+
+    Every role must have a row, and every cell a value.
+    """
+    case = _case(roles, convention, grading)
+    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
+    repairs = _admissible(one_factor_repairs(factors, pose), [1], case)
+    return frozenset(cell for repair in repairs for cell in repair.cells)
+
+
 def frames_from_reference(
     table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:

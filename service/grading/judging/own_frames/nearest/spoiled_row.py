@@ -10,7 +10,7 @@ import numpy as np
 
 from service.grading.judging.own_frames.row_roles import Role, handed_in_values
 from service.grading.numerics.comparison import nearly_equal
-from service.grading.reading.tables.table import IS_ANGLE, computed_row
+from service.grading.reading.tables.table import GIVEN_UP, IS_ANGLE, computed_row
 from service.kinematics.chain import Table
 
 # The fractional parts of its multiples are not angles or lengths of any robot.
@@ -30,14 +30,18 @@ def with_spoiled_row(
 ) -> tuple[Role, ...] | None:
     """Return the roles with wrong numbers in the only row that is not as ``expected``.
 
-    Return None if several rows differ: each would cost a search.
+    Return None if several rows differ: each would cost a search. Return None if the row has such
+    numbers already.
     """
     handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
     right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)
     wrong = np.flatnonzero(~right).tolist()
-    if len(wrong) != 1 or roles[wrong[0]].row is None:
+    if len(wrong) != 1:
         return None
     [i] = wrong
+    row = roles[i].row
+    if row is None or row.is_given_up:
+        return None
     numbers = np.broadcast_to(out_of_place(len(roles), length_scale), handed_in.shape)
-    spoiled = Role(computed_row(numbers[i]), roles[i].joint)
+    spoiled = Role(computed_row(numbers[i], GIVEN_UP), roles[i].joint)
     return (*roles[:i], spoiled, *roles[i + 1 :])

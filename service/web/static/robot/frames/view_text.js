@@ -11,11 +11,13 @@ const PARALLEL = 0.9999;
  * @param {Front.Picture} picture
  * @param {string[]} labels of the given frames
  * @param {Front.Gap | null} gap
+ * @param {string[]} [placedLabels] of the frames that the student placed
  */
-export function viewText({ frames, mechanism }, labels, gap) {
+export function viewText({ frames, mechanism, placed }, labels, gap, placedLabels = []) {
   const lines = [];
   if (mechanism) lines.push(`The tool of the robot is at ${point(mechanism.tool)}.`);
   mechanism?.frames.forEach((frame, i) => lines.push(`Given frame {${labels[i]}}: ${place(frame)}.`));
+  placed?.forEach((frame, i) => lines.push(`Your frame {${placedLabels[i]}}: ${place(frame)}.`));
   frames?.forEach((frame, i) => lines.push(`Frame {${i}} of your table: ${place(frame)}.`));
   if (gap) lines.push(gapSentence(gap));
   return lines.join(" ");

@@ -51,7 +51,12 @@ export class ViewWords {
    */
   describe(picture) {
     const gap = this.gap(picture);
-    this.text.textContent = viewText(picture, this.#answer?.mechanism?.frames ?? [], gap);
+    this.text.textContent = viewText(
+      picture,
+      this.#answer?.mechanism?.frames ?? [],
+      gap,
+      this.#answer?.placed?.labels,
+    );
     clearTimeout(this.#timer);
     if (!gap || gapSentence(gap) === this.#said) return;
     this.#timer = setTimeout(() => this.announce(this.#said = gapSentence(gap)), AT_REST);

@@ -28,6 +28,11 @@ export class RowLoader {
     this.element = h("div", {}, this.button, this.panel);
   }
 
+  /** True if the player is open. */
+  get isOpen() {
+    return !this.panel.hidden;
+  }
+
   /** Follow the focus among the cells of the table. */
   open() {
     const root = this.element.getRootNode();

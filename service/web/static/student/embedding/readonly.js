@@ -12,7 +12,7 @@ function refuse(event) {
  * Let the student change the answers, or only read them.
  *
  * @param {HTMLElement} exercise
- * @param {{ cells: Front.PartCell[], choice: HTMLSelectElement | null }[]} parts
+ * @param {{ cells: Front.PartCell[], choice: HTMLSelectElement | null, marks: Front.SlipMarks | null }[]} parts
  * @param {boolean} isReadOnly
  */
 export function lock(exercise, parts, isReadOnly) {
@@ -23,8 +23,9 @@ export function lock(exercise, parts, isReadOnly) {
     else exercise.removeEventListener(name, refuse, true);
   }
   if (!isReadOnly) return;
-  for (const { cells, choice } of parts) {
+  for (const { cells, choice, marks } of parts) {
     for (const { input } of cells) input.readOnly = true;
     if (choice) choice.disabled = true;
+    marks?.lock();
   }
 }

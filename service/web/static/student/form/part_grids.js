@@ -45,7 +45,8 @@ export class PartGrids {
 
   /** The first cell of the visible grid. */
   get first() {
-    return this.grids[this.tabs?.shown ?? 0][0].cells[0];
+    const rows = this.grids[this.tabs?.shown ?? 0];
+    return (rows.find(({ isGiven }) => !isGiven) ?? rows[0]).cells[0];
   }
 
   /** Choose the tab of a cell. @param {Front.PartCell} cell */
@@ -63,7 +64,8 @@ export class PartGrids {
   /** How many of the matrices are filled, or of the rows if there is one grid. */
   get progress() {
     if (this.tabs) return { done: filled(this.#written), of: this.grids.length };
-    return { done: isTouched(this.cells.map(written)) ? this.rows.filter(isFull).length : 0, of: this.rows.length };
+    const own = this.rows.filter(({ isGiven }) => !isGiven);
+    return { done: isTouched(this.cells.map(written)) ? own.filter(isFull).length : 0, of: own.length };
   }
 
   /** Return the first cell of the next tab if the key Tab leaves the last cell of one, or else null.

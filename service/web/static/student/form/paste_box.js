@@ -5,6 +5,7 @@ import { h, message } from "../../shared/dom.js";
 /** @type {Record<string, string>} */
 const NAMES = {
   dh_table: "Paste a whole table or script",
+  find_slip: "Paste the mended table",
   link_transforms: "Paste all matrices",
   transform: "Paste a whole matrix",
   rotation: "Paste a whole matrix",

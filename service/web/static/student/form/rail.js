@@ -7,6 +7,8 @@ import { SIGNS } from "../../shared/cell.js";
 const SHORT = {
   dh_table: "Table",
   dh_row: "Row",
+  frames: "Frames",
+  find_slip: "Slip",
   link_transforms: "Links",
   transform: "Pose",
   rotation: "Rotation",

@@ -12,10 +12,35 @@ export function cellsOf(layout, answer) {
   const widths = layout.grids.flatMap((grid) => grid.rows.map(() => grid.columns.map((column) => column.label)));
   const empty = widths.flat().map(() => "");
   if (answer === null || answer === undefined) return { cells: empty, choice: "" };
+  if (layout.marks) return markedCells(layout, answer, empty, widths[0]);
   if (answer?.none === true) return { cells: empty, choice: "none" };
   const choice = typeof answer.convention === "string" ? answer.convention : "";
   const texts = textsOf(answer.rows ?? answer, widths[0]);
   return texts?.length === empty.length ? { cells: texts, choice } : null;
+}
+
+/**
+ * Return the state of a part whose given table is marked, or null if the answer does not fit.
+ *
+ * @param {Front.Layout} layout
+ * @param {any} answer
+ * @param {string[]} empty
+ * @param {string[]} labels
+ * @returns {Front.PartState | null}
+ */
+function markedCells(layout, answer, empty, labels) {
+  const { marked = "", table = null, ...others } = answer;
+  const texts = table === null ? empty : textsOf(table.rows ?? table, labels);
+  const marks = [marked ?? ""].flat();
+  if (Object.keys(others).length || texts?.length !== empty.length) return null;
+  if (!marks.every((mark) => typeof mark === "string")) return null;
+  const rows = layout.grids[0].rows.map(({ label }) => label);
+  const known = new Set(rows.flatMap((row) => labels.map((label) => `${row}.${label}`)));
+  // A mark without a column marks the whole row.
+  const places = marks.flatMap((mark) => mark.split(",")).map((mark) => mark.trim()).filter(Boolean).flatMap((mark) =>
+    rows.includes(mark) ? labels.map((label) => `${mark}.${label}`) : [mark]
+  );
+  return places.every((place) => known.has(place)) ? { cells: texts, choice: places.join(", ") } : null;
 }
 
 /**

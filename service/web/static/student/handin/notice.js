@@ -1,6 +1,6 @@
-// A notice above the parts of an exercise, with choices that remove it.
+// A notice above the parts of an exercise, with choices that remove it; and a failure in place of an exercise.
 
-import { h } from "../../shared/dom.js";
+import { h, visible } from "../../shared/dom.js";
 
 /**
  * Show a text with a button for each choice.
@@ -19,4 +19,21 @@ export function offer(place, text, choices) {
   });
   place.replaceChildren(h("p", {}, text), ...buttons);
   place.hidden = false;
+}
+
+/**
+ * Return a card with a failure, and with a button if the student can try `again`.
+ *
+ * @param {string} title
+ * @param {string} text
+ * @param {(() => void) | null} again
+ */
+export function trouble(title, text, again) {
+  return h(
+    "div",
+    { class: "card trouble", role: "alert" },
+    h("p", {}, h("strong", {}, visible(title))),
+    text ? h("p", {}, visible(text)) : null,
+    again ? h("button", { type: "button", class: "quiet-button", onclick: again }, "Try again") : null,
+  );
 }

@@ -50,8 +50,10 @@ export class PendingHandIn {
 
   /** Forget the hand-in with this key; that of another tab stays. @param {string} key */
   clear(key) {
-    if (this.get()?.key !== key) return;
-    this.#inMemory = null;
+    const isStored = this.get()?.key === key;
+    // Also if another tab has saved its own: what is confirmed must never be sent as pending again.
+    if (this.#inMemory?.key === key) this.#inMemory = null;
+    if (!isStored) return;
     try {
       localStorage.removeItem(this.name);
     } catch {

@@ -27,7 +27,10 @@ function bodyOf(form) {
   const body = {};
   /** @type {NodeListOf<Field>} */
   const fields = form.querySelectorAll("[name][data-as]");
-  for (const field of fields) body[field.name] = valueOf(field.dataset.as ?? "", field.value);
+  for (const field of fields) {
+    const isFlag = field instanceof HTMLInputElement && field.dataset.as === "flag";
+    body[field.name] = isFlag ? field.checked : valueOf(field.dataset.as ?? "", field.value);
+  }
   for (const list of form.querySelectorAll("fieldset[data-list]")) body.exercises = exercisesOf(list);
   return body;
 }

@@ -16,9 +16,11 @@ async function load() {
   try {
     /** @type {Api.AttemptDetail} */
     const found = await get(path);
-    const { exercise: name, learner } = found.attempt;
+    const { exercise: name, variant, learner } = found.attempt;
+    // The answers are about the learner's variant, which has other numbers.
+    const shown = variant ? `${name}~${variant}` : name;
     /** @type {Api.Exercise | null} */
-    const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
+    const exercise = await get(`v1/exercises/${encodeURIComponent(shown)}`).catch(() => null);
     // After this request, the browser sends the key of HTTP Basic to all other addresses below /v1, too.
     const { attempts } = await get(
       `v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`,
@@ -79,7 +81,7 @@ function reports({ report, earlier_reports: earlier }, drawn) {
 
 /** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
 function facts({ attempt, submission, report }, exercise, attempts) {
-  const { learner, ordinal, at, is_late: late, version, grader } = attempt;
+  const { learner, ordinal, at, is_late: late, version, grader, variant } = attempt;
   /** @type {(query: Record<string, string>, ...text: Front.Child[]) => HTMLElement} */
   const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
   const isOld = exercise && exercise.version !== version;
@@ -87,6 +89,10 @@ function facts({ attempt, submission, report }, exercise, attempts) {
   const pairs = [
     ["Learner", list({ learner }, learnerName(learner))],
     ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
+    variant !== undefined && [
+      "Variant",
+      h("a", { href: address(`exercises/${attempt.exercise}~${variant}`) }, h("code", {}, variant)),
+    ],
     ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
     [
       "Attempt",

@@ -26,6 +26,7 @@ class RecordedPart extends PartView {
     super(part, host, "h2");
     this.reading.remove();
     if (this.choice) this.choice.disabled = true;
+    this.marks?.lock();
     for (const cell of this.cells) {
       cell.input.readOnly = true;
       cell.repair = (suggestion) => h("span", { class: "quiet" }, "→ ", h("bdi", {}, visible(suggestion)));

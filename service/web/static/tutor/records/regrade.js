@@ -1,7 +1,7 @@
 // The regrade of an exercise: first a preview of the changes with their reasons, then the regrade itself.
 
 import { h, message, number, points } from "../../shared/dom.js";
-import { count, failed, learnerName, table, tell } from "./records.js";
+import { count, failed, learnerName, query, span, table, tell } from "./records.js";
 import { address, pause, sendPatiently } from "../tutor_service.js";
 
 // How many changes are listed.
@@ -54,8 +54,11 @@ export function regradeForm(exercise, done) {
     const changed = [];
     let graded = 0;
     let cursor;
+    // On the page of a course, only its attempts.
+    const { course } = span();
+    const path = `v1/exercises/${encodeURIComponent(exercise)}/regrade${query({ course })}`;
     for (;;) {
-      const step = await sendPatiently(`v1/exercises/${encodeURIComponent(exercise)}/regrade`, {
+      const step = await sendPatiently(path, {
         apply,
         ...(cursor ? { cursor } : {}),
       });

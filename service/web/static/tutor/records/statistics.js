@@ -266,6 +266,5 @@ byId("filters", HTMLElement).addEventListener("submit", (event) => {
   show();
 });
 byId("filters", HTMLElement).addEventListener("change", show);
-// Tutors of one course do not regrade, because other courses use the exercise, too.
-document.getElementById("regrade")?.append(regradeForm(exercise, show));
+byId("regrade", HTMLElement).append(regradeForm(exercise, show));
 show();

@@ -1,0 +1,76 @@
+"""The variant of an exercise that a learner has in an assignment, for the routes of exercises.
+
+With ``?course=…&assignment=…``, these routes are about the variant of the learner with the token of
+the request. Their answers name the exercise by its plain id.
+"""
+
+from typing import TYPE_CHECKING, Any, Final
+
+from fastapi import Request
+from pydantic import TypeAdapter, ValidationError
+
+from service.api.courses.asking import read
+from service.api.http.problems import invalid
+from service.api.permissions.access import Access
+from service.api.permissions.access_problems import access_problem
+from service.catalogue import Exercise
+from service.contract.courses import CourseName
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+_NAME: Final = TypeAdapter(CourseName)
+_TEXT: Final = {
+    "course": "The id of a course of the learner with this token.",
+    "assignment": "The id of an assignment: the exercise is the learner's own variant in it.",
+}
+
+
+def of_assignment(options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of a route with the two parameters in its documentation."""
+    extra = options.get("openapi_extra", {})
+    parameters = [
+        {"name": name, "in": "query", "required": False, "description": text, "schema": _SCHEMA}
+        for name, text in _TEXT.items()
+    ]
+    return {**options, "openapi_extra": {**extra, "parameters": parameters}}
+
+
+_SCHEMA: Final = _NAME.json_schema()
+
+
+class OwnVariants:
+    """Finds the variants of learners."""
+
+    def __init__(self, store: "AttemptStore | None", access: Access) -> None:
+        self._store = store
+        self._access = access
+
+    async def of(self, request: Request, exercise: Exercise) -> Exercise:
+        """Return the learner's variant if the request names an assignment, else the exercise.
+
+        Raises ProblemError.
+        """
+        if exercise.vary is None or b"assignment=" not in request.scope["query_string"]:
+            return exercise
+        from service.courses.dealing import assigned
+
+        course, assignment = (_named(request, name) for name in _TEXT)
+        caller = self._access.caller(request)
+        learner = caller.learner
+        if learner is None:
+            raise access_problem("learner-needed")
+        if caller.course not in (None, course):
+            raise access_problem("other-course")
+        _, own = await read(
+            self._store, lambda it: assigned(it, course, assignment, learner, exercise)
+        )
+        return own
+
+
+def _named(request: Request, name: str) -> str:
+    try:
+        return _NAME.validate_python(request.query_params.get(name))
+    except ValidationError as error:
+        detail = {"type": "value", "loc": (name,), "msg": "Name a course and an assignment"}
+        raise invalid([detail]) from error

@@ -1,0 +1,62 @@
+"""The routes with which tutors see what platforms got, and send it again."""
+
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.api.courses.asking import CourseId, changing, read, reading, write
+from service.api.http.bodies import read_body
+from service.api.recording.store import private
+from service.contract.attempts import Learner
+from service.contract.courses import CourseName
+from service.contract.scores import PlatformScores, SendAgainRequest, SentAgain
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+
+def routes(store: "AttemptStore | None") -> APIRouter:
+    """Return the routes of scores that go to learning platforms."""
+    router = APIRouter(prefix="/v1/courses/{course_id}/scores", tags=["courses"])
+
+    @router.get(
+        "",
+        operation_id="listScores",
+        summary="List the scores that go to platforms",
+        response_description="The scores, by assignment and name.",
+        **reading(PlatformScores),
+    )
+    async def list_scores(
+        course_id: CourseId,
+        assignment: Annotated[
+            CourseName | None, Query(description="Only those of this assignment.")
+        ] = None,
+        learner: Annotated[Learner | None, Query(description="Only those of this learner.")] = None,
+        failed: Annotated[
+            bool, Query(description="Only those that were refused, or tried in vain.")
+        ] = False,
+    ) -> Response:
+        """List what was sent to the platforms from which the course is launched; for tutors."""
+        from service.lti.scores.overview import scores_of
+
+        wanted = SendAgainRequest(assignment=assignment, learner=learner, failed=failed)
+        found = await read(store, lambda it: scores_of(it, course_id, wanted))
+        return private(PlatformScores(scores=found))
+
+    @router.post(
+        "/send",
+        operation_id="sendScores",
+        summary="Send scores to platforms again",
+        response_description="How many scores are sent again.",
+        **changing(SendAgainRequest, SentAgain),
+    )
+    async def send_scores(request: Request, course_id: CourseId) -> Response:
+        """Send scores again, also those that the platforms have already; for tutors."""
+        from service.lti.scores.overview import send_again
+
+        body, now = await read_body(SendAgainRequest, request), datetime.now(UTC)
+        queued = await write(store, lambda it: send_again(it, course_id, body, now))
+        return private(SentAgain(queued=queued))
+
+    return router

@@ -1,0 +1,22 @@
+"""Check that a given table has the slip that the exercise file asks for."""
+
+from collections.abc import Iterator
+
+from service.authoring.remarks import Remark, failed
+from service.catalogue import Exercise
+from service.catalogue.parts.find_slip import FindSlipSpec
+from service.grading.kinds.find_slip import slip_of
+
+
+def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
+    """Yield a failure for each part whose slip the robot cannot show."""
+    for i, part in enumerate(exercise.parts):
+        if not isinstance(part, FindSlipSpec) or part.slip is None:
+            continue
+        found = slip_of(part, exercise).misconception
+        if found != part.slip:
+            yield failed(
+                f"parts[{i}].slip",
+                f"no {part.convention.value} table of this robot has the slip {part.slip} alone; "
+                f"leave slip out, or write another one, such as {found}",
+            )

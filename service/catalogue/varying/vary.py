@@ -1,0 +1,195 @@
+"""The values of a seed, and the content of an exercise file with these values.
+
+The same id and seed have the same values in every process and Python version: they come from the
+SHA-256 of the id, the seed and the name, so that a new name in ``[vary]`` changes no other value.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue.robots.formulas import FieldError
+from service.catalogue.varying.choices import (
+    CONDITIONS,
+    DEPLOYED,
+    VaryValue,
+    choices_of,
+    deployed_seeds,
+    texts_of,
+)
+from service.catalogue.varying.conditions import (
+    numeric_values,
+    read_condition,
+    read_formula,
+    vocabulary_of,
+)
+
+# A seed takes the first of these draws that meets all conditions.
+_DRAWS: Final = 256
+# Draws are checked in groups of this size, because most seeds need one or two.
+_GROUP: Final = 16
+_PLACE: Final = re.compile(r"\{\{([^{}]{1,200})\}\}")
+# The fields of a file that do not affect grading.
+_NOT_GRADING: Final = frozenset({
+    "checks", "feedback", "attempts", "view", "level", "order", "minutes", "summary", "keywords",
+})  # fmt: skip
+
+
+class Vary:
+    """The varied content of an exercise file.
+
+    ``deployed`` are the seeds that assignments use; if there are none, they use any seed.
+    ``base_version`` changes with every field that affects grading, in any variant.
+    """
+
+    def __init__(self, exercise_id: str, content: Mapping[str, Any]) -> None:
+        """Read the table ``vary`` of a file's content. Raises FieldError."""
+        written = content["vary"]
+        if not isinstance(written, dict):
+            raise FieldError("vary", "must be a table; write [vary]")
+        self._id = exercise_id
+        self._content = {key: value for key, value in content.items() if key != "vary"}
+        self._choices = choices_of(written)
+        self.deployed = deployed_seeds(written)
+        numbers = {name: numeric_values(values) for name, values in self._choices.items()}
+        self._numbers = {name: found for name, found in numbers.items() if found is not None}
+        self._vocabulary = vocabulary_of(list(self._numbers))
+        self._conditions = [
+            read_condition(f"vary.{CONDITIONS}[{i}]", text, self._vocabulary)
+            for i, text in enumerate(texts_of(written, CONDITIONS))
+        ]
+        first = dict.fromkeys(self._choices, 0)
+        chosen = first if self._meet([first])[0] else self._draw("")
+        if chosen is None:
+            reason = f"no one of {_DRAWS} draws meets all conditions; allow more choices"
+            raise FieldError(f"vary.{CONDITIONS}", reason)
+        # The exercise without a seed has the first choices if they meet the conditions.
+        self._plain = chosen
+        graded = {key: value for key, value in self._content.items() if key not in _NOT_GRADING}
+        kept = {key: value for key, value in written.items() if key != DEPLOYED}
+        self.base_version = _digest({**graded, "vary": kept}, 6)
+
+    @property
+    def count(self) -> int:
+        """The number of combinations of choices, whether they meet the conditions or not."""
+        count = 1
+        for values in self._choices.values():
+            count *= len(values)
+        return count
+
+    def values(self, seed: str) -> Mapping[str, VaryValue]:
+        """Return the value of each name for a seed; for "", those of the exercise itself.
+
+        If no draw meets the conditions, the result is that of "".
+        """
+        chosen = (self._draw(seed) if seed else None) or self._plain
+        return {name: self._choices[name][i] for name, i in chosen.items()}
+
+    def version(self, values: Mapping[str, VaryValue]) -> str:
+        """Return the version of the variant with these values: that of the file, and theirs."""
+        return f"{self.base_version}-{values_digest(values)}"
+
+    def content(self, values: Mapping[str, VaryValue]) -> dict[str, Any]:
+        """Return the content of the file with these values in all texts. Raises FieldError."""
+        return dict(self._filled(self._content, values, ""))
+
+    def _draw(self, seed: str) -> Mapping[str, int] | None:
+        for start in range(0, _DRAWS, _GROUP):
+            draws = [
+                {
+                    name: _whole(f"{self._id}~{seed}/{draw}/{name}", len(values))
+                    for name, values in self._choices.items()
+                }
+                for draw in range(start, start + (_GROUP if self._conditions else 1))
+            ]
+            good = self._meet(draws)
+            if good.any():
+                return draws[int(np.argmax(good))]
+        return None
+
+    def _meet(self, draws: Sequence[Mapping[str, int]]) -> NDArray[np.bool_]:
+        """Return which draws meet all conditions."""
+        values = {
+            name: np.array([numbers[draw[name]] for draw in draws])
+            for name, numbers in self._numbers.items()
+        }
+        good = np.ones(len(draws), np.bool_)
+        for condition in self._conditions:
+            good &= condition.holds(values, len(draws))
+        return good
+
+    def _filled(self, node: Any, values: Mapping[str, VaryValue], field: str) -> Any:
+        match node:
+            case str():
+                return _PLACE.sub(lambda place: self._written(place[1], values, field), node)
+            case dict():
+                return {
+                    self._filled(key, values, field): self._filled(
+                        value, values, f"{field}.{key}" if field else key
+                    )
+                    for key, value in node.items()
+                }
+            case list():
+                return [
+                    self._filled(value, values, f"{field}[{i}]") for i, value in enumerate(node)
+                ]
+            case _:
+                return node
+
+    def _written(self, place: str, values: Mapping[str, VaryValue], field: str) -> str:
+        """Return the text of ``{{place}}``: a value, a field of a group, or a formula."""
+        place = place.strip()
+        name, dot, key = place.partition(".")
+        found = values.get(name)
+        if isinstance(found, Mapping):
+            if key not in found:
+                keys = ", ".join(f"{name}.{each}" for each in found)
+                raise FieldError(field, f"there is no {{{{{place}}}}}; write one of {keys}")
+            return _text(found[key])
+        if found is not None and not dot:
+            return _text(found)
+        formula = read_formula(field, place, self._vocabulary)
+        numbers = {
+            each: np.array([self._numbers[each][self._choices[each].index(values[each])]])
+            for each in formula.symbols
+        }
+        result = float(np.broadcast_to(formula.evaluate(numbers), 1)[0])
+        if not np.isfinite(result):
+            raise FieldError(field, f"{{{{{place}}}}} has no value for some of the choices")
+        return _text(Decimal(f"{result:.9g}"))
+
+
+def values_digest(values: Mapping[str, VaryValue]) -> str:
+    """Return a short digest of the values of a variant."""
+    return _digest({name: _plain(value) for name, value in values.items()}, 4)
+
+
+def _plain(value: VaryValue) -> object:
+    if isinstance(value, Mapping):
+        return {name: _text(each) for name, each in value.items()}
+    return _text(value)
+
+
+def _text(value: VaryValue) -> str:
+    """Return a number without exponent and trailing zeros, or the text itself."""
+    if not isinstance(value, Decimal):
+        return str(value)
+    written = format(value, "f")
+    written = written.rstrip("0").rstrip(".") if "." in written else written
+    return "0" if written == "-0" else written
+
+
+def _whole(text: str, count: int) -> int:
+    """Return a whole number from 0 to ``count`` − 1, the same for the same text."""
+    return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") % count
+
+
+def _digest(content: object, size: int) -> str:
+    text = json.dumps(content, sort_keys=True, default=str)
+    return hashlib.blake2b(text.encode(), digest_size=size).hexdigest()

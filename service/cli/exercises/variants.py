@@ -1,0 +1,139 @@
+"""`dh-grader exercises check --seeds` and `deploy`: many variants of one exercise."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from service.authoring import Level
+from service.catalogue import Exercise, load_exercise
+from service.cli.terminal import give_up, installed_file, stdout
+from service.figures.figure import exercise_figure
+from service.variants.deployment import (
+    CheckedVariant,
+    TooFewVariantsError,
+    checked_variant,
+    deploy,
+    with_deployed,
+)
+from service.variants.variant import NoVariantError, built
+
+# The most faults that are printed, each with the first seed that has it.
+_SHOWN = 10
+# Variants are of about equal difficulty if their scores differ by at most this share.
+_SPREAD = 0.2
+
+
+def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
+    """Check variants and print what differs; return True if one fails."""
+    try:
+        checked = [checked_variant(exercise, str(seed)) for seed in range(1, count + 1)]
+    except NoVariantError as error:
+        give_up(str(error))
+    faults: dict[str, list[str]] = defaultdict(list)
+    for each in checked:
+        for remark in each.remarks:
+            if remark.level is Level.FAILED:
+                faults[f"{remark.field}: {remark.text}"].append(each.seed)
+    different = len({each.form for each in checked})
+    scores = Counter(each.difficulty.score for each in checked)
+    console.print(
+        Text.assemble((exercise.plain_id, "bold"), f": {count} seeds, {different} different"),
+        soft_wrap=True,
+    )
+    console.print(_table(checked))
+    low, high = min(scores), max(scores)
+    if high - low > _SPREAD * high:
+        hint = "deploy chooses variants of one difficulty"
+        console.print(Text(f"  warning: the scores differ from {low} to {high}; {hint}", "yellow"))
+    warned = sum(any(r.level is Level.WARNING for r in each.remarks) for each in checked)
+    if warned:
+        told = "give much for an answer of only zeros and joint variables"
+        console.print(Text(f"  warning: {warned} of {count} variants {told}", "yellow"))
+    for fault, seeds in list(faults.items())[:_SHOWN]:
+        line = f"  failed: {len(seeds)} variants, such as {exercise.plain_id}~{seeds[0]}: {fault}"
+        console.print(Text(line, "red"), soft_wrap=True)
+    return bool(faults)
+
+
+def _table(checked: Sequence[CheckedVariant]) -> Table:
+    """Return the table of what differs: each count with its least and greatest value."""
+    table = Table.grid(padding=(0, 2, 0, 2))
+    rows: dict[str, list[float]] = defaultdict(list)
+    for each in checked:
+        for name, number in asdict(each.difficulty).items():
+            rows[name.replace("_", " ")].append(number)
+        rows["score"].append(each.difficulty.score)
+        rows["lazy points"].append(round(each.lazy, 2))
+    table.add_row("", "least", "greatest", "the usual one", style="dim")
+    for name, numbers in rows.items():
+        usual, times = Counter(numbers).most_common(1)[0]
+        share = f"{usual:g} ({times} of {len(numbers)})"
+        table.add_row(name, f"{min(numbers):g}", f"{max(numbers):g}", share)
+    return table
+
+
+def deploy_command(
+    exercise_id: Annotated[str, typer.Argument(metavar="ID", show_default=False)],
+    count: Annotated[
+        int, typer.Option(min=1, max=500, help="The number of variants to deploy.")
+    ] = 24,
+    without: Annotated[
+        list[str] | None, typer.Option(help="A seed to strike out. Repeatable.")
+    ] = None,
+    figures: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Draw the variants into this folder.")
+    ] = None,
+    only_print: Annotated[
+        bool, typer.Option("--print", help="Print the seeds, and leave the file as it is.")
+    ] = False,
+) -> None:
+    """Choose the variants of which each learner gets one: different, and equally hard.
+
+    Their seeds are written into the file, as [vary] deployed. Seeds that are there already stay.
+    """
+    file = installed_file(exercise_id) if not Path(exercise_id).is_file() else Path(exercise_id)
+    exercise = load_exercise(file)
+    if exercise.vary is None:
+        give_up(f"The exercise {exercise.id} has no variants: its file has no [vary].")
+    try:
+        seeds = deploy(exercise, count, without or ())
+        checked = [checked_variant(exercise, seed) for seed in seeds]
+    except (TooFewVariantsError, NoVariantError) as error:
+        give_up(str(error))
+    console = stdout()
+    for each in checked:
+        faults = [remark.text for remark in each.remarks if remark.level is Level.FAILED]
+        told = "".join(f"; failed: {fault}" for fault in faults)
+        console.print(f"{exercise.id}~{each.seed}: {each.title}{told}", soft_wrap=True)
+    console.print(_table(checked))
+    if figures is not None:
+        _draw(exercise, seeds, figures)
+    if only_print:
+        return
+    text = with_deployed(file.read_text(encoding="utf-8"), seeds)
+    if text is None:
+        give_up(f"{file}: cannot be edited here; write deployed = {seeds} below [vary]")
+    try:
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        give_up(f"{file}: cannot be written: {error.strerror}")
+    console.print(f"{file}: deployed = {len(seeds)} seeds", soft_wrap=True)
+
+
+def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:
+    if exercise.reference is None:
+        give_up(f"the exercise {exercise.id} has no robot to draw")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for seed in seeds:
+            variant = built(exercise, seed)
+            (folder / f"{variant.id}.svg").write_text(exercise_figure(variant), encoding="utf-8")
+    except OSError as error:
+        give_up(f"{folder}: cannot be written: {error.strerror}")

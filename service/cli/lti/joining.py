@@ -1,0 +1,60 @@
+"""`dh-grader lti invite`, `allow` and `canvas`: how platforms join."""
+
+import json
+from datetime import UTC, datetime
+from typing import Annotated
+
+import typer
+
+from service.attempts.storage.database import in_transaction
+from service.cli.commands.attempts import database, encodable
+from service.cli.terminal import give_up, stdout
+from service.lti.joining.invitations import LONGEST_DAYS, allow, invite
+from service.lti.joining.tool_configuration import canvas_configuration
+from service.lti.registrations import RegistrationError, unusable
+
+Address = Annotated[str, typer.Option(help="This service: https://grader.example.edu")]
+
+
+def invite_platform(
+    name: Annotated[str, typer.Argument(help="The platform in words.", callback=encodable)],
+    address: Address,
+    zone: Annotated[str, typer.Option(help="The time zone of its courses.")] = "UTC",
+    days: Annotated[int, typer.Option(min=1, max=LONGEST_DAYS, help="How long it is valid.")] = 7,
+    hold: Annotated[
+        bool, typer.Option("--hold", help="The platform launches only after `lti allow`.")
+    ] = False,
+) -> None:
+    """Make a link by which a platform registers itself, once. Keep it secret until then."""
+    now = datetime.now(UTC)
+    with database(create=True) as engine:
+        try:
+            link = in_transaction(
+                engine,
+                lambda it: invite(it, name[:200], address, zone, now, days=days, waits=hold),
+            )
+        except RegistrationError as error:
+            give_up(str(error))
+    stdout().print(link, soft_wrap=True)
+
+
+def allow_platform(
+    registration: Annotated[
+        str, typer.Argument(help="The id of a registration, as list shows it.", callback=encodable)
+    ],
+) -> None:
+    """Let a platform launch that has registered itself by an invitation with --hold."""
+    with database(create=False) as engine:
+        try:
+            in_transaction(engine, lambda it: allow(it, registration))
+        except RegistrationError as error:
+            give_up(str(error))
+    typer.echo("Allowed.")
+
+
+def canvas(address: Address) -> None:
+    """Print the JSON configuration for a developer key of Canvas."""
+    address = address.rstrip("/")
+    if reason := unusable(address, local=True):
+        give_up(f"address: {reason}")
+    typer.echo(json.dumps(canvas_configuration(address), indent=2))

@@ -1,0 +1,233 @@
+"""`dh-grader lti`: registered platforms, and our keys for them."""
+
+import json
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+from pydantic import ValidationError
+from sqlalchemy import Connection
+
+from service.access.keys import Secret
+from service.attempts.storage.database import in_transaction
+from service.cli.commands.attempts import database, encodable
+from service.cli.lti import joining
+from service.cli.lti.scores import scores
+from service.cli.terminal import give_up, stdout
+from service.formats.shared.plain_text import visible
+from service.lti import registrations
+from service.lti.checking import check_registration
+from service.lti.own_keys import ensure_key, published_keys, rotate, signing_key
+from service.lti.problems import LtiError
+from service.lti.registrations import NewRegistration, Registration, RegistrationError
+from service.lti.roster.enrolment import (
+    RosterError,
+    ask_for_roster,
+    enrol_members,
+    read_roster,
+)
+from service.settings import load_settings
+
+R = TypeVar("R")
+
+commands = typer.Typer(
+    help="LTI 1.3: platforms that launch courses, and the keys for them.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+_keys = typer.Typer(help="The keys with which this service signs.", no_args_is_help=True)
+commands.add_typer(_keys, name="keys")
+commands.command("invite")(joining.invite_platform)
+commands.command("allow")(joining.allow_platform)
+commands.command("canvas")(joining.canvas)
+commands.command("scores")(scores)
+
+RegistrationId = Annotated[
+    str, typer.Argument(help="The id of a registration, as list shows it.", callback=encodable)
+]
+Value = Annotated[str | None, typer.Option(callback=encodable, help="As the platform shows it.")]
+
+
+@commands.command("register")
+def register(
+    file: Annotated[
+        Path | None, typer.Option(help="A JSON file with the values, instead of the options.")
+    ] = None,
+    registration: Annotated[
+        str | None, typer.Option("--id", help="Small letters, digits, hyphens. [random]")
+    ] = None,
+    name: Annotated[str | None, typer.Option(help="The platform in words.")] = None,
+    issuer: Value = None,
+    client_id: Value = None,
+    auth_url: Value = None,
+    jwks_url: Value = None,
+    token_url: Value = None,
+    audience: Annotated[
+        str | None, typer.Option(help="The audience of access tokens. [the token address]")
+    ] = None,
+    address: Annotated[
+        str | None, typer.Option(help="This service: https://grader.example.edu")
+    ] = None,
+    zone: Annotated[str | None, typer.Option(help="The time zone of its courses. [UTC]")] = None,
+    deployment: Annotated[
+        list[str] | None, typer.Option(help="Only this deployment. Repeatable. [all]")
+    ] = None,
+    development: Annotated[
+        bool, typer.Option(help="Allow a platform on this machine without HTTPS.")
+    ] = False,
+) -> None:
+    """Register a platform with the values that it shows."""
+    given: dict[str, Any] = {} if file is None else _values_in(file)
+    options = {
+        "id": registration,
+        "name": name,
+        "issuer": issuer,
+        "client_id": client_id,
+        "auth_url": auth_url,
+        "jwks_url": jwks_url,
+        "token_url": token_url,
+        "audience": audience,
+        "address": address,
+        "zone": zone,
+        "deployments": deployment,
+        "is_development": development or None,
+    }
+    given |= {key: value for key, value in options.items() if value is not None}
+    try:
+        new = NewRegistration.model_validate(given)
+    except ValidationError as error:
+        first = error.errors()[0]
+        give_up(f"{'.'.join(map(str, first['loc']))}: {first['msg']}.")
+    secret, now = _secret(), datetime.now(UTC)
+
+    def added(connection: Connection) -> Registration:
+        ensure_key(connection, secret, now)
+        return registrations.add_registration(connection, new, now)
+
+    _show(_done(added, create=True), new.deployments)
+
+
+@commands.command("list")
+def list_registrations() -> None:
+    """List the registered platforms."""
+    found = _done(registrations.all_registrations)
+    deployments = _done(
+        lambda it: {each.id: registrations.deployments_of(it, each.id) for each in found}
+    )
+    for each in found:
+        launched = f"launched {each.launched_at:%Y-%m-%d}" if each.launched_at else "never launched"
+        if not each.any_deployment and not deployments.get(each.id):
+            launched = "waits for `dh-grader lti allow`"
+        told = (each.id, visible(each.name), visible(each.issuer), each.client_id, launched)
+        stdout().print("  ".join(told), soft_wrap=True)
+
+
+@commands.command("show")
+def show(registration: RegistrationId) -> None:
+    """Show a registration, and the values to paste at the platform."""
+    found = _done(lambda it: registrations.registration(it, registration))
+    _show(found, _done(lambda it: registrations.deployments_of(it, registration)))
+
+
+@commands.command("remove")
+def remove(registration: RegistrationId) -> None:
+    """Remove a registration. Its courses and their attempts stay, and launch no more."""
+    _done(lambda it: registrations.remove_registration(it, registration))
+    typer.echo("Removed. Pages that are open work until their tokens end, at most twelve hours.")
+
+
+@commands.command("check")
+def check(registration: RegistrationId) -> None:
+    """Test one registration: keys, clocks, last launch. The exit code is 1 if a test fails."""
+    found = _done(lambda it: registrations.registration(it, registration))
+    secret, now, is_wrong = _secret(), datetime.now(UTC), False
+    key = _done(lambda it: signing_key(it, secret, now))
+    for line in check_registration(found, key):
+        is_wrong |= line.is_fine is False
+        word = {True: "ok    ", False: "WRONG ", None: "      "}[line.is_fine]
+        typer.echo(f"{word} {line.text}")
+    raise SystemExit(1 if is_wrong else 0)
+
+
+@commands.command("roster")
+def roster(
+    course: Annotated[
+        str,
+        typer.Argument(help="The id of a course: lti-1234abcd5678.", callback=encodable),
+    ],
+    names: Annotated[
+        bool | None,
+        typer.Option("--names/--no-names", help="Whether to store and show names. [as before]"),
+    ] = None,
+) -> None:
+    """Bring the learners of a course up to date with the roster of its platform."""
+    secret, now = _secret(), datetime.now(UTC)
+    asked = _done(lambda it: ask_for_roster(it, course, secret, now))
+    try:
+        members = read_roster(asked)
+    except RosterError as error:
+        give_up(str(error))
+    change = _done(lambda it: enrol_members(it, asked, members, secret, shows_names=names))
+    typer.echo(
+        f"{change.learners} learners: {change.added} new, {change.removed} removed, "
+        f"{change.renamed} renamed."
+    )
+
+
+@_keys.command("rotate")
+def rotate_keys() -> None:
+    """Add a new key. It is published for a day before it signs; the oldest key is removed."""
+    secret, now = _secret(), datetime.now(UTC)
+    signs_from = _done(lambda it: rotate(it, secret, now), create=True)
+    typer.echo(f"The new key signs from {signs_from:%Y-%m-%d %H:%M} UTC on.")
+
+
+@_keys.command("list")
+def list_keys() -> None:
+    """List the ids of the published keys, the oldest first."""
+    for each in _done(published_keys)["keys"]:
+        typer.echo(each["kid"])
+
+
+def _secret() -> Secret:
+    secret = load_settings().known_secret()
+    if secret is None:
+        give_up("LTI needs a secret: set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE.")
+    return secret
+
+
+def _done(work: Callable[[Connection], R], *, create: bool = False) -> R:
+    """Return the result of ``work`` in a transaction; end the program with the reason of errors."""
+    with database(create=create) as engine:
+        try:
+            return in_transaction(engine, work)
+        except (RegistrationError, RosterError, LtiError) as error:
+            give_up(str(error))
+
+
+def _values_in(file: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        give_up(f"{file}: cannot be read: {error}")
+    if not isinstance(found, dict):
+        give_up(f"{file}: must be a JSON object.")
+    return found
+
+
+def _show(found: Registration, deployments: list[str]) -> None:
+    lines = {
+        "Registration": found.id,
+        "Platform": visible(found.name),
+        "Issuer": visible(found.issuer),
+        "Client id": visible(found.client_id),
+        "Deployments": "all" if found.any_deployment else ", ".join(map(visible, deployments)),
+        "Login (OIDC) address": found.login_url,
+        "Redirect address": found.launch_url,
+        "Target link address": found.launch_url,
+        "Public keys (JWKS)": found.keys_url,
+    }
+    for name, value in lines.items():
+        stdout().print(f"{name + ':':22}{value}", soft_wrap=True)

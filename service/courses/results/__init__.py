@@ -1,0 +1,1 @@
+"""The points of a course: the gradebook, and the workbook with it."""

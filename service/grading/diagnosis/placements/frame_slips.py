@@ -1,0 +1,219 @@
+"""The rules of the DH conventions that a placed frame breaks."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.grading.feedback import Finding
+from service.grading.misconception import AnyHypothesis, check, says
+from service.kinematics.dh import Convention
+from service.kinematics.frames.placement import AxisPosition, RightPlace
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True)
+class WrongPlacement:
+    """A wrong cell of a placed frame. ``slack`` is how far a rule may be missed."""
+
+    convention: Convention
+    place: RightPlace
+    slack: float
+
+    def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
+        """Return the hypotheses: none of them is compared with numbers."""
+        return hypotheses
+
+    @property
+    def neighbour(self) -> str:
+        """The name of the axis that x must cross."""
+        beside = "before" if self.convention is Convention.STANDARD else "after"
+        return f"the z axis of the frame {beside} it"
+
+
+@dataclass(frozen=True)
+class WrongJointAxis(WrongPlacement):
+    """The number of a joint that is not the frame's; ``right`` is the frame's joint."""
+
+    chosen: int
+    right: int
+
+
+@dataclass(frozen=True)
+class WrongFrameZ(WrongPlacement):
+    """A z direction ``(SAMPLES, 3)`` that is not along the joint axis."""
+
+    z: Numbers
+
+
+@dataclass(frozen=True)
+class WrongFrameOrigin(WrongPlacement):
+    """An origin ``(SAMPLES, 3)`` that is at no right place."""
+
+    origin: Numbers
+
+
+@dataclass(frozen=True)
+class WrongFrameX(WrongPlacement):
+    """A unit x direction ``(SAMPLES, 3)`` that is not right."""
+
+    x: Numbers
+
+    def is_perpendicular_to(self, axis: Numbers) -> bool:
+        """True if x is perpendicular to an axis direction ``(SAMPLES, 3)``."""
+        return bool(np.abs((self.x * axis).sum(axis=-1)).max() <= self.slack)
+
+
+_FRAMES = "stanford-arm-frames"
+
+
+@check(
+    of=WrongJointAxis,
+    rank=10,
+    code="axis_of_other_convention",
+    rule="frame_z",
+    means="z of a frame is along the axis that the other convention takes for this frame",
+    example=(_FRAMES, "frames", {"2/axis": "2"}),
+    unlike={"2/axis": "5"},
+)
+def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
+    """The joint is the one that the other convention takes."""
+    step = -1 if case.convention is Convention.STANDARD else 1
+    if case.chosen != case.right + step:
+        return None
+    return says(
+        f"The {case.convention.other.value} convention puts z of this frame along that axis; here "
+        f"the {case.convention.value} convention is asked for.",
+        f"Put z along the axis of joint {case.right}.",
+    )
+
+
+@check(
+    of=WrongJointAxis,
+    rank=20,
+    code="wrong_joint_axis",
+    rule="frame_z",
+    means="z of a frame is along the axis of another joint",
+    example=(_FRAMES, "frames", {"2/axis": "5"}),
+    unlike={"2/axis": "2"},
+)
+def wrong_joint_axis(case: WrongJointAxis) -> Finding | None:
+    """The joint is any other one."""
+    return says(
+        "z of this frame belongs on the axis of another joint: count the joints again.",
+        f"Put z along the axis of joint {case.right}.",
+    )
+
+
+@check(
+    of=WrongFrameZ,
+    rank=10,
+    code="z_not_along_axis",
+    rule="frame_z",
+    means="z of a frame is not along its joint axis",
+    example=(_FRAMES, "frames", {"1/z": "+z"}),
+    unlike={"2/x": "+z"},
+)
+def z_not_along_axis(_: WrongFrameZ) -> Finding | None:
+    """The direction of z is another one than that of the axis."""
+    return says(
+        "z must be along the joint axis about which the joint turns, or along which it slides, in "
+        "either sense."
+    )
+
+
+@check(
+    of=WrongFrameOrigin,
+    rank=10,
+    code="origin_off_axis",
+    rule="frame_origin",
+    means="the origin of a frame is not on its joint axis",
+    example=(_FRAMES, "frames", {"5/origin_x": "d2"}),
+    unlike={"5/origin_z": "d2"},
+)
+def origin_off_axis(case: WrongFrameOrigin) -> Finding | None:
+    """The origin is beside the axis."""
+    if case.place.own.distance(case.origin) <= case.slack:
+        return None
+    return says("The origin is not on the joint axis along which z lies.")
+
+
+@check(
+    of=WrongFrameOrigin,
+    rank=20,
+    code="origin_not_at_intersection",
+    rule="frame_origin",
+    means="the origin of a frame is on its axis, but not where it meets the neighbouring axis",
+    example=(_FRAMES, "frames", {"5/origin_z": "d2"}),
+    unlike={"5/origin_x": "d2"},
+)
+def origin_not_at_intersection(case: WrongFrameOrigin) -> Finding | None:
+    """The axes cross, and the origin is not at the crossing."""
+    if case.place.relation is not AxisPosition.CROSSING:
+        return None
+    return says(f"The joint axis crosses {case.neighbour}: the origin belongs where they meet.")
+
+
+@check(
+    of=WrongFrameOrigin,
+    rank=30,
+    code="origin_not_on_normal",
+    rule="frame_origin",
+    means="the origin of a frame is on its axis, but not at the foot of the common normal",
+    example=("spatial-rrr-frames", "frames", {"1/origin_y": "L1"}),
+    unlike={"1/origin_x": "L1"},
+)
+def origin_not_on_normal(case: WrongFrameOrigin) -> Finding | None:
+    """The axes are skew, and the origin is not at the foot of their common normal."""
+    if case.place.relation is not AxisPosition.SKEW:
+        return None
+    return says(
+        f"The origin belongs at the foot of the common normal of the joint axis and "
+        f"{case.neighbour}."
+    )
+
+
+@check(
+    of=WrongFrameX,
+    rank=10,
+    code="x_not_perpendicular",
+    rule="frame_x",
+    means="x of a frame is not perpendicular to its own z",
+    example=(_FRAMES, "frames", {"2/x": "+z"}),
+    unlike={"2/x": "+y"},
+)
+def x_not_perpendicular(case: WrongFrameX) -> Finding | None:
+    """The direction of x is not perpendicular to the joint axis."""
+    if case.is_perpendicular_to(case.place.own.direction):
+        return None
+    return says("x must be perpendicular to z of its own frame.")
+
+
+@check(
+    of=WrongFrameX,
+    rank=20,
+    code="x_not_perpendicular_to_neighbour",
+    rule="frame_x",
+    means="x of a frame is not perpendicular to the neighbouring z, which it must cross",
+    example=(_FRAMES, "frames", {"2/x": "+y"}),
+    unlike={"2/x": "+z"},
+)
+def x_not_perpendicular_to_neighbour(case: WrongFrameX) -> Finding | None:
+    """The direction of x is not perpendicular to the neighbouring axis."""
+    if case.is_perpendicular_to(case.place.neighbour.direction):
+        return None
+    return says(f"x must be perpendicular to {case.neighbour}, too.")
+
+
+@check(
+    of=WrongFrameX,
+    rank=30,
+    code="x_not_crossing",
+    rule="frame_x",
+    means="x of a frame passes beside the neighbouring z, which it must cross",
+    example=("planar-rrr-frames", "frames", {"2/x": "+y"}),
+    unlike={"2/x": "+z"},
+)
+def x_not_crossing(case: WrongFrameX) -> Finding | None:
+    """The line of x does not meet the neighbouring axis."""
+    return says(f"x must cross {case.neighbour}: it is along the common normal of both axes.")

@@ -1,0 +1,140 @@
+"""Hold that an empty row or cell of a table never earns more than anything written there.
+
+A wrong row can hide the frames in which all other rows are right; an empty one cannot. So a wrong
+table earns at least as much as with one of its wrong rows given up: with numbers that are wrong in
+any frames. A table with empty cells earns at most as much as with such numbers in them.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.judging.marking.marks import least_lost, steps_lost
+from service.grading.judging.own_frames.reference import reference_values
+from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
+from service.grading.judging.table_filled import (
+    empty_cells,
+    with_empty_cells,
+    with_wrong_cells,
+)
+from service.grading.numerics.tolerances import SAME_CONTENT
+from service.grading.part import Grading, Judged
+from service.grading.reading.tables.table import StudentTable
+from service.grading.report import Verdict
+from service.kinematics.chain import ALPHA, A
+from service.kinematics.dh import Convention
+
+# The most wrong cells that are looked for in all rows at once if nothing but the frames is free.
+FEW = 2
+# The work of judging a table with a row given up, as a share of that of a table with messages.
+AGAIN = 0.5
+
+
+def with_fair_points(
+    part: DhTableSpec,
+    answer: StudentTable,
+    judged: Judged,
+    judged_again: Callable[[StudentTable], Judged],
+    work: float,
+    grading: Grading,
+) -> Judged:
+    """Return the judgement of a wrong table, with the limits of its points.
+
+    ``judged_again`` judges another table, which costs ``work``.
+    """
+
+    def lost(other: Judged) -> int:
+        return steps_lost(part, other)
+
+    budget = grading.reader.budget
+    unread = np.isnan(answer.values).any(axis=-1)
+    if unread.any():
+        empty = empty_cells(answer)
+        # A table without any readable cell earns nothing anyway.
+        if not empty.any() or unread.all():
+            return judged
+        budget.charge_search(work)
+        others = [judged_again(with_wrong_cells(answer, empty, grading))]
+        others += [] if judged.at_most is None else [judged.at_most]
+        return replace(judged, at_most=max(others, key=lost))
+    best = judged
+    # All tables that differ from the answer in as few cells have been compared.
+    is_searched = _has_given_ends(part, judged) and sum(_counts_wrong(judged)) <= FEW
+    wrong = _wrong_rows(part, judged, len(answer.rows))
+    for row, content in _content_in_any_frames(part, answer, wrong, grading):
+        if lost(best) <= least_lost(part, judged, content) or (content and is_searched):
+            continue
+        if not budget.affords_search(AGAIN * work):
+            break
+        cells = np.zeros(unread.shape, np.bool_)
+        cells[row] = True
+        other = judged_again(with_wrong_cells(answer, cells, grading))
+        if other.is_right:
+            # The row may be anything, such as the last one if the tool is free.
+            other = judged_again(with_empty_cells(answer, cells))
+        best = min(best, other, key=lost)
+    return judged if best is judged else replace(judged, at_least=best)
+
+
+def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
+    """Return the rows that may hide better frames, those with the most wrong cells first."""
+    if part.frames == "given":
+        return []
+    if judged.whole_cost is not None:
+        # A slip in several rows is not cured by one empty row.
+        if judged.beside is not None:
+            judged = judged.beside
+        elif np.count_nonzero(_counts_wrong(judged)) > FEW:
+            return []
+    if len(judged.rows) != rows:
+        return list(range(rows))
+    counts = _counts_wrong(judged)
+    if _has_given_ends(part, judged) and np.count_nonzero(counts) == 1:
+        # The other rows determine this row.
+        return []
+    return sorted((i for i in range(rows) if counts[i]), key=lambda i: -counts[i])
+
+
+def _counts_wrong(judged: Judged) -> list[int]:
+    """Return the number of cells of each row that are not right."""
+    return [sum(c.verdict is not Verdict.CORRECT for c in row.cells) for row in judged.rows]
+
+
+def _has_given_ends(part: DhTableSpec, judged: Judged) -> bool:
+    """True if only the frames are free, and no row is too many."""
+    return freedom_of(part) == FrameFreedom() and judged.at_most is None
+
+
+def _content_in_any_frames(
+    part: DhTableSpec, answer: StudentTable, rows: list[int], grading: Grading
+) -> list[tuple[int, int]]:
+    """Return the rows, each with the number of its cells that are content cells in any frames.
+
+    These are the angle between its two axes, unless they are parallel, and their distance, unless
+    an axis only has a direction.
+    """
+    convention = answer.convention if part.convention == "either" else part.convention
+    table = grading.exercise.robot.tables.get(convention) if convention else None
+    if not rows or table is None or len(table.rows) != len(answer.rows):
+        return [(i, 0) for i in rows]
+    cells = reference_values(table, grading.samples)
+    turned = np.abs(np.sin(cells[:, ALPHA])).min(axis=-1) > SAME_CONTENT
+    apart = np.abs(cells[:, A]).min(axis=-1) > SAME_CONTENT * grading.exercise.length_scale
+    has_base = part.base != "free"
+    has_tool = part.tool != "free" and len(table.joints) == len(table.rows)
+    # For each axis, whether it is a line or only a direction; None for base and tool.
+    is_line = [None, *(not joint.prismatic for joint in table.joints), None]
+    first = 0 if convention is Convention.MODIFIED else 1
+    found = []
+    for i in rows:
+        between = is_line[i + first : i + first + 2]
+        is_fixed = (
+            len(between) == 2
+            and (between[0] is not None or has_base)
+            and (between[1] is not None or has_tool)
+        )
+        is_apart = apart[i] and False not in between
+        found.append((i, int(is_fixed and turned[i]) + int(is_fixed and is_apart)))
+    return found

@@ -1,0 +1,1 @@
+"""Code that several answer kinds share."""

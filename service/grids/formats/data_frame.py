@@ -1,0 +1,69 @@
+"""Printed data frames of pandas, R, Julia and MATLAB -> columns between blanks."""
+
+import re
+from typing import Final
+
+from service.grids.cutting.source_text import SourceText, joined
+
+# The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "shape: (3, 4)".
+_SIZE: Final = re.compile(
+    r"^[ \t]*(?:# A tibble: \d{1,3} [×x] \d{1,3}|\d{1,3} ?[×x] ?\d{1,3} (?:DataFrame|table"
+    r"|Matrix\{\w{1,20}\}:)|shape: \(\d{1,3}, \d{1,3}\))"
+    r"[ \t]*\r?$",
+    re.MULTILINE,
+)
+# The line of types: <dbl> <chr>, or │ String Float64.
+_TYPES: Final = re.compile(
+    r"[ \t]*(?:<\w{1,9}>[ \t]*)+"
+    r"|[ \t]*│[ \t]*(?:(?:str|f64|f32|i64|i32|String|Float64|Int64|Any|Sym|Num)\d{0,2}\??"
+    r"[ \t…┆│]*)+"
+)
+_LINES: Final = re.compile(r"[\s┌┬┐├┼┤└┴┘╞╪╡│┆─═-]*")
+_QUOTES: Final = re.compile(r"[\"│┆{}]")
+# R numbers the columns and rows of a matrix: [,1] [,2], and [1,] before each row.
+_COLUMNS_OF_R: Final = re.compile(r"\s*(?:\[,\d{1,2}\]\s*)+")
+_ROW_OF_R: Final = re.compile(r"[ \t]*\[\d{1,2},\]")
+
+
+def without_frame(source: SourceText) -> SourceText:
+    """Return a printed data frame as columns between blanks; any other text unchanged."""
+    first, *lines = [line for line in source.lines() if line.text.strip()] or [source]
+    if _COLUMNS_OF_R.fullmatch(first.text):
+        rows = [line.cut(end.end(), len(line.text)) for line in lines if (end := _row_of_r(line))]
+        return _joined_lines(rows, source) if len(rows) == len(lines) else source
+    size = _SIZE.search(source.text)
+    if size is None or source.text[: size.start()].strip(" \t\r\n=abcdefghijklmnopqrstuvwxyz"):
+        return source
+    pieces = []
+    for line in source.cut(size.end(), len(source.text)).lines():
+        if not _TYPES.fullmatch(line.text.rstrip()) and not _LINES.fullmatch(line.text):
+            plain = _QUOTES.sub(" ", line.text)
+            pieces.append(SourceText(plain, line.starts, line.ends, line.at))
+    return _joined_lines(pieces, source)
+
+
+def _row_of_r(line: SourceText) -> re.Match[str] | None:
+    return _ROW_OF_R.match(line.text)
+
+
+def _joined_lines(lines: list[SourceText], source: SourceText) -> SourceText:
+    ended = [piece for line in lines for piece in (line, line.cut(0, 0).spelled("\n"))]
+    return joined(ended, source.at)
+
+
+def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
+    """Return the rows with a header above row numbers, which pandas and R print without one.
+
+    The header is empty, or the name of the index on the second line.
+    """
+    head, *body = rows
+    named = len(body) > 1 and len(body[0]) == 1 and len(head) > 1
+    label = body.pop(0)[0] if named else head[0].cut(0, 0)
+    if not body or any(len(row) != len(head) + 1 for row in body):
+        return rows
+    if any(any(map(str.isdigit, cell.text)) for cell in [label, *head]):
+        return rows
+    numbers = [row[0].text for row in body]
+    if numbers not in ([str(i + first) for i in range(len(body))] for first in (0, 1)):
+        return rows
+    return [[label, *head], *body]

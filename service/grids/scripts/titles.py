@@ -1,0 +1,119 @@
+"""Remove sentences and code fences around a pasted table or matrix.
+
+A line is removed only if it is certain that it is no row: it has words, and lacks the separator of
+all rows. A line that names a unit is refused, because the unit may apply to the table.
+"""
+
+import re
+from bisect import bisect_left
+from collections.abc import Callable
+from typing import Final
+
+from service.expressions.errors import Note
+from service.grids.cutting.grid import GridError
+from service.grids.cutting.source_text import SourceText
+
+_FENCE: Final = re.compile(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
+_BARS: Final = "|│┃║"
+# The separators of rows; the first that at least two lines have is the one of the table.
+_SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
+_PROGRAM: Final = re.compile(r"[\[■]|(?<!\w)(?:dict|np|sp)(?!\w)")
+# Signs of a formula, a row or a program.
+_SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
+# A legend of the stars that mark joint variables.
+_LEGEND: Final = re.compile(r"\*+\)?\s?[=:]")
+_WORD: Final = re.compile(
+    r"(?<!\w)(?!(?:alpha|theta|sqrt|atan2?)(?!\w))[^\W\d_]{4,}(?!\w)|[\u4e00-\u9fff]{2}"
+)
+_PARAMETER: Final = re.compile(r"(?<!\w)(?:alpha|alfa|theta|th|[adrqθα])(?=_|[^\w']|\Z)")
+_CONTROL: Final = re.compile(r"[ \t]*(?:for|while|if|elif|else|def|class|try|with|lambda)(?!\w)")
+_TITLE: Final = re.compile(
+    r"[ \t]*(?:#|\*\*|(?:table|tabelle|tab\.|tabla|tableau|tabella|表) ?\d)|.*[:：][ \t]*\Z",
+    re.IGNORECASE,
+)
+_FREEDOM: Final = re.compile(
+    r"degrees? of freedom|freiheitsgrade?|grados de libertad|degrés? de liberté|自由度",
+    re.IGNORECASE,
+)
+_UNIT: Final = re.compile(
+    r"(?<![^\W\d_])(?:deg(?:rees?)?|degrés?|grad|grados?|gradi|rad(?:ian\w{0,4})?|bogenma(?:ß|ss)"
+    r"|[cmd]m|(?:milli|centi|mili|zenti)?m(?:et(?:er|re|ro)s?|ètres?)|inch(?:es)?)(?![^\W\d_])"
+    r"|°|弧度|度|毫米|厘米|米",
+    re.IGNORECASE,
+)
+
+
+def without_fence(source: SourceText) -> SourceText:
+    """Return the text in a code fence, if there is one fence with only sentences around it."""
+    if "```" not in source.text and "~~~" not in source.text:
+        return source
+    lines = source.lines()
+    fences = [i for i, line in enumerate(lines) if _FENCE.fullmatch(line.text)]
+    if len(fences) != 2:
+        return source
+    first, last = fences
+    around = [*lines[:first], *lines[last + 1 :]]
+    if first + 1 == last or any(line.text.strip() and not _is_prose(line.text) for line in around):
+        return source
+    for line in around:
+        _check_units(line)
+    return _between(source, lines[first + 1], lines[last - 1])
+
+
+def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
+    """Return the text without sentences before and after the table, and a note on them.
+
+    Raises GridError if such a sentence names a unit.
+    """
+    lines = [line for line in source.lines() if line.text.strip()]
+    is_row = _row_test(source.text, lines)
+    rows = [i for i, line in enumerate(lines) if is_row(line.text)]
+    if not rows or len(rows) == len(lines):
+        return source, ()
+    first, last = rows[0], rows[-1]
+    around = [*lines[:first], *lines[last + 1 :]]
+    if not around or not all(_is_prose(line.text) for line in around):
+        return source, ()
+    for line in around:
+        _check_units(line)
+    message = "The sentences before and after the table were ignored."
+    note = Note("text_left_aside", message, around[0].whole)
+    return _between(source, lines[first], lines[last]), (note,)
+
+
+def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
+    """Return the function that is true for a line that may be a row, given the whole text."""
+    if "\\begin" in text or "\\\\" in text:
+        return lambda line: "\\" in line or "$" in line
+    if not _PROGRAM.search(text):
+        for separator in _SEPARATORS:
+            counts = [sum(map(line.text.count, separator)) for line in lines]
+            rows = [count for count in counts if count]
+            if len(rows) > 1 and min(rows) > 1 and separator != ",":
+                return lambda line: any(map(line.__contains__, separator))
+    return lambda line: not _TITLE.match(line) or "(" in line or bool(_CONTROL.match(line))
+
+
+def _is_prose(line: str) -> bool:
+    """True if a line has words, and no signs of a formula or of headers."""
+    if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:
+        return False
+    return _WORD.search(line) is not None and not _SIGNS.search(_LEGEND.sub("", line))
+
+
+def _check_units(line: SourceText) -> None:
+    """Raise GridError for a sentence with the name of a unit, which may apply to the table."""
+    if _UNIT.search(_FREEDOM.sub("", line.text)):
+        raise GridError(
+            "text_around",
+            "This line names a unit, but not its columns. Delete the line, and write the units "
+            "into the headers, such as theta [deg].",
+            line.whole,
+        )
+
+
+def _between(source: SourceText, first: SourceText, last: SourceText) -> SourceText:
+    """Return the text from the beginning of one line to the end of another."""
+    start = bisect_left(source.starts, first.starts[0])
+    end = bisect_left(source.starts, last.starts[len(last.text) - 1]) + 1
+    return source.cut(start, end)

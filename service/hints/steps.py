@@ -1,0 +1,160 @@
+"""The three steps of a hint for a message of a report.
+
+A step is made from the message, its place and the convention of the part, never from the reference:
+it contains no more of the answer than the message.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from service.catalogue import Exercise, PartSpec
+from service.catalogue.parts.dh_row import DhRowSpec
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading import Report
+from service.grading.report import (
+    Feedback,
+    PartReport,
+    RuleName,
+    Severity,
+    Verdict,
+    messages_of,
+)
+from service.hints.rules import OF_COLUMN, RULES
+from service.kinematics.dh import Convention
+
+STEPS: Final = 3
+_IN_WORDS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
+# The rule for a message whose code has no record of its own.
+_OF_KIND: Final[Mapping[str, RuleName]] = {
+    "dh_table": "of_column",
+    "dh_row": "of_column",
+    "position": "position_vector",
+    "vector": "position_vector",
+    "euler_angles": "euler_sequence",
+    "screw_axes": "screw_axis",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A message of a report that a hint is about, by its code and one of its places."""
+
+    part: str
+    code: str
+    row: str | None = None
+    cell: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class HintStep:
+    """A step of a hint. ``rule`` is the name of the rule if the step has its picture."""
+
+    title: str
+    text: str
+    convention: Convention
+    rule: RuleName | None = None
+
+
+def has_hints(message: Feedback, verdict: Verdict) -> bool:
+    """True if a message is on a mistake: not on reading, and not on an empty cell."""
+    unread = (Verdict.UNREADABLE, Verdict.MISSING)
+    return message.severity is Severity.ERROR and verdict not in unread
+
+
+def hint_step(
+    exercise: Exercise, topic: Topic, step: int, answers: Mapping[str, object], report: Report
+) -> HintStep | None:
+    """Return step 1, 2 or 3 of the hint for a message; None if the report has no such message."""
+    part = exercise.part(topic.part)
+    told = next((each for each in report.parts if each.part == topic.part), None)
+    message = None if told is None else _message(told, topic)
+    if part is None or told is None or message is None:
+        return None
+    convention = _convention(part, answers.get(part.id), told)
+    name = _rule_name(message, topic, part)
+    rule = RULES[name]
+    if step == 2:
+        pictured = name if rule.pictured else None
+        return HintStep(rule.title, rule.stated(convention), convention, pictured)
+    text = rule.look if step == 1 else rule.apply
+    fields = _fields(topic, part, convention, told)
+    return HintStep(rule.title, text.format_map(fields), convention)
+
+
+def _message(report: PartReport, topic: Topic) -> Feedback | None:
+    """Return the message of the report that the topic names; None if it has none with hints."""
+    for message, places, verdict in messages_of(report):
+        at = {(place.row, place.cell) for place in places}
+        is_there = (topic.row, topic.cell) in at if at else topic.row is None
+        if message.code == topic.code and is_there:
+            return message if has_hints(message, verdict) else None
+    return None
+
+
+def _rule_name(message: Feedback, topic: Topic, part: PartSpec) -> RuleName:
+    rule = message.rule or _OF_KIND.get(part.kind, "product")
+    if rule == "of_column":
+        return OF_COLUMN.get(topic.cell or "", "convention")
+    if rule == "joint_variable" and (not _has_axes(part) or topic.row is None):
+        return "dependence"
+    return rule
+
+
+def _has_axes(part: PartSpec) -> bool:
+    return isinstance(part, DhTableSpec | DhRowSpec)
+
+
+def _convention(part: PartSpec, answer: object, report: PartReport) -> Convention:
+    """Return the convention in which the answer was read; of a part without one, standard."""
+    if isinstance(part, DhRowSpec):
+        return part.convention
+    if not isinstance(part, DhTableSpec):
+        return Convention.STANDARD
+    if isinstance(part.convention, Convention):
+        return part.convention
+    named = answer.get("convention") if isinstance(answer, dict) else None
+    if named in (Convention.STANDARD, Convention.MODIFIED):
+        return Convention(named)
+    taken = (each.message for each in report.feedback if each.code == "convention_taken")
+    said = next(taken, "")
+    return Convention.MODIFIED if Convention.MODIFIED in said else Convention.STANDARD
+
+
+def _fields(
+    topic: Topic, part: PartSpec, convention: Convention, report: PartReport
+) -> dict[str, str]:
+    """Return the values of the fields of a sentence."""
+    before, here = "of the frame before", "of this frame"
+    labels = [row.label for row in report.rows]
+    if isinstance(part, DhTableSpec) and topic.row in labels:
+        index = labels.index(topic.row)
+        before, here = (labels[index - 1] if index else "0"), topic.row
+    x_before, x_here = _axis("x", before), _axis("x", here)
+    z_before, z = _axis("z", before), _axis("z", here)
+    is_modified = convention is Convention.MODIFIED
+    return {
+        "row": topic.row or "",
+        "x_before": x_before,
+        "x_here": x_here,
+        "z_before": z_before,
+        "z": z,
+        "x": x_before if is_modified else x_here,
+        "axis": z if is_modified else z_before,
+        "entry": _entry(topic),
+    }
+
+
+def _axis(letter: str, label: str) -> str:
+    """Return the name of an axis: z1, x_e, or "the z axis of this frame"."""
+    if label.isdecimal():
+        return f"{letter}{label}"
+    return f"{letter}_{label}" if len(label) == 1 else f"the {letter} axis {label}"
+
+
+def _entry(topic: Topic) -> str:
+    if topic.cell is None:
+        return "the answer" if topic.row is None else f"row {topic.row}"
+    if topic.cell in _IN_WORDS:
+        return f"{_IN_WORDS[topic.cell]} in row {topic.row}"
+    return f"row {topic.row}, column {topic.cell}"

@@ -1,0 +1,106 @@
+"""Draw a table with one slip by seed, such that the grader finds exactly this slip."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+from service.catalogue import Exercise
+from service.kinematics.chain import THETA, D
+from service.kinematics.dh import Convention
+from service.learning.draws import SlipDraws
+from service.learning.slips import SLIPS, SlipChange, changes_of
+from service.learning.table_texts import ModelTable, TableCell, TableTexts, model_table
+from service.time_slices import checkpoint
+
+
+@dataclass(frozen=True, slots=True)
+class TableBlame:
+    """The grader's judgement of a wrong table.
+
+    ``codes`` are those of its messages on errors, ``cells`` the wrong cells. ``single`` are the
+    cells that can each be repaired alone, so that the table becomes valid.
+    """
+
+    codes: frozenset[str]
+    cells: frozenset[TableCell]
+    single: frozenset[TableCell] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnSlip:
+    """A table with one slip.
+
+    ``texts`` is the wrong table, ``model`` the right one. ``misconception`` is its code.
+    ``places`` are the sets of cells that explain the slip; there are several if parallel axes
+    share an offset.
+    """
+
+    misconception: str
+    texts: TableTexts
+    model: ModelTable
+    places: tuple[frozenset[TableCell], ...]
+
+    @property
+    def cells(self) -> frozenset[TableCell]:
+        """The cells in which the wrong table differs from the right one."""
+        return self.places[0]
+
+
+# The grader's judgement of a table; None if it is right.
+JudgeTable: TypeAlias = Callable[[TableTexts], TableBlame | None]
+
+# The columns in which neighbours on parallel or equal axes share an offset.
+_SHARED: Final = (D, THETA)
+# Tables that are judged for one draw at most.
+MAX_TRIES: Final = 60
+
+
+class NoSlipError(ValueError):
+    """No slip of the wanted kind fits the robot."""
+
+
+def drawn_slip(
+    exercise: Exercise,
+    convention: Convention,
+    seed: int,
+    judge_table: JudgeTable,
+    wanted: str | None = None,
+) -> DrawnSlip:
+    """Return the table that a seed draws; with ``wanted``, one with the misconception of this code.
+
+    Raises NoSlipError if no table has exactly one slip that the grader finds.
+    """
+    table = model_table(exercise.robot, convention, exercise.symbols)
+    for _, (name, change) in zip(range(MAX_TRIES), _tries(table, seed, wanted), strict=False):
+        checkpoint()
+        texts = table.changed(change)
+        blame = judge_table(texts)
+        if blame is not None and (places := _places(name, change, blame)):
+            return DrawnSlip(name, texts, table, places)
+    named = "slip" if wanted is None else f"slip {wanted}"
+    raise NoSlipError(f"the {convention.value} table of this robot has no {named} to find")
+
+
+def _tries(table: ModelTable, seed: int, wanted: str | None) -> Iterator[tuple[str, SlipChange]]:
+    """Yield the codes in turn, each with one of its changes, in the order of the seed."""
+    draws = SlipDraws(f"find the slip\n{seed}")
+    codes = draws.shuffled(list(SLIPS)) if wanted is None else [wanted]
+    left = {name: draws.shuffled(changes_of(name, table)) for name in codes}
+    while any(left.values()):
+        for name in codes:
+            if left[name]:
+                yield name, left[name].pop(0)
+
+
+def _places(name: str, change: SlipChange, blame: TableBlame) -> tuple[frozenset[TableCell], ...]:
+    """Return the places of a slip; none if the grader finds another one or several."""
+    cells = frozenset(change)
+    if blame.codes != {name} or blame.cells != cells:
+        return ()
+    if len(cells) > 1:
+        return (cells,)
+    [(_, column)] = cells
+    others = sorted(blame.single - cells)
+    if others and (column not in _SHARED or any(other != column for _, other in others)):
+        return ()
+    return (cells, *(frozenset({other}) for other in others))

@@ -1,0 +1,77 @@
+"""The self-test of a registration: can its keys be read, do the clocks agree, did it launch."""
+
+import json
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
+from http import HTTPStatus
+from time import monotonic
+from typing import Final, NamedTuple
+
+from service.lti.fetching import TIMEOUT, FetchError, answer, content
+from service.lti.own_keys import SigningKey
+from service.lti.platform_keys import usable_keys
+from service.lti.problems import LTI_PROBLEMS
+from service.lti.registrations import Registration
+from service.lti.scores.access_tokens import fetched_token
+from service.lti.scores.line_items import SEND
+from service.lti.scores.score_problems import ScoreError
+
+# The greatest difference of clocks (seconds): messages may come from ten seconds ahead.
+_CLOCKS: Final = 10.0
+
+
+class CheckLine(NamedTuple):
+    """A line of the self-test; ``is_fine`` is None if it only tells something."""
+
+    is_fine: bool | None
+    text: str
+
+
+def check_registration(registration: Registration, key: SigningKey) -> Iterator[CheckLine]:
+    """Yield the lines of the self-test. It asks the platform for its keys, and for a token."""
+    until = monotonic() + TIMEOUT
+    try:
+        with answer(registration.jwks_url, local=registration.is_development) as response:
+            if response.status_code != HTTPStatus.OK:
+                raise FetchError(f"the status is {response.status_code}")
+            try:
+                keys = usable_keys(json.loads(content(response, until)))
+            except (ValueError, RecursionError) as error:
+                raise FetchError("the answer is not JSON") from error
+            date = response.headers.get("date")
+    except FetchError as error:
+        yield CheckLine(False, f"keys of the platform: {error}")
+    else:
+        usable = sum(key is not None for key in keys.values())
+        yield CheckLine(usable > 0, f"keys of the platform: {usable} of {len(keys)} can be used")
+        yield _clocks(date)
+    yield _token(registration, key)
+    launched = registration.launched_at
+    told = f"{launched:%Y-%m-%d %H:%M} UTC" if launched else "never"
+    yield CheckLine(None, f"last launch: {told}")
+    if registration.refused_at is not None:
+        problem = LTI_PROBLEMS.get(registration.refusal or "")
+        cause = registration.refusal if problem is None else problem.cause.partition(" {")[0]
+        yield CheckLine(
+            None, f"last refusal: {registration.refused_at:%Y-%m-%d %H:%M} UTC: {cause}"
+        )
+
+
+def _token(registration: Registration, key: SigningKey) -> CheckLine:
+    if registration.token_url is None:
+        return CheckLine(None, "access token: no token address is registered; no scores are sent")
+    try:
+        fetched_token(registration, SEND, key, datetime.now(UTC))
+    except ScoreError as error:
+        return CheckLine(False, f"access token: {error}")
+    return CheckLine(True, "access token: the platform gives one for scores")
+
+
+def _clocks(date: str | None) -> CheckLine:
+    try:
+        theirs = parsedate_to_datetime(date or "")
+        apart = abs((datetime.now(UTC) - theirs).total_seconds())
+    except (ValueError, TypeError):
+        return CheckLine(None, "clocks: the platform does not tell its time")
+    return CheckLine(apart <= _CLOCKS, f"clocks: {apart:.0f} s apart")

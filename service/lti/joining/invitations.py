@@ -1,0 +1,128 @@
+"""Invitations: one-time links by which a platform registers itself.
+
+Only a digest of the link is stored. The beginning of its text says whether the registration waits
+for ``dh-grader lti allow``; as it is part of the digest, nobody can change it.
+"""
+
+import secrets
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any, Final
+
+from pydantic import ValidationError
+from sqlalchemy import Connection, insert, select, update
+
+from service.attempts.storage.lti_tables import invitations, registrations
+from service.courses.errors import CourseError
+from service.courses.times import zone_named
+from service.lti.logins import digest
+from service.lti.registrations import (
+    LOCAL_HOSTS,
+    NewRegistration,
+    Registration,
+    RegistrationError,
+    add_registration,
+    registration,
+    unusable,
+)
+
+LONGEST_DAYS: Final = 90
+_HELD: Final = "held-"
+
+
+@dataclass(frozen=True, slots=True)
+class Invitation:
+    """A valid invitation; ``waits`` is true if an admin must allow the registration first."""
+
+    digest: str
+    name: str
+    address: str
+    zone: str
+    waits: bool
+
+    @property
+    def is_development(self) -> bool:
+        """True if this service is on this machine, and so may the platform be."""
+        return any(self.address.startswith(f"http://{host}") for host in LOCAL_HOSTS)
+
+
+def invite(
+    connection: Connection,
+    name: str,
+    address: str,
+    zone: str,
+    now: datetime,
+    *,
+    days: int,
+    waits: bool,
+) -> str:
+    """Make an invitation; return the link for the admin of the platform.
+
+    Raises RegistrationError.
+    """
+    address = address.rstrip("/")
+    if reason := unusable(address, local=True):
+        raise RegistrationError(f"address: {reason}")
+    try:
+        zone_named(zone)
+    except CourseError as error:
+        raise RegistrationError(str(error)) from error
+    text = f"{_HELD if waits else ''}{secrets.token_urlsafe(24)}"
+    values = {"digest": digest(text), "name": name, "address": address, "zone": zone}
+    times = {"created_at": now, "expires_at": now + timedelta(days=days)}
+    connection.execute(insert(invitations).values(values | times))
+    return f"{address}/lti/register?invitation={text}"
+
+
+def invitation_of(connection: Connection, text: str, now: datetime) -> Invitation:
+    """Return a valid invitation. Raises RegistrationError."""
+    mine = invitations.c.digest == digest(text)
+    row = connection.execute(select(invitations).where(mine)).one_or_none()
+    if row is None or row.used_at is not None or row.expires_at <= now:
+        raise RegistrationError("This link is not valid, was used already, or has expired.")
+    return Invitation(row.digest, row.name, row.address, row.zone, text.startswith(_HELD))
+
+
+def claim(connection: Connection, text: str, now: datetime) -> Invitation:
+    """Return a valid invitation, which nobody else can use meanwhile. Raises RegistrationError."""
+    found = invitation_of(connection, text, now)
+    mine = (invitations.c.digest == found.digest) & invitations.c.used_at.is_(None)
+    if not connection.execute(update(invitations).where(mine).values(used_at=now)).rowcount:
+        raise RegistrationError("This link is being used just now.")
+    return found
+
+
+def release(connection: Connection, invitation: Invitation) -> None:
+    """Make an invitation usable again, because the platform was not registered."""
+    mine = (invitations.c.digest == invitation.digest) & invitations.c.registration.is_(None)
+    connection.execute(update(invitations).where(mine).values(used_at=None))
+
+
+def accept(
+    connection: Connection, invitation: Invitation, values: dict[str, Any], now: datetime
+) -> Registration:
+    """Add the registration of an invited platform. Raises RegistrationError."""
+    try:
+        new = NewRegistration(
+            name=invitation.name,
+            address=invitation.address,
+            zone=invitation.zone,
+            is_development=invitation.is_development,
+            **values,
+        )
+    except ValidationError as error:
+        raise RegistrationError("The platform has sent unusable values.") from error
+    made = add_registration(connection, new, now)
+    if invitation.waits:
+        mine = registrations.c.id == made.id
+        connection.execute(update(registrations).where(mine).values(any_deployment=False))
+    mine = invitations.c.digest == invitation.digest
+    connection.execute(update(invitations).where(mine).values(registration=made.id))
+    return made
+
+
+def allow(connection: Connection, registration_id: str) -> None:
+    """Let a registration that waits launch, in all its deployments. Raises RegistrationError."""
+    registration(connection, registration_id)
+    mine = registrations.c.id == registration_id
+    connection.execute(update(registrations).where(mine).values(any_deployment=True))

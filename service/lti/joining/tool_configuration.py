@@ -1,0 +1,89 @@
+"""What this service is for a platform: the request of a registration, and a file for Canvas."""
+
+from collections.abc import Collection
+from typing import Any, Final
+from urllib.parse import urlsplit
+
+from service.lti.messages import DEEP_LINKING
+from service.lti.registrations import KEYS_PATH, LAUNCH_PATH, LOGIN_PATH
+
+NAME: Final = "DH Grader"
+DESCRIPTION: Final = "Forward kinematics and Denavit-Hartenberg tables, graded at once."
+TOOL: Final = "https://purl.imsglobal.org/spec/lti-tool-configuration"
+_AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/scope/"
+SCOPES: Final = (
+    f"{_AGS}lineitem",
+    f"{_AGS}lineitem.readonly",
+    f"{_AGS}result.readonly",
+    f"{_AGS}score",
+    "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly",
+)
+# The places of a platform in which tutors choose exercises. Those of Canvas have names of its own.
+CANVAS_PLACEMENTS: Final = ("assignment_selection", "link_selection")
+PLACEMENTS: Final = ("ContentArea", *CANVAS_PLACEMENTS)
+
+
+def registration_request(
+    address: str, scopes: Collection[str] | None, messages: dict[str, list[str]] | None
+) -> dict[str, Any]:
+    """Return the body of a dynamic registration.
+
+    ``scopes`` and ``messages`` (with their placements) are those that the platform supports; None
+    if it does not say.
+    """
+    launch = address + LAUNCH_PATH
+    linking: dict[str, Any] = {"type": DEEP_LINKING, "target_link_uri": launch, "label": NAME}
+    known = (messages or {}).get(DEEP_LINKING, [])
+    if placements := [each for each in PLACEMENTS if each in known]:
+        linking["placements"] = placements
+    wanted = messages is None or DEEP_LINKING in messages
+    return {
+        "application_type": "web",
+        "grant_types": ["client_credentials", "implicit"],
+        "response_types": ["id_token"],
+        "initiate_login_uri": address + LOGIN_PATH,
+        "redirect_uris": [launch],
+        "client_name": NAME,
+        "jwks_uri": address + KEYS_PATH,
+        "token_endpoint_auth_method": "private_key_jwt",
+        "scope": " ".join(each for each in SCOPES if scopes is None or each in scopes),
+        TOOL: {
+            "domain": urlsplit(address).netloc,
+            "description": DESCRIPTION,
+            "target_link_uri": launch,
+            "claims": ["iss", "sub"],
+            "messages": [linking] if wanted else [],
+        },
+    }
+
+
+def canvas_configuration(address: str) -> dict[str, Any]:
+    """Return the JSON that an admin of Canvas pastes as the configuration of an LTI key."""
+    launch = address + LAUNCH_PATH
+    placements = [
+        {
+            "placement": each,
+            "message_type": DEEP_LINKING,
+            "target_link_uri": launch,
+            "text": NAME,
+            "enabled": True,
+        }
+        for each in CANVAS_PLACEMENTS
+    ]
+    return {
+        "title": NAME,
+        "description": DESCRIPTION,
+        "target_link_uri": launch,
+        "oidc_initiation_url": address + LOGIN_PATH,
+        "public_jwk_url": address + KEYS_PATH,
+        "scopes": list(SCOPES),
+        "custom_fields": {},
+        "extensions": [
+            {
+                "platform": "canvas.instructure.com",
+                "domain": urlsplit(address).netloc,
+                "privacy_level": "anonymous",
+                "settings": {"text": NAME, "placements": placements},
+            }
+        ],
+    }

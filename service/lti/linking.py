@@ -1,0 +1,344 @@
+"""What a launch leads to: a context is a course, a resource link an assignment, a user a learner.
+
+Everything is done on one connection, in the transaction that uses up the login.
+"""
+
+import hmac
+import json
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from hashlib import sha256
+from typing import Any, Final
+
+from pydantic import ValidationError
+from sqlalchemy import Connection, Row, insert, select, update
+
+from service.access.caller import Scope
+from service.access.key_table import add_key, keys_at, settle
+from service.access.key_text import new_key_text
+from service.access.keys import Secret
+from service.attempts.recording import insert_or_ignore
+from service.attempts.storage import lti_tables as tables
+from service.attempts.storage.tables import assignments, course_learners, courses
+from service.catalogue import Exercise
+from service.contract.courses import CourseAssignment, NewAssignment, NewCourse
+from service.courses import roll
+from service.courses.assignments import add_assignment, assignment_of
+from service.courses.errors import CourseError
+from service.lti.messages import LaunchMessage
+from service.lti.problems import LtiError
+from service.lti.registrations import add_deployments, deployments_of
+from service.lti.roles import LtiRole
+from service.lti.scores.line_items import ensure_line_item, try_refused_again
+
+# The lifetime of the key of a course, and how long before its end the next one is made.
+_KEY_LIFETIME: Final = timedelta(days=400)
+_KEY_RENEWAL: Final = timedelta(days=30)
+# The custom parameters that are dates of an assignment.
+DATES: Final = ("opens", "due")
+
+
+@dataclass(frozen=True, slots=True)
+class Landing:
+    """Where a launch leads to.
+
+    ``context`` and ``link`` are numbers of rows; 0 means that there is none, because the launch
+    records nothing. ``assignment`` is None as long as no exercises are chosen for the link.
+    """
+
+    role: LtiRole
+    context: int = 0
+    link: int = 0
+    course: str = ""
+    course_title: str = ""
+    key_id: str = ""
+    learner: str = ""
+    link_title: str = ""
+    assignment: CourseAssignment | None = None
+
+
+def enter(
+    connection: Connection,
+    message: LaunchMessage,
+    secret: Secret,
+    catalogue: Mapping[str, Exercise],
+    now: datetime,
+) -> Landing:
+    """Record a launch and return where it leads to. Raises LtiError.
+
+    Previews and guests see what is there and record nothing.
+    """
+    if not settle(connection, secret, now):
+        raise LtiError("no-secret")
+    check_deployment(connection, message, now)
+    mine = message.registration.id
+    if message.role in (LtiRole.PREVIEW, LtiRole.GUEST):
+        return _visit(connection, message)
+    launched = update(tables.registrations).where(tables.registrations.c.id == mine)
+    connection.execute(launched.values(launched_at=now))
+    context = context_of(connection, message, now)
+    link = _link(connection, message, context, catalogue, now)
+    learner = ""
+    if message.role is LtiRole.LEARNER:
+        assert message.sub is not None
+        learner = enrolled(connection, mine, message.sub, context.course, secret, now)
+        try_refused_again(connection, learner, now)
+    ensure_line_item(connection, link.number)
+    return Landing(
+        role=message.role,
+        context=context.number,
+        link=link.number,
+        course=context.course,
+        course_title=roll.course(connection, context.course).title,
+        key_id=context.key,
+        learner=learner,
+        link_title=link.title,
+        assignment=linked_assignment(connection, context.course, link.assignment),
+    )
+
+
+def pseudonym(registration: str, sub: str, secret: Secret) -> str:
+    """Return the id of a platform's user in courses and attempts.
+
+    It tells nothing of the user, and two platforms with equal users get different ones.
+    """
+    content = json.dumps([registration, sub]).encode()
+    return f"lti-{hmac.digest(secret.lti_secret, b'learner ' + content, 'sha256').hex()[:24]}"
+
+
+def pseudonymous_name(learner: str) -> str:
+    """Return the name that is shown for a learner as long as the tutor wants no names."""
+    return f"Learner {learner[-6:]}"
+
+
+def enrolled(
+    connection: Connection, registration: str, sub: str, course: str, secret: Secret, now: datetime
+) -> str:
+    """Enrol a platform's user in a course; return the learner."""
+    learner = pseudonym(registration, sub, secret)
+    values = {"registration": registration, "sub": sub, "learner": learner, "launched_at": now}
+    statement = insert_or_ignore(tables.learners)[connection.dialect.name]
+    connection.execute(statement.values(values))
+    mine = tables.learners.c.learner == learner
+    connection.execute(update(tables.learners).where(mine).values(launched_at=now))
+    new = {"course": course, "learner": learner, "name": pseudonymous_name(learner)}
+    enrolment = insert_or_ignore(course_learners)[connection.dialect.name]
+    connection.execute(enrolment.values(new))
+    return learner
+
+
+def context_of(connection: Connection, message: LaunchMessage, now: datetime) -> Row[Any]:
+    """Return the row of a message's context; make it, and its course, if it is new."""
+    found = known_context(connection, message)
+    if found is None:
+        course = f"lti-{_short(message.registration.id, message.deployment, message.context)}"
+        title = message.context_title or f"Course of {message.registration.name}"[:200]
+        if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
+            new = NewCourse(id=course, title=title, zone=message.registration.zone)
+            roll.add_course(connection, new, now)
+        values = {
+            "registration": message.registration.id,
+            "deployment": message.deployment,
+            "context": message.context,
+            "course": course,
+            "shows_names": False,
+        }
+        statement = insert_or_ignore(tables.contexts)[connection.dialect.name]
+        connection.execute(statement.values(values))
+        found = known_context(connection, message)
+        assert found is not None
+    changes = {"key": _course_key(connection, found, message, now)}
+    if message.memberships_url:
+        changes["memberships_url"] = message.memberships_url
+    mine = tables.contexts.c.number == found.number
+    connection.execute(update(tables.contexts).where(mine).values(changes))
+    return connection.execute(select(tables.contexts).where(mine)).one()
+
+
+def assign(
+    connection: Connection, link: int, new: NewAssignment, known: Collection[str]
+) -> CourseAssignment:
+    """Make an assignment for a resource link, or return the one that it has. Raises CourseError."""
+    row = connection.execute(
+        select(tables.resource_links, tables.contexts.c.course)
+        .join_from(tables.resource_links, tables.contexts)
+        .where(tables.resource_links.c.number == link)
+    ).one_or_none()
+    if row is None:
+        raise CourseError("unknown-assignment", "The resource link is not there any more.")
+    found = linked_assignment(connection, row.course, row.assignment)
+    if found is not None:
+        return found
+    made = add_assignment(connection, row.course, new, known)
+    _set_assignment(connection, link, row.course, made.id)
+    ensure_line_item(connection, link)
+    return made
+
+
+def new_assignment_id(link: int) -> str:
+    """Return the id of the assignment of a resource link."""
+    return f"lti-{link}"
+
+
+def linked_assignment(
+    connection: Connection, course: str, number: int | None
+) -> CourseAssignment | None:
+    """Return the assignment with this number of a row, or None."""
+    if number is None:
+        return None
+    mine = (assignments.c.number == number) & (assignments.c.course == course)
+    found = connection.scalar(select(assignments.c.id).where(mine))
+    return None if found is None else assignment_of(connection, course, found)
+
+
+def check_deployment(connection: Connection, message: LaunchMessage, now: datetime) -> None:
+    """Check that a deployment is known, or may become known. Raises LtiError."""
+    mine = message.registration
+    if message.deployment in deployments_of(connection, mine.id):
+        return
+    if not mine.any_deployment:
+        raise LtiError("unknown-deployment", deployment=message.deployment)
+    if message.role in (LtiRole.TUTOR, LtiRole.LEARNER):
+        add_deployments(connection, mine.id, [message.deployment], now)
+
+
+def _visit(connection: Connection, message: LaunchMessage) -> Landing:
+    """Return where the launch of a preview or a guest leads to, as far as it is there."""
+    context = known_context(connection, message)
+    if context is None:
+        return Landing(message.role, link_title=message.link_title)
+    link = _known_link(connection, context.number, message.link)
+    number = None if link is None else link.assignment
+    return Landing(
+        message.role,
+        course=context.course,
+        key_id=context.key or "",
+        link_title=message.link_title,
+        assignment=linked_assignment(connection, context.course, number),
+    )
+
+
+def known_context(connection: Connection, message: LaunchMessage) -> Row[Any] | None:
+    """Return the row of a message's context, or None."""
+    of = tables.contexts.c
+    mine = (
+        (of.registration == message.registration.id)
+        & (of.deployment == message.deployment)
+        & (of.context == message.context)
+    )
+    return connection.execute(select(tables.contexts).where(mine)).one_or_none()
+
+
+def _course_key(
+    connection: Connection, context: Row[Any], message: LaunchMessage, now: datetime
+) -> str:
+    """Return the id of the course's key; make one if it has none that is valid for long."""
+    if context.key is not None:
+        found = keys_at(connection, [("id", context.key)]).get(("id", context.key))
+        is_valid = found is not None and found.revoked_at is None
+        if found is not None and is_valid and found.expires_at > now + _KEY_RENEWAL:
+            return found.id
+    # Nobody ever knows the text of this key: tokens and sessions name it by its id.
+    unknown = sha256(new_key_text().encode()).hexdigest()
+    name = f"LTI: {message.registration.name}"[:200]
+    made = add_key(connection, name, unknown, Scope, None, now, now + _KEY_LIFETIME, context.course)
+    return made.id
+
+
+def _known_link(connection: Connection, context: int, link: str) -> Row[Any] | None:
+    of = tables.resource_links.c
+    mine = (of.context == context) & (of.link == link)
+    return connection.execute(select(tables.resource_links).where(mine)).one_or_none()
+
+
+def _link(
+    connection: Connection,
+    message: LaunchMessage,
+    context: Row[Any],
+    catalogue: Mapping[str, Exercise],
+    now: datetime,
+) -> Row[Any]:
+    """Return the row of a message's resource link; note the addresses of its services."""
+    values = {
+        "title": message.link_title or "Exercises",
+        "lineitem_url": message.lineitem_url,
+        "lineitems_url": message.lineitems_url,
+        "scopes": message.scopes,
+        "launched_at": now,
+    }
+    where = {"context": context.number, "link": message.link}
+    found = _known_link(connection, context.number, message.link)
+    if found is None:
+        connection.execute(insert(tables.resource_links).values(where | values))
+        found = _known_link(connection, context.number, message.link)
+        assert found is not None
+    else:
+        mine = tables.resource_links.c.number == found.number
+        connection.execute(update(tables.resource_links).where(mine).values(values))
+    if found.assignment is None:
+        _assign_by_parameters(connection, message, found, context.course, catalogue)
+    found = _known_link(connection, context.number, message.link)
+    assert found is not None
+    return found
+
+
+def _assign_by_parameters(
+    connection: Connection,
+    message: LaunchMessage,
+    link: Row[Any],
+    course: str,
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """Link the assignment that the custom parameters of a deep link name, if they are usable."""
+    wanted = message.custom.get("assignment") or new_assignment_id(link.number)
+    mine = (assignments.c.course == course) & (assignments.c.id == wanted)
+    if connection.scalar(select(assignments.c.id).where(mine)) is None:
+        new = parameters_assignment(message, wanted, link.title, catalogue)
+        if new is None:
+            return
+        try:
+            with connection.begin_nested():
+                add_assignment(connection, course, new, catalogue.keys())
+        except CourseError:
+            return
+    elif "assignment" not in message.custom:
+        return
+    _set_assignment(connection, link.number, course, wanted)
+
+
+def parameters_assignment(
+    message: LaunchMessage, wanted: str, title: str, catalogue: Mapping[str, Exercise]
+) -> NewAssignment | None:
+    """Return the assignment that custom parameters ask for, or None.
+
+    ``exercise`` names one or more exercises, with or without points: ``planar-rr=10,scara``.
+    ``opens`` and ``due`` are dates, in the time zone of the course if they name none.
+    """
+    named = [each.strip() for each in message.custom.get("exercise", "").split(",")]
+    exercises = []
+    for name, _, points in (each.partition("=") for each in named if each):
+        if name not in catalogue:
+            return None
+        exercises.append({"exercise": name, "points": points or _points(catalogue[name])})
+    try:
+        dates = {name: message.custom[name] for name in DATES if message.custom.get(name)}
+        fields = {"id": wanted, "title": title, "exercises": exercises, **dates}
+        return NewAssignment.model_validate(fields)
+    except ValidationError:
+        return None
+
+
+def _points(exercise: Exercise) -> float:
+    return sum(part.points for part in exercise.parts)
+
+
+def _set_assignment(connection: Connection, link: int, course: str, assignment: str) -> None:
+    mine = (assignments.c.course == course) & (assignments.c.id == assignment)
+    number = connection.scalar(select(assignments.c.number).where(mine))
+    chosen = update(tables.resource_links).where(tables.resource_links.c.number == link)
+    connection.execute(chosen.values(assignment=number))
+
+
+def _short(*parts: str) -> str:
+    return sha256(json.dumps(parts).encode()).hexdigest()[:12]

@@ -1,0 +1,97 @@
+"""The keys with which this service signs messages to platforms, and their rotation.
+
+A new key is published for a day before it signs: platforms memoize the keys that they have read.
+"""
+
+import json
+import secrets
+from datetime import datetime, timedelta
+from typing import Any, Final, NamedTuple
+
+from cryptography.hazmat.primitives.asymmetric import rsa
+from cryptography.hazmat.primitives.asymmetric.rsa import RSAPrivateKey
+from cryptography.hazmat.primitives.serialization import (
+    BestAvailableEncryption,
+    Encoding,
+    PrivateFormat,
+    load_pem_private_key,
+)
+from jwt.algorithms import RSAAlgorithm
+from sqlalchemy import Connection, delete, insert, select
+
+from service.access.keys import Secret
+from service.attempts.storage.lti_tables import own_keys
+from service.lti.problems import LtiError
+
+# How long a new key is published before it signs, unless it is the first one.
+PUBLISHED_BEFORE: Final = timedelta(days=1)
+_BITS: Final = 2048
+
+
+class SigningKey(NamedTuple):
+    """The key that signs now, and its id (``kid``)."""
+
+    id: str
+    private_key: RSAPrivateKey
+
+
+def published_keys(connection: Connection) -> dict[str, list[dict[str, Any]]]:
+    """Return our public keys as a JSON Web Key Set."""
+    rows = connection.execute(select(own_keys.c.public_key).order_by(own_keys.c.created_at))
+    return {"keys": [json.loads(row.public_key) for row in rows]}
+
+
+def signing_key(connection: Connection, secret: Secret, now: datetime) -> SigningKey:
+    """Return the newest key that may sign. Raises LtiError, if there is none or its secret differs.
+
+    ``ensure_key`` makes the first one.
+    """
+    usable = own_keys.c.signs_from <= now
+    newest = select(own_keys).where(usable).order_by(own_keys.c.signs_from.desc()).limit(1)
+    row = connection.execute(newest).one_or_none()
+    if row is None:
+        raise LtiError("no-secret")
+    try:
+        key = load_pem_private_key(row.private_key.encode(), secret.lti_secret)
+    except ValueError as error:
+        raise LtiError("no-secret") from error
+    assert isinstance(key, RSAPrivateKey)
+    return SigningKey(row.id, key)
+
+
+def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
+    """Make the first key, which may sign at once, if there is none."""
+    if connection.scalar(select(own_keys.c.id).limit(1)) is None:
+        _add(connection, secret, now, now)
+
+
+def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
+    """Add a key and remove those that sign no more; return when the new one begins to sign.
+
+    At most two keys are there. If one waits for its day already, none is added.
+    """
+    ensure_key(connection, secret, now)
+    waiting: datetime | None = connection.scalar(
+        select(own_keys.c.signs_from).where(own_keys.c.signs_from > now)
+    )
+    if waiting is not None:
+        return waiting
+    newest = select(own_keys.c.id).order_by(own_keys.c.signs_from.desc()).limit(1)
+    current = connection.scalar(newest)
+    connection.execute(delete(own_keys).where(own_keys.c.id != current))
+    signs_from = now + PUBLISHED_BEFORE
+    _add(connection, secret, now, signs_from)
+    return signs_from
+
+
+def _add(connection: Connection, secret: Secret, now: datetime, signs_from: datetime) -> None:
+    key_id = secrets.token_hex(8)
+    key = rsa.generate_private_key(public_exponent=65537, key_size=_BITS)
+    encryption = BestAvailableEncryption(secret.lti_secret)
+    pem = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, encryption).decode("ascii")
+    public = RSAAlgorithm.to_jwk(key.public_key(), as_dict=True)
+    public |= {"kid": key_id, "alg": "RS256", "use": "sig"}
+    public.pop("key_ops", None)
+    values = {"id": key_id, "private_key": pem, "public_key": json.dumps(public)}
+    times = {"created_at": now, "signs_from": signs_from}
+    connection.execute(insert(own_keys).values(values | times))

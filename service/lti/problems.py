@@ -1,0 +1,93 @@
+"""The reasons why a launch is refused: what the student reads, and what the operator reads."""
+
+from collections.abc import Mapping
+from typing import Final, NamedTuple
+
+# What the student can do.
+_AGAIN: Final = "Go back to your course, reload the page there, and open the exercise once more."
+_TEACHER: Final = (
+    "You have done nothing wrong. Tell your teacher, who passes the reference number on to the "
+    "people that run this service."
+)
+
+
+class LtiProblem(NamedTuple):
+    """A reason to refuse. Braces in ``cause`` are places for values; ``advice`` is for students."""
+
+    cause: str
+    advice: str = _TEACHER
+
+
+# By their names. The first ones are of logins, the others in the order in which they are checked.
+LTI_PROBLEMS: Final[Mapping[str, LtiProblem]] = {
+    "login-incomplete": LtiProblem("The login has no {name}."),
+    "login-too-long": LtiProblem("The field {name} of the login is too long."),
+    "unknown-platform": LtiProblem("No registration has the issuer {issuer} and this client id."),
+    "several-platforms": LtiProblem(
+        "Several registrations have the issuer {issuer}, and the login names no client id."
+    ),
+    "foreign-target": LtiProblem("The login is for the address {target}, which is not ours."),
+    "platform-error": LtiProblem("The platform answered with the error {error}.", _AGAIN),
+    "no-state": LtiProblem("The message has no state.", _AGAIN),
+    "unknown-state": LtiProblem("No login has this state, or it is over.", _AGAIN),
+    "state-expired": LtiProblem("The login was begun more than ten minutes ago.", _AGAIN),
+    "state-used": LtiProblem("The state was used already: the message is a copy.", _AGAIN),
+    "other-browser": LtiProblem("The login was begun in another browser.", _AGAIN),
+    "binding-from-elsewhere": LtiProblem("The page of another site has sent the message.", _AGAIN),
+    "cookies-blocked": LtiProblem(
+        "The browser keeps no cookies, and the platform has no storage.",
+        "Your browser does not accept cookies from this page. Allow them, or use another browser.",
+    ),
+    "no-token": LtiProblem("The message has no id_token."),
+    "token-too-long": LtiProblem("The id_token is too long."),
+    "token-malformed": LtiProblem("The id_token is not a JSON Web Token."),
+    "wrong-algorithm": LtiProblem("The id_token is signed by {algorithm}, not by RS256."),
+    "no-key-id": LtiProblem("The id_token names no key (kid)."),
+    "keys-unreachable": LtiProblem("The keys of the platform cannot be read: {reason}", _AGAIN),
+    "unknown-key": LtiProblem("The platform has no key with the id in the id_token."),
+    "unusable-key": LtiProblem("The key of the platform is not an RSA key of 2048 bits or more."),
+    "wrong-signature": LtiProblem("The signature of the id_token is wrong."),
+    "wrong-issuer": LtiProblem("The id_token is from another issuer."),
+    "wrong-audience": LtiProblem("The id_token is for another client id."),
+    "wrong-party": LtiProblem("The id_token is authorised for another client id (azp)."),
+    "no-expiry": LtiProblem("The id_token has no expiry (exp)."),
+    "expired": LtiProblem("The id_token has expired. Compare the clocks.", _AGAIN),
+    "no-issue-time": LtiProblem("The id_token has no time of issue (iat)."),
+    "issued-later": LtiProblem("The id_token is from the future. Compare the clocks.", _AGAIN),
+    "issued-before": LtiProblem("The id_token is older than an hour.", _AGAIN),
+    "not-yet-valid": LtiProblem("The id_token is not valid yet (nbf). Compare the clocks.", _AGAIN),
+    "no-nonce": LtiProblem("The id_token has no nonce."),
+    "wrong-nonce": LtiProblem("The nonce of the id_token is that of another login.", _AGAIN),
+    "wrong-version": LtiProblem("The message is not of LTI version 1.3.0."),
+    "wrong-message": LtiProblem("Messages of the type {kind} are not known here."),
+    "no-deployment": LtiProblem("The message has no deployment id."),
+    "other-deployment": LtiProblem("The login was for another deployment."),
+    "unknown-deployment": LtiProblem("The deployment {deployment} is not registered."),
+    "no-target": LtiProblem("The message has no target_link_uri."),
+    "other-target": LtiProblem("The message is for another address than the login."),
+    "no-roles": LtiProblem("The message has no list of roles."),
+    "bad-user": LtiProblem("The user's id (sub) is empty, too long, or not a text."),
+    "no-context": LtiProblem("The message has no context: it was not opened from a course."),
+    "no-resource-link": LtiProblem("The message has no resource link."),
+    "not-a-tutor": LtiProblem("Only tutors choose exercises, and the user is none."),
+    "no-linking-settings": LtiProblem("The message has no settings of deep linking."),
+    "no-return-address": LtiProblem("The settings of deep linking have no usable return address."),
+    "foreign-return-address": LtiProblem(
+        "The return address {address} does not belong to the registered platform."
+    ),
+    "no-links-accepted": LtiProblem("The platform does not accept links at this place."),
+    "bad-claim": LtiProblem("The claim {claim} does not have the right shape."),
+    "no-longer-registered": LtiProblem("The registration was removed after the login."),
+    "ticket-expired": LtiProblem("The page was open for too long.", _AGAIN),
+    "no-secret": LtiProblem("The secret is not the one with which the keys were made."),
+}
+
+
+class LtiError(Exception):
+    """A launch that is refused; ``name`` is one of ``LTI_PROBLEMS``."""
+
+    def __init__(self, name: str, /, **values: object) -> None:
+        problem = LTI_PROBLEMS[name]
+        self.name = name
+        self.advice = problem.advice
+        super().__init__(problem.cause.format_map({k: str(v)[:200] for k, v in values.items()}))

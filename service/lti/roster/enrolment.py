@@ -1,0 +1,147 @@
+"""Bring the learners of a course up to date with the roster of its platform."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, Row, bindparam, delete, select, update
+
+from service.access.keys import Secret
+from service.attempts.recording import insert_or_ignore
+from service.attempts.storage import lti_tables as tables
+from service.attempts.storage.tables import course_learners
+from service.lti.fetching import FetchError
+from service.lti.linking import pseudonym, pseudonymous_name
+from service.lti.own_keys import SigningKey, ensure_key, signing_key
+from service.lti.problems import LtiError
+from service.lti.registrations import Registration, registration
+from service.lti.roster.members import SCOPE, Member, read_members
+from service.lti.scores.access_tokens import fetched_token
+from service.lti.scores.score_problems import ScoreError
+
+
+class RosterError(Exception):
+    """The roster was not read, and nothing has changed. The message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class RosterQuestion:
+    """The context of a course, its platform, and the key that signs for us."""
+
+    context: Row[Any]
+    registration: Registration
+    key: SigningKey
+    now: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class RosterChange:
+    """What a roster has changed in a course; ``learners`` is the number of all in the roster."""
+
+    learners: int
+    added: int
+    removed: int
+    renamed: int
+
+
+def roster_context(connection: Connection, course: str) -> Row[Any] | None:
+    """Return the row of the context of a course whose platform tells its roster, or None."""
+    of = tables.contexts.c
+    mine = (of.course == course) & of.memberships_url.is_not(None)
+    return connection.execute(select(tables.contexts).where(mine).limit(1)).one_or_none()
+
+
+def ask_for_roster(
+    connection: Connection, course: str, secret: Secret, now: datetime
+) -> RosterQuestion:
+    """Return what is needed to read the roster of a course. Raises RosterError."""
+    context = roster_context(connection, course)
+    if context is None:
+        raise RosterError("The platform of this course does not tell its roster.")
+    ensure_key(connection, secret, now)
+    try:
+        key = signing_key(connection, secret, now)
+    except LtiError as error:
+        raise RosterError(str(error)) from error
+    return RosterQuestion(context, registration(connection, context.registration), key, now)
+
+
+def read_roster(question: RosterQuestion) -> Sequence[Member]:
+    """Return the active learners in a roster. Raises RosterError."""
+    known = question.registration
+    try:
+        token, _ = fetched_token(known, SCOPE, question.key, question.now)
+        members = read_members(known, question.context.memberships_url, token)
+    except (FetchError, ScoreError) as error:
+        raise RosterError(f"The roster cannot be read: {str(error).rstrip('.')}.") from error
+    if not members:
+        # A platform that forgets its learners must not empty the course.
+        raise RosterError("The roster has no learner. Nothing was changed.")
+    return members
+
+
+def enrol_members(
+    connection: Connection,
+    question: RosterQuestion,
+    members: Sequence[Member],
+    secret: Secret,
+    *,
+    shows_names: bool | None = None,
+) -> RosterChange:
+    """Enrol the learners of a roster, rename them, and remove those that are not in it any more.
+
+    ``shows_names`` switches their names on or off; None leaves the switch.
+    """
+    context, now = question.context, question.now
+    if shows_names is None:
+        shows_names = context.shows_names
+    mine, course, kind = context.registration, context.course, connection.dialect.name
+    learners = {pseudonym(mine, each.sub, secret): each for each in members}
+    rows = [
+        {"registration": mine, "sub": each.sub, "learner": learner}
+        for learner, each in learners.items()
+    ]
+    connection.execute(insert_or_ignore(tables.learners)[kind], rows)
+    wanted = {
+        learner: (each.name if shows_names else "") or pseudonymous_name(learner)
+        for learner, each in learners.items()
+    }
+    there = _enrolled(connection, mine, course)
+    new = [
+        {"course": course, "learner": learner, "name": name}
+        for learner, name in wanted.items()
+        if learner not in there
+    ]
+    renamed = [
+        {"of_learner": learner, "new_name": name}
+        for learner, name in wanted.items()
+        if there.get(learner, name) != name
+    ]
+    gone = [{"of_learner": learner} for learner in there if learner not in wanted]
+    of = course_learners.c
+    one = (of.course == course) & (of.learner == bindparam("of_learner"))
+    if new:
+        connection.execute(insert_or_ignore(course_learners)[kind], new)
+    if renamed:
+        changed = update(course_learners).where(one).values(name=bindparam("new_name"))
+        connection.execute(changed, renamed)
+    if gone:
+        # Attempts and extensions stay: a learner who comes back has them again.
+        connection.execute(delete(course_learners).where(one), gone)
+    noted = update(tables.contexts).where(tables.contexts.c.number == context.number)
+    connection.execute(noted.values(shows_names=shows_names, roster_at=now))
+    return RosterChange(len(wanted), len(new), len(gone), len(renamed))
+
+
+def _enrolled(connection: Connection, registration_id: str, course: str) -> dict[str, str]:
+    """Return the names of the learners of a course that came from a platform.
+
+    Learners whom a tutor has added are not among them: the roster does not remove them.
+    """
+    of = course_learners.c
+    joined = select(of.learner, of.name).join(
+        tables.learners, tables.learners.c.learner == of.learner
+    )
+    mine = (of.course == course) & (tables.learners.c.registration == registration_id)
+    return {row.learner: row.name for row in connection.execute(joined.where(mine))}

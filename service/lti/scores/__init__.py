@@ -1,0 +1,1 @@
+"""Scores: what platforms get to know of the points of learners (AGS)."""

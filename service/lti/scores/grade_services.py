@@ -1,0 +1,192 @@
+"""The services of a platform's gradebook (AGS): send a score, find or make a line item."""
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from http import HTTPStatus
+from time import monotonic
+from typing import Any, Final
+from urllib.parse import urlencode, urljoin, urlsplit, urlunsplit
+
+import httpx
+
+from service.lti.fetching import TIMEOUT, FetchError, answer, content
+from service.lti.registrations import Registration, origin_of, unusable
+from service.lti.scores.access_tokens import AccessTokens, seconds_to_wait
+from service.lti.scores.line_items import CHANGE, READ, SEND
+from service.lti.scores.score_problems import (
+    LaterError,
+    RefusedError,
+    ThisLaterError,
+)
+
+_SCORE: Final = "application/vnd.ims.lis.v1.score+json"
+_ITEM: Final = "application/vnd.ims.lis.v2.lineitem+json"
+_ITEMS: Final = "application/vnd.ims.lis.v2.lineitemcontainer+json"
+_BUSY: Final = {
+    HTTPStatus.TOO_MANY_REQUESTS,
+    HTTPStatus.BAD_GATEWAY,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+    HTTPStatus.GATEWAY_TIMEOUT,
+}
+# Another line item may take the score.
+_NOT_THERE: Final = {HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.GONE}
+_MOST_PAGES: Final = 20
+
+
+class NotThereError(RefusedError):
+    """The platform has no such line item, or no such learner."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A line item to look up or to make: the link and the title that it belongs to."""
+
+    lineitems_url: str | None
+    scopes: str
+    link: str
+    title: str
+    assignment: str
+    max_points: float
+
+
+class GradeServices:
+    """The services of platforms, with the access tokens of this process."""
+
+    def __init__(self, tokens: AccessTokens) -> None:
+        self._tokens = tokens
+
+    def send_score(self, registration: Registration, url: str, message: Any) -> None:
+        """Send a score. Raises RefusedError, LaterError, ThisLaterError."""
+        sent = {"content": json.dumps(message).encode(), "headers": {"Content-Type": _SCORE}}
+        with self._asked(registration, scores_address(url), "POST", SEND, sent):
+            return
+
+    def line_item(self, registration: Registration, column: Column) -> tuple[str, bool]:
+        """Return the address of a line item, and True if it was made now. Raises ScoreError."""
+        if (found := self.found_line_item(registration, column)) is not None:
+            return found, False
+        if column.lineitems_url is None or CHANGE not in column.scopes.split():
+            raise RefusedError("no-scope")
+        item = {
+            "scoreMaximum": column.max_points,
+            "label": column.title,
+            "resourceLinkId": column.link,
+            "resourceId": column.assignment,
+            "tag": "dh-grader",
+        }
+        sent = {"content": json.dumps(item).encode(), "headers": {"Content-Type": _ITEM}}
+        until = monotonic() + TIMEOUT
+        with self._asked(registration, column.lineitems_url, "POST", CHANGE, sent) as response:
+            made = _json(response, until)
+        return _item_address(made, column.lineitems_url), True
+
+    def found_line_item(self, registration: Registration, column: Column) -> str | None:
+        """Return the address of the line item of a resource link, or None. Raises ScoreError."""
+        scopes = " ".join(each for each in (CHANGE, READ) if each in column.scopes.split())
+        if column.lineitems_url is None or not scopes:
+            return None
+        url: str | None = _with_query(column.lineitems_url, resource_link_id=column.link)
+        for _ in range(_MOST_PAGES):
+            assert url is not None
+            until = monotonic() + TIMEOUT
+            asked = {"headers": {"Accept": _ITEMS}}
+            with self._asked(registration, url, "GET", scopes, asked) as response:
+                items, following = _json(response, until), response.links.get("next", {}).get("url")
+            for each in items if isinstance(items, list) else ():
+                if isinstance(each, dict) and each.get("resourceLinkId") == column.link:
+                    return _item_address(each, column.lineitems_url)
+            if not following:
+                return None
+            url = _of_platform(urljoin(url, following), column.lineitems_url)
+        return None
+
+    @contextmanager
+    def _asked(
+        self,
+        registration: Registration,
+        url: str,
+        method: str,
+        scopes: str,
+        more: Mapping[str, Any],
+    ) -> Iterator[httpx.Response]:
+        """Send a request with an access token, and with a new one if it is refused.
+
+        The context has the answer of success. Raises ScoreError.
+        """
+        for is_last in (False, True):
+            token = self._tokens.token(registration, scopes)
+            headers = {**more["headers"], "Authorization": f"Bearer {token}"}
+            sent = {**more, "headers": headers}
+            try:
+                with answer(url, method, local=registration.is_development, **sent) as response:
+                    if response.status_code == HTTPStatus.UNAUTHORIZED:
+                        self._tokens.forget(registration, scopes)
+                        if not is_last:
+                            continue
+                    _check(response)
+                    yield response
+                    return
+            except FetchError as error:
+                raise LaterError("unreachable", reason=error) from error
+
+
+def scores_address(url: str) -> str:
+    """Return the address of the scores of a line item; its query string stays at the end."""
+    parts = urlsplit(url)
+    return urlunsplit(parts._replace(path=f"{parts.path.rstrip('/')}/scores"))
+
+
+def _check(response: httpx.Response) -> None:
+    """Raise the ScoreError of an answer that is no success."""
+    status = response.status_code
+    if response.is_success:
+        return
+    headers = response.headers
+    if status in _BUSY or (status == HTTPStatus.FORBIDDEN and _is_used_up(headers)):
+        raise LaterError("busy", seconds_to_wait(headers), status=status)
+    if status == HTTPStatus.UNAUTHORIZED:
+        raise LaterError("unauthorised")
+    if status == HTTPStatus.CONFLICT:
+        raise ThisLaterError("stamp")
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR or status == HTTPStatus.REQUEST_TIMEOUT:
+        raise ThisLaterError("busy", status=status)
+    if status in _NOT_THERE:
+        raise NotThereError("not-accepted", status=status)
+    raise RefusedError("not-accepted", status=status)
+
+
+def _is_used_up(headers: Mapping[str, str]) -> bool:
+    """True if Canvas answers 403 because of too many requests."""
+    try:
+        return float(headers.get("x-rate-limit-remaining", "")) <= 0
+    except ValueError:
+        return False
+
+
+def _json(response: httpx.Response, until: float) -> Any:
+    try:
+        return json.loads(content(response, until))
+    except (ValueError, RecursionError) as error:
+        raise ThisLaterError("unusable-answer", reason="it is not JSON") from error
+
+
+def _item_address(item: Any, lineitems_url: str) -> str:
+    found = item.get("id") if isinstance(item, dict) else None
+    if not isinstance(found, str) or len(found) > 1000:
+        raise ThisLaterError("unusable-answer", reason="the line item has no address")
+    return _of_platform(found, lineitems_url)
+
+
+def _of_platform(url: str, lineitems_url: str) -> str:
+    """Return an address in an answer of a platform: the token is sent to its host only."""
+    if unusable(url, local=True) or origin_of(url) != origin_of(lineitems_url):
+        raise ThisLaterError("unusable-answer", reason="an address is of another host")
+    return url
+
+
+def _with_query(url: str, **more: str) -> str:
+    parts = urlsplit(url)
+    query = "&".join(filter(None, (parts.query, urlencode(more))))
+    return urlunsplit(parts._replace(query=query))

@@ -1,0 +1,66 @@
+"""Line items: the columns of a platform's gradebook, one for each resource link."""
+
+import json
+from datetime import datetime
+from typing import Final
+
+from sqlalchemy import Connection, select, update
+
+from service.attempts.recording import insert_or_ignore
+from service.attempts.storage.lti_tables import line_items, resource_links, scores
+from service.attempts.storage.score_queue import queue_scores
+from service.attempts.storage.tables import assignments, attempts
+
+AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/scope/"
+SEND: Final = f"{AGS}score"
+CHANGE: Final = f"{AGS}lineitem"
+READ: Final = f"{AGS}lineitem.readonly"
+
+
+def ensure_line_item(connection: Connection, link: int) -> None:
+    """Note the line item of a resource link, if the platform takes scores for it.
+
+    Its address may be unknown: then the first score looks it up, or makes it. Scores of attempts
+    that are there already are queued.
+    """
+    row = connection.execute(
+        select(resource_links).where(resource_links.c.number == link)
+    ).one_or_none()
+    if row is None or row.assignment is None or not takes_scores(row.scopes):
+        return
+    if row.lineitem_url is None and row.lineitems_url is None:
+        return
+    values = {
+        "context": row.context,
+        "resource_link": row.number,
+        "assignment": row.assignment,
+        "url": row.lineitem_url,
+        "max_points": max_points(connection, row.assignment),
+        "is_own": False,
+    }
+    statement = insert_or_ignore(line_items)[connection.dialect.name]
+    if connection.execute(statement.values(values)).rowcount:
+        of_assignment = (attempts.c.assignment == row.assignment) & attempts.c.ordinal.is_not(None)
+        queue_scores(connection, of_assignment)
+    elif row.lineitem_url is not None:
+        mine = (line_items.c.resource_link == link) & (line_items.c.assignment == row.assignment)
+        connection.execute(update(line_items).where(mine).values(url=row.lineitem_url))
+
+
+def try_refused_again(connection: Connection, learner: str, now: datetime) -> None:
+    """Queue the refused scores of a learner: somebody who launches is enrolled at the platform."""
+    mine = (scores.c.learner == learner) & (scores.c.state == "refused")
+    values = {"state": "waiting", "next_try_at": now, "version": scores.c.version + 1}
+    connection.execute(update(scores).where(mine).values(values))
+
+
+def takes_scores(scopes: str) -> bool:
+    """True if a platform allows that scores are sent."""
+    return SEND in scopes.split()
+
+
+def max_points(connection: Connection, assignment: int) -> float:
+    """Return the sum of the points of an assignment's exercises."""
+    mine = assignments.c.number == assignment
+    text: str = connection.execute(select(assignments.c.exercises).where(mine)).scalar_one()
+    return float(round(sum(each["points"] for each in json.loads(text)), 6))

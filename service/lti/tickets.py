@@ -1,0 +1,80 @@
+"""Tickets: short-lived signed texts in a tutor's page, which prove what the launch has allowed.
+
+A page in a frame has no cookie; its forms send the ticket instead.
+"""
+
+import hmac
+import time
+from datetime import datetime, timedelta
+from typing import Final, Literal, TypeVar
+
+import jwt
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from service.access.keys import Secret
+from service.lti.problems import LtiError
+
+LIFETIME: Final = timedelta(hours=1)
+_ALGORITHM: Final = "HS256"
+_JWS: Final = jwt.PyJWS()
+
+
+class FormTicket(BaseModel):
+    """What all tickets have. ``iss`` differs, so that none is taken for one of another kind."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    iss: str
+    registration: str
+    exp: int = 0
+
+
+class LtiTicket(FormTicket):
+    """What a tutor may do from a page: with a course, and with one of its resource links.
+
+    ``learner`` is the one whose attempts the tutor wants to see, or "".
+    """
+
+    iss: Literal["dh-grader lti"] = "dh-grader lti"
+    context: int
+    link: int
+    learner: str = ""
+
+
+class LinkingTicket(FormTicket):
+    """What the platform has asked for in a message of deep linking.
+
+    ``course`` is "" as long as nobody has launched the course; ``data`` goes back unchanged.
+    """
+
+    iss: Literal["dh-grader lti deep linking"] = "dh-grader lti deep linking"
+    deployment: str
+    course: str
+    return_url: str
+    data: str | None
+    takes_several: bool
+    takes_line_items: bool
+
+
+_T = TypeVar("_T", bound=FormTicket)
+
+
+def signed_ticket(ticket: FormTicket, secret: Secret, now: datetime) -> str:
+    """Return the text of a ticket."""
+    until = int((now + LIFETIME).timestamp())
+    return jwt.encode(ticket.model_dump() | {"exp": until}, _key(secret), _ALGORITHM)
+
+
+def ticket_in(text: str, kind: type[_T], secret: Secret) -> _T:
+    """Return the ticket of this kind with this text. Raises LtiError."""
+    try:
+        ticket = kind.model_validate_json(_JWS.decode(text, _key(secret), [_ALGORITHM]))
+    except (jwt.InvalidTokenError, ValidationError) as error:
+        raise LtiError("ticket-expired") from error
+    if ticket.exp <= time.time():
+        raise LtiError("ticket-expired")
+    return ticket
+
+
+def _key(secret: Secret) -> bytes:
+    return hmac.digest(secret.lti_secret, b"tickets", "sha256")

@@ -1,0 +1,1 @@
+"""Variants of exercises with ``[vary]``, one for each seed, and generated robots."""

@@ -1,0 +1,135 @@
+"""Deployed variants: some seeds that a tutor has looked at, all different and equally hard."""
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from secrets import choice
+from typing import Final
+
+from service.authoring.answers import failed_checks, model_answer
+from service.authoring.lazy import lazy_answers, lazy_shares
+from service.authoring.remarks import Remark
+from service.catalogue import Exercise
+from service.variants.comparison import Form, VariantDifficulty, difficulty_of, form_of
+from service.variants.variant import built
+
+# Draws for each variant that is wanted; then there are too few different ones.
+_DRAWS: Final = 40
+_LETTERS: Final = "abcdefghijkmnpqrstuvwxyz23456789"
+_LENGTH: Final = 8
+_TABLE: Final = re.compile(r"^\[vary\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
+_DEPLOYED: Final = re.compile(r"^deployed[ \t]*=[ \t]*\[[^\]]*\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
+_PER_LINE: Final = 8
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedVariant:
+    """A variant with its form, its difficulty, its lazy points and the faults of its answers."""
+
+    seed: str
+    title: str
+    form: Form
+    difficulty: VariantDifficulty
+    lazy: float
+    remarks: tuple[Remark, ...]
+
+
+class TooFewVariantsError(ValueError):
+    """There are not enough different variants of one difficulty; the message is for the tutor."""
+
+
+def checked_variant(exercise: Exercise, seed: str) -> CheckedVariant:
+    """Return a variant with the result of its checks. Raises NoVariantError."""
+    variant = built(exercise, seed)
+    shares = lazy_shares(variant)
+    lazy = sum(shares[part.id] * part.points for part in variant.parts)
+    checks = (model_answer, failed_checks, lazy_answers)
+    remarks = tuple(remark for check in checks for remark in check(variant))
+    return CheckedVariant(
+        seed, variant.title, form_of(variant), difficulty_of(variant), lazy, remarks
+    )
+
+
+def random_seeds() -> Iterator[str]:
+    """Yield random seeds without letters that look alike, for ever."""
+    while True:
+        yield "".join(choice(_LETTERS) for _ in range(_LENGTH))
+
+
+def deploy(
+    exercise: Exercise,
+    count: int,
+    without: Iterable[str] = (),
+    seeds: Iterator[str] | None = None,
+) -> list[str]:
+    """Return ``count`` seeds of different variants with the same difficulty, none ``without``.
+
+    The deployed seeds of the file stay, as far as they are usable. Raises TooFewVariantsError,
+    NoVariantError.
+    """
+    struck = set(without)
+    kept = exercise.vary.deployed if exercise.vary is not None else ()
+    wanted = [seed for seed in kept if seed not in struck]
+    drawn = random_seeds() if seeds is None else seeds
+    forms: dict[Form, str] = {}
+    scores: dict[str, int] = {}
+    levels: Counter[int] = Counter()
+    # The level of the seeds that stay, else the first level with enough variants.
+    level: int | None = None
+    for i, seed in enumerate(_then(wanted, drawn)):
+        if i >= len(wanted) + _DRAWS * count:
+            break
+        if seed in struck or seed in scores:
+            continue
+        variant = built(exercise, seed)
+        form = form_of(variant)
+        if form in forms:
+            continue
+        forms[form] = seed
+        scores[seed] = score = difficulty_of(variant).score
+        levels[score] += 1
+        if level is None and wanted:
+            level = score
+        if levels[score] == count and level in (None, score):
+            return [seed for seed, own in scores.items() if own == score]
+    most = levels[level] if level is not None else max(levels.values(), default=0)
+    raise TooFewVariantsError(
+        f"{exercise.plain_id} has only {most} different variants of one difficulty among "
+        f"{_DRAWS * count} draws; vary more, or deploy {most} at most."
+    )
+
+
+def with_deployed(text: str, seeds: Sequence[str]) -> str | None:
+    """Return the text of an exercise file with these deployed seeds; None if it cannot be edited.
+
+    Comments and everything else stay as they are.
+    """
+    place = _TABLE.search(text)
+    if place is None:
+        return None
+    before, after = text[: place.end()], text[place.end() :]
+    lines = [", ".join(f'"{each}"' for each in group) for group in _groups(seeds)]
+    written = "deployed = [\n" + "".join(f"    {line},\n" for line in lines) + "]\n"
+    old = _DEPLOYED.search(after)
+    if old is None:
+        changed = before + written + after
+    else:
+        changed = before + after[: old.start()] + written + after[old.end() :]
+    wanted = tomllib.loads(text)
+    wanted["vary"]["deployed"] = list(seeds)
+    try:
+        return changed if tomllib.loads(changed) == wanted else None
+    except tomllib.TOMLDecodeError:
+        return None
+
+
+def _then(first: Sequence[str], more: Iterator[str]) -> Iterator[str]:
+    yield from first
+    yield from more
+
+
+def _groups(seeds: Sequence[str]) -> Iterator[Sequence[str]]:
+    for start in range(0, len(seeds), _PER_LINE):
+        yield seeds[start : start + _PER_LINE]

@@ -1,0 +1,45 @@
+"""Draws that are the same on every Python: integers from SHA-256 of a text."""
+
+from collections.abc import Iterator, Sequence
+from hashlib import sha256
+from itertools import count
+from typing import Final, TypeVar
+
+T = TypeVar("T")
+
+_BITS: Final = 32
+
+
+class Draws:
+    """A sequence of draws. Equal texts give equal sequences."""
+
+    def __init__(self, text: str) -> None:
+        self._words = _words(text)
+
+    def below(self, limit: int) -> int:
+        """Return an integer from 0 to ``limit - 1``, each as likely but for one in a million."""
+        return next(self._words) * limit >> _BITS
+
+    def chance(self, percent: int) -> bool:
+        """True in so many of 100 draws."""
+        return self.below(100) < percent
+
+    def one_of(self, choices: Sequence[T]) -> T:
+        """Return one of the choices, each as likely."""
+        return choices[self.below(len(choices))]
+
+    def weighted(self, choices: Sequence[tuple[T, int]]) -> T:
+        """Return a choice by the weights, of which one at least is positive."""
+        left = self.below(sum(weight for _, weight in choices))
+        for choice, weight in choices:
+            left -= weight
+            if left < 0:
+                return choice
+        raise AssertionError("the weights add up to more than their sum")
+
+
+def _words(text: str) -> Iterator[int]:
+    for block in count():
+        digest = sha256(f"{text}\n{block}".encode()).digest()
+        for i in range(0, len(digest), _BITS // 8):
+            yield int.from_bytes(digest[i : i + _BITS // 8], "big")

@@ -1,0 +1,1 @@
+"""The geometry of generated robots: directions, links at home, and what is refused."""

@@ -1,0 +1,107 @@
+"""The directions of a small robot's axes at home, by number, so that no two numbers are alike.
+
+Simple robots are few: among 500 that are drawn at random, 100 are like an earlier one. So the
+seed of a simple level counts the directions off, and only the rest is drawn.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+from math import gcd
+from typing import Final
+
+from service.variants.robots.level import Grammar
+
+AxisDirection = tuple[int, int, int]
+_AXES: Final[tuple[AxisDirection, ...]] = (
+    (1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1),
+)  # fmt: skip
+# A step through all numbers, which leads far from similar ones.
+_STEP: Final = 377
+# Seeds below this get different directions even if some directions make no robot.
+DIFFERENT: Final = 600
+
+
+@dataclass(frozen=True, slots=True)
+class Skeleton:
+    """The joints, the directions of the axes 2 to n at home, and that of the tool's x axis.
+
+    ``beside`` is True if the tool is not on the last axis.
+    """
+
+    sliding: tuple[bool, ...]
+    headings: tuple[AxisDirection, ...]
+    tool_x: AxisDirection
+    beside: bool
+
+
+def skeleton(level: Grammar, number: int) -> Skeleton | None:
+    """Return the skeleton with a number, which may be greater than their count.
+
+    None if two sliding joints in a row would be parallel.
+    """
+    sizes = _sizes(level)
+    total = sum(size for _, size in sizes)
+    step = next(each for each in range(_STEP, total + _STEP) if gcd(each, total) == 1)
+    left = number * step % total
+    for sliding, size in sizes:
+        if left < size:
+            return _decoded(sliding, left)
+        left -= size
+    raise AssertionError("the sizes add up to more than their sum")
+
+
+@cache
+def _patterns(joints: int, most_sliding: int) -> tuple[tuple[bool, ...], ...]:
+    return tuple(
+        each for each in product((False, True), repeat=joints) if sum(each) <= most_sliding
+    )
+
+
+def _sizes(level: Grammar) -> list[tuple[tuple[bool, ...], int]]:
+    """Return each pattern of joints with the number of its skeletons."""
+    return [
+        (sliding, 5 ** (joints - 1) * 4 * (1 if sliding[-1] else 2))
+        for joints, _ in level.joints
+        for sliding in _patterns(joints, level.most_sliding)
+    ]
+
+
+def _decoded(sliding: tuple[bool, ...], left: int) -> Skeleton | None:
+    headings: list[AxisDirection] = []
+    here: AxisDirection = (0, 0, 1)
+    for i in range(1, len(sliding)):
+        left, digit = divmod(left, 5)
+        if digit == 4:
+            if sliding[i - 1] and sliding[i]:
+                return None
+        else:
+            here = perpendicular(here)[digit]
+        headings.append(here)
+    left, digit = divmod(left, 4)
+    return Skeleton(sliding, tuple(headings), perpendicular(here)[digit], beside=bool(left))
+
+
+def perpendicular(direction: AxisDirection) -> list[AxisDirection]:
+    """Return the four directions at a right angle to one, in a fixed order."""
+    return [each for each in _AXES if not any(a * b for a, b in zip(each, direction, strict=True))]
+
+
+def cross(first: AxisDirection, second: AxisDirection) -> AxisDirection:
+    """Return the vector product."""
+    a, b, c = first
+    d, e, f = second
+    return b * f - c * e, c * d - a * f, a * e - b * d
+
+
+def turn(start: AxisDirection, end: AxisDirection, about: AxisDirection) -> int:
+    """Return the angle in degrees from one direction to another about a third one.
+
+    Both are at a right angle to it.
+    """
+    if start == end:
+        return 0
+    across = cross(about, start)
+    if end == across:
+        return 90
+    return -90 if end == (-across[0], -across[1], -across[2]) else 180

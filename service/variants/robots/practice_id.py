@@ -1,0 +1,58 @@
+"""The ids of generated robots: ``practice-2-modified~k3f9``."""
+
+import re
+from dataclasses import dataclass, replace
+from typing import Final
+
+from service.kinematics.dh import Convention
+from service.variants.robots.level import LEVELS
+
+_DIGITS: Final = "0123456789abcdefghijklmnopqrstuvwxyz"
+_LONGEST: Final = 8
+_ID: Final = re.compile(
+    rf"practice-(\d)-({'|'.join(Convention)})~(0|[1-9a-z][0-9a-z]{{0,{_LONGEST - 1}}})"
+)
+# Every seed below is a robot's number.
+ALL_NUMBERS: Final = 36**_LONGEST
+
+
+@dataclass(frozen=True, slots=True)
+class PracticeId:
+    """A level, a convention, and the number of a robot. Both conventions have the same robots."""
+
+    level: int
+    convention: Convention
+    number: int
+
+    @property
+    def seed(self) -> str:
+        """The number in the digits 0 to 9 and a to z."""
+        digits, left = "", self.number
+        while left or not digits:
+            left, digit = divmod(left, len(_DIGITS))
+            digits = _DIGITS[digit] + digits
+        return digits
+
+    @property
+    def exercise(self) -> str:
+        """The id without the seed."""
+        return f"practice-{self.level}-{self.convention.value}"
+
+    def __str__(self) -> str:
+        return f"{self.exercise}~{self.seed}"
+
+    def following(self, steps: int = 1) -> "PracticeId":
+        """Return the id some robots later; after the last one comes the first."""
+        return replace(self, number=(self.number + steps) % ALL_NUMBERS)
+
+
+def practice_id(text: str) -> PracticeId | None:
+    """Return the parts of a robot's id; None if the text is no such id.
+
+    >>> practice_id("practice-2-modified~1a")
+    PracticeId(level=2, convention=<Convention.MODIFIED: 'modified'>, number=46)
+    """
+    found = _ID.fullmatch(text)
+    if found is None or int(found[1]) not in LEVELS:
+        return None
+    return PracticeId(int(found[1]), Convention(found[2]), int(found[3], len(_DIGITS)))

@@ -1,0 +1,87 @@
+"""One variant of an exercise: a pure function of the exercise and a seed."""
+
+from collections import OrderedDict
+from dataclasses import replace
+from threading import Lock
+from typing import Final
+
+from pydantic import ValidationError
+
+from service.catalogue import Exercise
+from service.catalogue.robots.formulas import FieldError
+from service.catalogue.varying.build import exercise_of_seed
+from service.catalogue.varying.choices import is_seed
+from service.catalogue.varying.vary import Vary
+
+# A variant takes about 100 kB of memory.
+MOST_BUILT: Final = 512
+
+
+class NoVariantError(LookupError):
+    """An exercise has no variants, or none of this seed; the message is for people."""
+
+
+def built(exercise: Exercise, seed: str) -> Exercise:
+    """Return the variant of a seed, with the id ``<exercise>~<seed>``; see ``variant_of``.
+
+    Raises NoVariantError.
+    """
+    if exercise.vary is None:
+        raise NoVariantError(f"The exercise {exercise.plain_id} has no variants.")
+    if not is_seed(seed):
+        raise NoVariantError("The seed of a variant has 1 to 20 small letters and digits.")
+    try:
+        return exercise_of_seed(exercise, seed)
+    except (ValidationError, FieldError, ExceptionGroup) as error:
+        message = f"The variant {exercise.plain_id}~{seed} cannot be made: its file has a fault."
+        raise NoVariantError(message) from error
+
+
+class BuiltVariants:
+    """The variants that were used last, at most ``most``."""
+
+    def __init__(self, most: int = MOST_BUILT) -> None:
+        self._most = most
+        self._built: OrderedDict[tuple[Vary, str], Exercise] = OrderedDict()
+        self._lock = Lock()
+
+    def __len__(self) -> int:
+        return len(self._built)
+
+    def get(self, exercise: Exercise, seed: str) -> Exercise:
+        """Return a variant; build it if it is not there. Raises NoVariantError."""
+        if exercise.vary is None:
+            return built(exercise, seed)
+        # A changed file has another ``Vary``, so that its variants are built again.
+        key = (exercise.vary, seed)
+        with self._lock:
+            if key in self._built:
+                self._built.move_to_end(key)
+                return self._built[key]
+        variant = built(exercise, seed)
+        with self._lock:
+            self._built[key] = variant
+            while len(self._built) > self._most:
+                self._built.popitem(last=False)
+        return variant
+
+
+_variants: Final = BuiltVariants()
+
+
+def variant_of(exercise: Exercise, seed: str) -> Exercise:
+    """Return the variant of a seed, built or from memory. Raises NoVariantError."""
+    return _variants.get(exercise, seed)
+
+
+def values_of(version: str) -> str:
+    """Return the part of a variant's version that changes only with the values of the variant."""
+    return version.partition("-")[2]
+
+
+def hidden_variant(exercise: Exercise, seed: str) -> Exercise:
+    """Return the variant of a seed under the id of the plain exercise, so that replies hide it.
+
+    Raises NoVariantError.
+    """
+    return replace(variant_of(exercise, seed), id=exercise.plain_id)

@@ -1,0 +1,56 @@
+"""The route by which a tutor reads the roster of a course from its platform (LTI)."""
+
+import asyncio
+from datetime import UTC, datetime
+from http import HTTPStatus
+
+from fastapi import APIRouter, Request
+from starlette.responses import HTMLResponse, Response
+
+from service.api.courses.asking import CourseId, course_problem, read, write
+from service.courses.errors import CourseError
+from service.web.assets import Assets
+from service.web.courses.course_pages import roster_page
+from service.web.page_headers import FORM_HEADERS
+from service.web.sign_in import form_fields
+from service.web.tutor.tutor_routes import Tutoring
+
+
+def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """Return the route that reads a roster."""
+    router = APIRouter(prefix="/tutor/courses")
+    access, store = tutoring.access, tutoring.store
+
+    @router.post("/{course_id}/roster")
+    async def roster(request: Request, course_id: CourseId) -> Response:
+        """Read the roster; answer with the page that says what has changed."""
+        from service.courses import roll
+        from service.lti.roster.enrolment import (
+            RosterError,
+            ask_for_roster,
+            enrol_members,
+            read_roster,
+        )
+
+        shows_names = "names" in await form_fields(request)
+        secret = None if access.keys is None else access.keys.secret
+        if secret is None:
+            message = "Rosters need a secret: set DH_GRADER_SECRET."
+            raise course_problem(CourseError("unusable", message))
+        known, now = secret, datetime.now(UTC)
+        course = await read(store, lambda it: roll.course(it, course_id))
+        try:
+            asked = await write(store, lambda it: ask_for_roster(it, course_id, known, now))
+        except RosterError as error:
+            raise course_problem(CourseError("unusable", str(error))) from error
+        try:
+            members = await asyncio.to_thread(read_roster, asked)
+        except RosterError as error:
+            content = roster_page(course, None, str(error), assets)
+            return HTMLResponse(content, HTTPStatus.BAD_GATEWAY, headers=FORM_HEADERS)
+        change = await write(
+            store, lambda it: enrol_members(it, asked, members, known, shows_names=shows_names)
+        )
+        return HTMLResponse(roster_page(course, change, "", assets), headers=FORM_HEADERS)
+
+    return router

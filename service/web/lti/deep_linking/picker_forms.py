@@ -1,0 +1,83 @@
+"""The route of the picker's form: search, send links to the platform, or give up."""
+
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Final
+
+from fastapi import APIRouter, Request
+from sqlalchemy import Connection
+from starlette.responses import HTMLResponse, Response
+
+from service.api.courses.asking import read, write
+from service.api.permissions.access import is_same_origin
+from service.lti.deep_linking.responses import NewLink, signed_response
+from service.lti.problems import LtiError
+from service.lti.registrations import Registration, RegistrationError, origin_of, registration
+from service.lti.tickets import LinkingTicket, ticket_in
+from service.web.lti.deep_linking.offers import (
+    NotYetError,
+    Offer,
+    links_of,
+    offer_of,
+    picked_in,
+)
+from service.web.lti.deep_linking.picker_pages import picker_page, return_page
+from service.web.lti.landing import Landings
+from service.web.lti.lti_pages import frame_headers
+from service.web.lti.tutor_forms import Answered, form_lists
+
+# Platforms may want to see who sends the answer: our origin, and nothing more.
+_REFERRER: Final = {"Referrer-Policy": "strict-origin"}
+
+
+def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
+    """Return the route; ``answered`` makes a page of an LtiError."""
+    router = APIRouter(prefix="/lti")
+    store, secret = landings.store, landings.secret
+
+    async def sent_back(
+        ticket: LinkingTicket, known: Registration, links: Sequence[NewLink]
+    ) -> Response:
+        now = datetime.now(UTC)
+        text = await write(store, lambda it: signed_response(it, ticket, known, links, secret, now))
+        content = return_page(ticket.return_url, text, landings.assets)
+        targets = (origin_of(ticket.return_url), *known.frame_origins)
+        headers = {**frame_headers(known.frame_origins, *targets), **_REFERRER}
+        return HTMLResponse(content, headers=headers)
+
+    @router.post("/links")
+    async def pick(request: Request) -> Response:
+        """Search exercises, or answer the platform with links, or with none."""
+        fields = form_lists(await request.body())
+        text = fields.get("ticket", [""])[0]
+
+        async def picked() -> Response:
+            if not is_same_origin(request):
+                raise LtiError("binding-from-elsewhere")
+            ticket = ticket_in(text, LinkingTicket, secret)
+            offer = await read(store, lambda it: _offer(it, ticket))
+            known, chosen = offer.registration, picked_in(fields)
+            try:
+                match fields.get("action", [""])[0]:
+                    case "cancel":
+                        return await sent_back(ticket, known, [])
+                    case "add":
+                        links = links_of(chosen, offer, landings.catalogue)
+                        return await sent_back(ticket, known, links)
+            except NotYetError as error:
+                chosen = chosen.with_message(str(error))
+            content = picker_page(offer, chosen, text, landings.catalogue, landings.assets)
+            return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+
+        return await answered(picked)
+
+    return router
+
+
+def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:
+    """Return what a ticket offers. Raises LtiError."""
+    try:
+        known = registration(connection, ticket.registration)
+    except RegistrationError as error:
+        raise LtiError("no-longer-registered") from error
+    return offer_of(connection, ticket, known)

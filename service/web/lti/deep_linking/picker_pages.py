@@ -1,0 +1,31 @@
+"""The pages of deep linking: the picker, and the form that sends the answer to the platform."""
+
+from service.api.http.lookup import Catalogue
+from service.web.assets import Assets
+from service.web.catalogue_words import kinds_of
+from service.web.lti.deep_linking.offers import Offer, Picked
+from service.web.lti.lti_pages import found, lti_page
+
+
+def picker_page(
+    offer: Offer, picked: Picked, ticket: str, catalogue: Catalogue, assets: Assets
+) -> bytes:
+    """Return the form on which a tutor chooses exercises; it works without scripts."""
+    chosen = picked.points or {}
+    return lti_page(
+        "picker.html",
+        assets,
+        [],
+        ["catalogue.css", "picker.css"],
+        offer=offer,
+        picked=picked,
+        chosen=chosen,
+        exercises=found(catalogue.values(), picked.search, chosen),
+        kinds_of=kinds_of,
+        ticket=ticket,
+    )
+
+
+def return_page(address: str, response: str, assets: Assets) -> bytes:
+    """Return the page that posts the signed answer to the platform."""
+    return lti_page("return.html", assets, ["send_form.js"], address=address, response=response)

@@ -1,0 +1,99 @@
+"""The routes of dynamic registration: the platform opens the link that an admin has pasted."""
+
+import asyncio
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import Any, Final
+
+from fastapi import APIRouter, Request
+from sqlalchemy import Connection
+from starlette.responses import HTMLResponse, Response
+
+from service.api.courses.asking import read, write
+from service.api.permissions.access import is_same_origin
+from service.lti.joining.dynamic_registration import register_at
+from service.lti.joining.invitations import Invitation, accept, claim, invitation_of, release
+from service.lti.own_keys import ensure_key
+from service.lti.registrations import Registration, RegistrationError, origin_of, unusable
+from service.web.lti.landing import Landings
+from service.web.lti.lti_pages import frame_headers, lti_page
+from service.web.sign_in import form_fields
+
+_FIELDS: Final = ("invitation", "openid_configuration", "registration_token")
+
+
+def joining_forms(landings: Landings) -> APIRouter:
+    """Return the routes of dynamic registration."""
+    router = APIRouter(prefix="/lti")
+    store = landings.store
+
+    def answered(fields: dict[str, str], known: bool, **values: Any) -> Response:
+        scripts = ["close_registration.js"] if values.get("made") else []
+        shown = {"made": None, "message": "", "invitation": None, **values}
+        content = lti_page("register.html", landings.assets, scripts, fields=fields, **shown)
+        configuration = fields["openid_configuration"]
+        may_frame = known and not unusable(configuration, local=True)
+        headers = frame_headers([origin_of(configuration)] if may_frame else [])
+        status = HTTPStatus.FORBIDDEN if values.get("message") else HTTPStatus.OK
+        return HTMLResponse(content, status, headers=headers)
+
+    @router.get("/register")
+    async def ask(request: Request) -> Response:
+        """Answer with the page that asks the admin of a platform to go on; nothing is fetched."""
+        fields = {name: request.query_params.get(name, "") for name in _FIELDS}
+        now = datetime.now(UTC)
+        try:
+            found = await read(store, lambda it: invitation_of(it, fields["invitation"], now))
+        except RegistrationError as error:
+            return answered(fields, False, message=str(error))
+        if not fields["openid_configuration"]:
+            message = (
+                "Paste this link into your platform, where it asks for the address of a dynamic "
+                "registration. The platform then opens this page with an address of its own."
+            )
+            return answered(fields, True, message=message)
+        return answered(fields, True, invitation=found)
+
+    @router.post("/register")
+    async def register(request: Request) -> Response:
+        """Register the platform, and answer with the page that says how it went."""
+        given = await form_fields(request)
+        fields = {name: given.get(name, "") for name in _FIELDS}
+        if not is_same_origin(request):
+            return answered(fields, False, message="The page of another site has sent the form.")
+        now = datetime.now(UTC)
+        try:
+            found = await write(store, lambda it: claim(it, fields["invitation"], now))
+        except RegistrationError as error:
+            return answered(fields, False, message=str(error))
+        try:
+            made = await _registered(landings, found, fields)
+        except RegistrationError as error:
+            return answered(fields, True, message=str(error), invitation=found)
+        return answered(fields, True, invitation=found, made=made)
+
+    return router
+
+
+async def _registered(
+    landings: Landings, invitation: Invitation, fields: Mapping[str, str]
+) -> Registration:
+    """Return the new registration of an invited platform. Raises RegistrationError.
+
+    After an error, the invitation is valid as before.
+    """
+
+    def joined(connection: Connection) -> Registration:
+        now = datetime.now(UTC)
+        ensure_key(connection, landings.secret, now)
+        return accept(connection, invitation, values, now)
+
+    try:
+        values = await asyncio.to_thread(
+            register_at, invitation, fields["openid_configuration"], fields["registration_token"]
+        )
+        return await write(landings.store, joined)
+    except BaseException:
+        await write(landings.store, lambda it: release(it, invitation))
+        raise

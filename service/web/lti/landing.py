@@ -1,0 +1,100 @@
+"""Where a launch ends: the page of a learner, of a tutor, or of a visitor."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Final
+
+from sqlalchemy import Connection
+
+from service.access.caller import Caller, Scope
+from service.access.keys import Keys, Secret
+from service.api.courses.asking import write
+from service.api.http.lookup import Catalogue
+from service.attempts.store import AttemptStore
+from service.lti.deep_linking.requests import begin_linking
+from service.lti.linking import Landing, enter, pseudonym
+from service.lti.logins import Login, use_login
+from service.lti.messages import DEEP_LINKING, LaunchMessage
+from service.lti.roles import LtiRole
+from service.lti.tickets import LtiTicket, signed_ticket
+from service.web.assets import Assets
+from service.web.lti.deep_linking.offers import Offer, Picked, offer_of
+from service.web.lti.deep_linking.picker_pages import picker_page
+from service.web.lti.lti_pages import Choice, choosing_page, landing_page, tutor_page
+
+# The lifetime of the token in a page. The page keeps it in memory; a reload needs a new launch.
+TOKEN_LIFETIME: Final = timedelta(hours=12)
+
+
+class Landings:
+    """Makes the pages that launches open, in the transaction that uses up the login."""
+
+    def __init__(
+        self,
+        catalogue: Catalogue,
+        assets: Assets,
+        store: AttemptStore,
+        keys: Keys,
+        secret: Secret,
+    ) -> None:
+        self.catalogue, self.assets, self.store = catalogue, assets, store
+        self.keys, self.secret = keys, secret
+
+    async def page(self, message: LaunchMessage, login: Login) -> bytes:
+        """Record a launch; return the page that it opens. Raises LtiError."""
+        now = datetime.now(UTC)
+        if message.kind == DEEP_LINKING:
+            return await self._picker(message, login, now)
+
+        def entered(connection: Connection) -> Landing:
+            use_login(connection, login, now)
+            return enter(connection, message, self.secret, self.catalogue, now)
+
+        landing = await write(self.store, entered)
+        if landing.key_id:
+            self.keys.expect_keys()
+        if landing.role is not LtiRole.TUTOR:
+            return landing_page(landing, self._token(landing, now), self.catalogue, self.assets)
+        mine = LtiTicket(
+            registration=message.registration.id,
+            context=landing.context,
+            link=landing.link,
+            learner=self._reviewed(message),
+        )
+        ticket = signed_ticket(mine, self.secret, now)
+        if landing.assignment is not None:
+            return tutor_page(
+                landing, ticket, self.catalogue, self.assets, is_review=bool(mine.learner)
+            )
+        choice = Choice(landing.link_title)
+        return choosing_page(choice, landing.course_title, ticket, self.catalogue, self.assets)
+
+    def _reviewed(self, message: LaunchMessage) -> str:
+        """Return the learner whose attempts a message asks for, or ""."""
+        if not message.reviewed:
+            return ""
+        return pseudonym(message.registration.id, message.reviewed, self.secret)
+
+    async def _picker(self, message: LaunchMessage, login: Login, now: datetime) -> bytes:
+        """Return the page on which a tutor chooses links for the platform. Raises LtiError."""
+
+        def begun(connection: Connection) -> Offer:
+            use_login(connection, login, now)
+            ticket = begin_linking(connection, message, self.secret, now)
+            return offer_of(connection, ticket, message.registration)
+
+        offer = await write(self.store, begun)
+        text = signed_ticket(offer.ticket, self.secret, now)
+        return picker_page(offer, Picked(), text, self.catalogue, self.assets)
+
+    def _token(self, landing: Landing, now: datetime) -> str:
+        """Return the token of a learner, or one of a preview, which may only have graded."""
+        if landing.role is LtiRole.GUEST or not landing.key_id or landing.assignment is None:
+            return ""
+        is_learner = landing.role is LtiRole.LEARNER
+        scopes = {Scope.GRADE, Scope.RECORD} if is_learner else {Scope.GRADE}
+        exercises = None
+        if not is_learner:
+            exercises = frozenset(each.exercise for each in landing.assignment.exercises)
+        name = landing.learner or "lti-preview"
+        caller = Caller(frozenset(scopes), exercises, name, landing.key_id)
+        return self.keys.token(caller, now + TOKEN_LIFETIME)

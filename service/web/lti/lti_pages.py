@@ -1,0 +1,195 @@
+"""The pages of launches, and their headers."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from service.api.http.lookup import Catalogue
+from service.catalogue import Exercise
+from service.contract.courses import CourseAssignment
+from service.web.assets import Assets
+from service.web.catalogue_words import words_of
+from service.web.page_headers import FORM_HEADERS, policy
+from service.web.pages import page
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.lti.linking import Landing
+    from service.lti.logins import NewLogin
+
+_FOLDER = "web/lti/templates"
+
+
+def frame_headers(origins: Iterable[str], *targets: str) -> dict[str, str]:
+    """Return the headers of a page that only pages of these origins may show in a frame.
+
+    Its forms may only be sent to us, or, if there are ``targets``, to these origins. The platform's
+    window must stay the opener: it may have the platform's storage.
+    """
+    ancestors = " ".join(dict.fromkeys(["'self'", *origins]))
+    more = {"form_action": " ".join(dict.fromkeys(targets))} if targets else {}
+    content = policy(frame_ancestors=ancestors, **more)
+    headers = {**FORM_HEADERS, "Content-Security-Policy": content}
+    del headers["Cross-Origin-Opener-Policy"]
+    return headers
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What a tutor has filled in to set up a resource link."""
+
+    title: str
+    search: str = ""
+    chosen: Mapping[str, str] | None = None
+    message: str = ""
+
+
+def login_page(login: "NewLogin", name: str, assets: Assets) -> bytes:
+    """Return the page that puts the secret of the browser into the platform's storage."""
+    return lti_page(
+        "login.html",
+        assets,
+        ["platform_storage.js"],
+        address=login.address,
+        frame=login.fields["lti_storage_target"],
+        origin=login.registration.platform_origin,
+        name=name,
+        value=login.browser,
+    )
+
+
+def binding_page(
+    assets: Assets,
+    window: str,
+    *,
+    state: str = "",
+    token: str = "",
+    storage: tuple[str, str, str] | None = None,
+) -> bytes:
+    """Return the page for a browser without the cookie of the login.
+
+    ``storage`` has the frame, the origin and the name of what the platform has stored; without it,
+    the page only has the button that opens the address ``window`` in a window of its own.
+    """
+    frame, origin, name = storage or ("", "", "")
+    scripts = [] if storage is None else ["platform_storage.js"]
+    return lti_page(
+        "binding.html",
+        assets,
+        scripts,
+        window=window,
+        state=state,
+        token=token,
+        frame=frame,
+        origin=origin,
+        name=name,
+        has_storage=storage is not None,
+    )
+
+
+def refused_page(assets: Assets, advice: str, reference: str, reason: str) -> bytes:
+    """Return the page that says why nothing was opened, and what to do."""
+    return lti_page("refused.html", assets, [], advice=advice, reference=reference, reason=reason)
+
+
+def landing_page(landing: "Landing", token: str, catalogue: Catalogue, assets: Assets) -> bytes:
+    """Return the page of a learner, a preview or a guest; the token is only in this page."""
+    assignment = landing.assignment
+    if landing.learner and assignment is not None:
+        return page(
+            "web/templates/learn.html",
+            assets,
+            "../",
+            ["page.js", "embed.js", "learner.js"],
+            styles=["learner.css"],
+            is_framed=True,
+            key=token,
+            place=_place(landing.course, assignment),
+        )
+    exercises = [each.exercise for each in assignment.exercises] if assignment and token else []
+    return lti_page(
+        "visitor.html",
+        assets,
+        ["embed.js"] if exercises else [],
+        role=landing.role.value,
+        title=landing.link_title or "Exercises",
+        is_set_up=assignment is not None,
+        token=token,
+        exercises=[each for each in exercises if each in catalogue],
+    )
+
+
+def tutor_page(
+    landing: "Landing",
+    ticket: str,
+    catalogue: Catalogue,
+    assets: Assets,
+    *,
+    is_review: bool = False,
+) -> bytes:
+    """Return the page of a tutor: the assignment of the link, and the way to the course.
+
+    With ``is_review``, the way leads to the attempts of one learner.
+    """
+    assert landing.assignment is not None
+    return lti_page(
+        "tutor.html",
+        assets,
+        [],
+        title=landing.link_title,
+        course=landing.course_title,
+        assignment=landing.assignment,
+        titles={name: each.title for name, each in catalogue.items()},
+        ticket=ticket,
+        is_review=is_review,
+    )
+
+
+def choosing_page(
+    choice: Choice, course: str, ticket: str, catalogue: Catalogue, assets: Assets
+) -> bytes:
+    """Return the form on which a tutor chooses the exercises of a resource link."""
+    chosen = choice.chosen or {}
+    return lti_page(
+        "choose.html",
+        assets,
+        [],
+        course=course,
+        choice=choice,
+        chosen=chosen,
+        exercises=found(catalogue.values(), choice.search, chosen),
+        ticket=ticket,
+    )
+
+
+def found(
+    exercises: Iterable[Exercise], search: str, chosen: Mapping[str, str]
+) -> Sequence[tuple[Exercise, str]]:
+    """Return the exercises with all words of a search, after the chosen ones, and their points."""
+    words = search.lower().split()
+    listed = [
+        (each, chosen.get(each.id) or f"{sum(part.points for part in each.parts):g}")
+        for each in exercises
+        if each.id in chosen or all(word in words_of(each).lower() for word in words)
+    ]
+    return sorted(listed, key=lambda it: it[0].id not in chosen)
+
+
+def _place(course: str, assignment: CourseAssignment) -> str:
+    """Return the fragment of the only exercise of an assignment, or "" for the list of all."""
+    if len(assignment.exercises) != 1:
+        return ""
+    return f"#/{course}/{assignment.id}/{assignment.exercises[0].exercise}"
+
+
+def lti_page(
+    template: str,
+    assets: Assets,
+    scripts: list[str],
+    more_styles: Iterable[str] = (),
+    **values: object,
+) -> bytes:
+    """Return the page of a template of this folder."""
+    shown = {"is_framed": True, **values}
+    styles = ["tutor.css", "records.css", *more_styles]
+    path = f"{_FOLDER}/{template}"
+    return page(path, assets, "../", ["page.js", *scripts], styles=styles, tutor=False, **shown)

@@ -1,0 +1,249 @@
+"""The routes of LTI: login, launch, our public keys, and the forms of a tutor's first page.
+
+They are there only if the service has a database and a secret.
+"""
+
+import logging
+from collections.abc import Awaitable, Callable, Mapping
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Final
+from urllib.parse import urlencode
+
+from fastapi import APIRouter, Request
+from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
+
+from service.api.courses.asking import read, write
+from service.api.http.lookup import Catalogue
+from service.api.http.request_context import current_request
+from service.api.permissions.access import is_same_origin
+from service.web.assets import Assets
+from service.web.lti.lti_pages import binding_page, frame_headers, login_page, refused_page
+from service.web.page_headers import NO_STORE
+from service.web.sign_in import form_fields
+from service.web.tutor.tutor_routes import Tutoring
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from service.lti.logins import Login, NewLogin
+    from service.lti.messages import LaunchMessage
+    from service.lti.platform_keys import PlatformKeys
+    from service.lti.problems import LtiError
+    from service.lti.registrations import Registration
+
+_log = logging.getLogger(__name__)
+
+_LOGIN: Final = "/login"
+_LAUNCH: Final = "/launch"
+_MOST_FIELDS: Final = 30
+# The lifetime of the cookie of a login (seconds).
+_AGE: Final = 600
+_STATUSES: Final = {
+    "keys-unreachable": HTTPStatus.SERVICE_UNAVAILABLE,
+    "no-secret": HTTPStatus.SERVICE_UNAVAILABLE,
+}
+
+
+def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """Return the routes of LTI; none without a database and a secret."""
+    router = APIRouter(prefix="/lti", include_in_schema=False)
+    keys = tutoring.access.keys
+    if tutoring.store is None or keys is None or keys.secret is None:
+        return router
+    # Imported only here, because they import the database drivers.
+    from service.lti.platform_keys import PlatformKeys
+    from service.web.lti.deep_linking.picker_forms import picker_forms
+    from service.web.lti.joining.joining_forms import joining_forms
+    from service.web.lti.landing import Landings
+    from service.web.lti.tutor_forms import tutor_forms
+
+    landings = Landings(catalogue, assets, tutoring.store, keys, keys.secret)
+    launching = _Launching(assets, tutoring, PlatformKeys())
+
+    async def login(fields: Mapping[str, str]) -> Response:
+        begun = await launching.begin(fields)
+        answer: Response
+        if "lti_storage_target" in begun.fields:
+            name = cookie_name(begun.registration, begun.state)
+            content = login_page(begun, name, assets)
+            headers = frame_headers(begun.registration.frame_origins)
+            answer = HTMLResponse(content, headers=headers)
+        else:
+            answer = RedirectResponse(begun.address, HTTPStatus.FOUND, NO_STORE)
+        set_cookie(answer, begun)
+        return answer
+
+    @router.get(_LOGIN)
+    async def login_by_get(request: Request) -> Response:
+        """Begin a login: the platform sends the user here first."""
+        return await launching.answered(lambda: login(dict(request.query_params)))
+
+    @router.post(_LOGIN)
+    async def login_by_post(request: Request) -> Response:
+        """Begin a login whose fields are those of a form."""
+        fields = await form_fields(request, _MOST_FIELDS)
+        return await launching.answered(lambda: login(fields))
+
+    @router.post(_LAUNCH)
+    async def launch(request: Request) -> Response:
+        """Take the message of the platform, and answer with the page that it opens."""
+        fields = await form_fields(request, _MOST_FIELDS)
+
+        async def launched() -> Response:
+            known, begun = await launching.login_of(fields)
+            if not is_bound(request, fields, known, begun):
+                return launching.ask_to_bind(request, fields, known, begun)
+            message = await launching.message(fields.get("id_token", ""), known, begun)
+            content = await landings.page(message, begun)
+            return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+
+        return await launching.answered(launched)
+
+    @router.get("/jwks.json")
+    async def own_keys() -> Response:
+        """Answer with our public keys."""
+        from service.lti.own_keys import published_keys
+
+        found = await read(tutoring.store, published_keys)
+        return JSONResponse(found, headers={"Cache-Control": "public, max-age=3600"})
+
+    both = APIRouter(include_in_schema=False)
+    both.include_router(router)
+    both.include_router(tutor_forms(landings, launching.answered))
+    both.include_router(picker_forms(landings, launching.answered))
+    both.include_router(joining_forms(landings))
+    return both
+
+
+class _Launching:
+    """The steps of a login and of a launch, up to a checked message."""
+
+    def __init__(self, assets: Assets, tutoring: Tutoring, platform_keys: "PlatformKeys") -> None:
+        self._assets, self._store = assets, tutoring.store
+        self._platform_keys = platform_keys
+
+    async def begin(self, given: Mapping[str, str]) -> "NewLogin":
+        """Note a login. Raises LtiError."""
+        from service.lti.logins import begin_login, login_fields
+        from service.lti.registrations import find_registration
+
+        fields = login_fields(given)
+        known = await read(
+            self._store, lambda it: find_registration(it, fields["iss"], fields.get("client_id"))
+        )
+        now = datetime.now(UTC)
+        return await write(self._store, lambda it: begin_login(it, known, fields, now))
+
+    async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
+        """Return the login that a message answers, and its registration. Raises LtiError."""
+        from service.lti.logins import login_of
+        from service.lti.problems import LtiError
+        from service.lti.registrations import RegistrationError, registration
+
+        now = datetime.now(UTC)
+        begun = await read(self._store, lambda it: login_of(it, fields.get("state", ""), now))
+        try:
+            known = await read(self._store, lambda it: registration(it, begun.registration))
+        except RegistrationError as error:
+            raise LtiError("no-longer-registered") from error
+        if "error" in fields:
+            raise LtiError("platform-error", error=fields["error"])
+        return known, begun
+
+    async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
+        """Return the message in a token. Raises LtiError, after the registration has noted it."""
+        from service.lti.messages import key_id_of, message_in
+        from service.lti.problems import LtiError
+        from service.lti.registrations import note_refusal
+
+        now = datetime.now(UTC)
+        try:
+            key = await self._platform_keys.key(known, key_id_of(token))
+            return message_in(token, key, known, begun, now)
+        except LtiError as error:
+            name = error.name
+            await write(self._store, lambda it: note_refusal(it, known.id, name, now))
+            raise
+
+    def ask_to_bind(
+        self, request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
+    ) -> Response:
+        """Answer a browser without cookie: by the platform's storage, or in an own window.
+
+        Raises LtiError if the page is in a window already.
+        """
+        from service.lti.problems import LtiError
+
+        is_window = request.headers.get("sec-fetch-dest") == "document"
+        if is_window and begun.storage_target is None:
+            raise LtiError("cookies-blocked")
+        again = {name: each for name, each in begun.fields.items() if name != "lti_storage_target"}
+        storage = None
+        if begun.storage_target is not None:
+            name = cookie_name(known, fields["state"])
+            storage = (begun.storage_target, known.platform_origin, name)
+        content = binding_page(
+            self._assets,
+            f"login?{urlencode(again)}",
+            state=fields["state"],
+            token=fields.get("id_token", ""),
+            storage=storage,
+        )
+        return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+
+    async def answered(self, work: Callable[[], Awaitable[Response]]) -> Response:
+        """Return the answer of ``work``, or the page that says why it is refused."""
+        from service.lti.problems import LtiError
+
+        try:
+            return await work()
+        except LtiError as error:
+            return await self._refused(error)
+
+    async def _refused(self, error: "LtiError") -> Response:
+        """Answer with a page for the student; the log has the cause under the same number."""
+        from service.lti.registrations import all_registrations
+
+        context = current_request()
+        reference = "" if context is None else context.id
+        _log.warning("LTI: refused (%s), reference %s: %s", error.name, reference, error)
+        known = await read(self._store, all_registrations)
+        origins = [origin for each in known for origin in each.frame_origins]
+        content = refused_page(self._assets, error.advice, reference, error.name)
+        status = _STATUSES.get(error.name, HTTPStatus.FORBIDDEN)
+        return HTMLResponse(content, status, headers=frame_headers(origins))
+
+
+def is_bound(
+    request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
+) -> bool:
+    """True if the browser has begun the login, False if it cannot say so yet. Raises LtiError.
+
+    It says so by a cookie, or by what the platform's storage has kept for it. The second is
+    accepted only from our own page: anybody may begin a login, and post its message elsewhere.
+    """
+    from service.lti.problems import LtiError
+
+    cookie = request.cookies.get(cookie_name(known, fields["state"]))
+    stored = fields.get("browser")
+    if cookie is None and stored and not is_same_origin(request):
+        raise LtiError("binding-from-elsewhere")
+    secret = cookie or stored
+    if not secret:
+        return False
+    if not begun.is_of_browser(secret):
+        raise LtiError("other-browser")
+    return True
+
+
+def cookie_name(known: "Registration", state: str) -> str:
+    """Return the name of the cookie of a login. Several logins may be under way at once."""
+    from service.lti.logins import digest
+
+    prefix = "__Host-" if known.address.startswith("https:") else ""
+    return f"{prefix}dh-grader-lti-{digest(state)[:12]}"
+
+
+def set_cookie(answer: Response, begun: "NewLogin") -> None:
+    """Set the cookie of a login. Browsers accept it also from this machine without HTTPS."""
+    name = cookie_name(begun.registration, begun.state)
+    answer.set_cookie(name, begun.browser, _AGE, secure=True, httponly=True, samesite="none")

@@ -1,0 +1,161 @@
+"""The forms on a tutor's first page: choose the exercises of a link, and open the course.
+
+A page in a frame has no cookie. Its forms carry a ticket, and are accepted from our own pages only.
+The course opens in a window of its own, in which a cookie of ours is not a third party's.
+"""
+
+from collections.abc import Awaitable, Callable, Mapping
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import Any, Final
+from urllib.parse import parse_qs
+
+from fastapi import APIRouter, Request
+from pydantic import ValidationError
+from sqlalchemy import Connection, Row, select
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from service.access.caller import Caller, Scope
+from service.api.courses.asking import read, write
+from service.api.permissions.access import is_same_origin
+from service.attempts.storage.lti_tables import contexts, resource_links
+from service.contract.courses import NewAssignment
+from service.courses import roll
+from service.courses.errors import CourseError
+from service.lti.linking import Landing, assign, new_assignment_id
+from service.lti.problems import LtiError
+from service.lti.registrations import registration
+from service.lti.roles import LtiRole
+from service.lti.tickets import LtiTicket, ticket_in
+from service.web.lti.landing import Landings
+from service.web.lti.lti_pages import Choice, choosing_page, frame_headers, tutor_page
+from service.web.page_headers import NO_STORE
+from service.web.sign_in import SESSION, form_fields, set_session_cookie
+
+_MOST_FIELDS: Final = 1000
+
+Answered = Callable[[Callable[[], Awaitable[Response]]], Awaitable[Response]]
+
+
+def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
+    """Return the routes of the forms; ``answered`` makes a page of an LtiError."""
+    router = APIRouter(prefix="/lti")
+    store, keys = landings.store, landings.keys
+
+    async def asked(request: Request, text: str) -> LtiTicket:
+        """Return the ticket of a form of ours. Raises LtiError."""
+        if not is_same_origin(request):
+            raise LtiError("binding-from-elsewhere")
+        return ticket_in(text, LtiTicket, landings.secret)
+
+    @router.post("/assignment")
+    async def choose(request: Request) -> Response:
+        """Search exercises, or make the assignment of a resource link."""
+        fields = form_lists(await request.body())
+        text = fields.get("ticket", [""])[0]
+
+        async def chosen() -> Response:
+            ticket = await asked(request, text)
+            context, link = await read(store, lambda it: _rows(it, ticket))
+            known = await read(store, lambda it: registration(it, ticket.registration))
+            course = await read(store, lambda it: roll.course(it, context.course))
+            choice = _choice(fields)
+            try:
+                if fields.get("action") != ["save"]:
+                    raise _NotYetError("")
+                new = _new_assignment(choice, link.number)
+                names = landings.catalogue.keys()
+                made = await write(store, lambda it: _assigned(it, link.number, new, names))
+            except _NotYetError as error:
+                shown = Choice(choice.title, choice.search, choice.chosen, str(error))
+                content = choosing_page(
+                    shown, course.title, text, landings.catalogue, landings.assets
+                )
+            else:
+                landing = Landing(
+                    LtiRole.TUTOR,
+                    course_title=course.title,
+                    link_title=made.title,
+                    assignment=made,
+                )
+                content = tutor_page(landing, text, landings.catalogue, landings.assets)
+            return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+
+        return await answered(chosen)
+
+    @router.post("/session")
+    async def session(request: Request) -> Response:
+        """Start a tutor's session, and open the course."""
+        fields = await form_fields(request)
+
+        async def begun() -> Response:
+            ticket = await asked(request, fields.get("ticket", ""))
+            context, _ = await read(store, lambda it: _rows(it, ticket))
+            caller = Caller(frozenset({Scope.TUTOR}), key_id=context.key, course=context.course)
+            learner = f"/learner?learner={ticket.learner}" if ticket.learner else ""
+            address = f"../tutor/courses/{context.course}{learner}"
+            answer = RedirectResponse(address, HTTPStatus.SEE_OTHER, NO_STORE)
+            text = keys.session(caller, datetime.now(UTC) + SESSION)
+            set_session_cookie(answer, request, text)
+            return answer
+
+        return await answered(begun)
+
+    return router
+
+
+class _NotYetError(Exception):
+    """The form is to be shown again, with this message."""
+
+
+def _rows(connection: Connection, ticket: LtiTicket) -> tuple[Row[Any], Row[Any]]:
+    """Return the rows of the context and of the link of a ticket. Raises LtiError."""
+    of_context = (contexts.c.number == ticket.context) & (
+        contexts.c.registration == ticket.registration
+    )
+    of_link = (resource_links.c.number == ticket.link) & (
+        resource_links.c.context == ticket.context
+    )
+    context = connection.execute(select(contexts).where(of_context)).one_or_none()
+    link = connection.execute(select(resource_links).where(of_link)).one_or_none()
+    if context is None or link is None:
+        raise LtiError("no-longer-registered")
+    return context, link
+
+
+def form_lists(body: bytes) -> Mapping[str, list[str]]:
+    """Return the fields of a form, with all values of each."""
+    try:
+        return parse_qs(body.decode(errors="replace"), max_num_fields=_MOST_FIELDS)
+    except ValueError:
+        return {}
+
+
+def _choice(fields: Mapping[str, list[str]]) -> Choice:
+    chosen = {
+        name: fields.get(f"points:{name}", [""])[0].strip()[:20]
+        for name in fields.get("exercise", [])
+    }
+    title, search = (fields.get(name, [""])[0].strip()[:200] for name in ("title", "search"))
+    return Choice(title, search, chosen)
+
+
+def _new_assignment(choice: Choice, link: int) -> NewAssignment:
+    """Return the assignment that a form asks for. Raises _NotYetError."""
+    if not choice.chosen:
+        raise _NotYetError("Choose at least one exercise.")
+    if not choice.title:
+        raise _NotYetError("Enter a title.")
+    listed = [{"exercise": each, "points": points} for each, points in choice.chosen.items()]
+    fields = {"id": new_assignment_id(link), "title": choice.title, "exercises": listed}
+    try:
+        return NewAssignment.model_validate(fields)
+    except ValidationError as error:
+        raise _NotYetError("Points are numbers above 0, at most 10000.") from error
+
+
+def _assigned(connection: Connection, link: int, new: NewAssignment, known: Any) -> Any:
+    try:
+        return assign(connection, link, new, known)
+    except CourseError as error:
+        raise _NotYetError(str(error)) from error

@@ -1,0 +1,32 @@
+// Clicks on joint axes are loaded only if the exercise asks for frames and the browser draws in 3D.
+
+export class PlacingLoader {
+  #closed = false;
+  /** @type {Front.AxisClicks | null} */
+  #clicks = null;
+
+  /** @param {Front.ViewHost} host @param {Front.Stage} stage */
+  constructor(host, stage) {
+    this.host = host;
+    this.stage = stage;
+  }
+
+  /** Load them when the stage is open. */
+  async open() {
+    const [part, { scene }] = [this.host.placing?.(), this.stage];
+    if (!part || !scene) return;
+    try {
+      const { AxisClicks } = await import("./axis_clicks.js");
+      if (this.#closed) return;
+      this.#clicks = new AxisClicks(this.host, part, scene);
+      this.stage.element.after(this.#clicks.hint);
+    } catch {
+      this.host.announce("Clicks on joint axes could not be loaded");
+    }
+  }
+
+  close() {
+    this.#closed = true;
+    this.#clicks?.close();
+  }
+}

@@ -1,0 +1,135 @@
+// Hints on demand: at each message on a mistake a button, which shows what to look at, then the rule with its picture,
+// then the rule on this row. Between two steps, the student changes the answer and checks it again.
+
+import { h, visible } from "../../shared/dom.js";
+import { typesetMessage } from "../../typeset/names.js";
+import { offerChoices } from "./choices.js";
+
+const STYLE = new URL("./hints.css", import.meta.url).href;
+const STEPS = 3;
+const UNREAD = ["unreadable", "missing"];
+const TRY_FIRST = "Change your answer and check it again. Then the next hint opens.";
+
+/** The steps that a message has had: `tried` are the answers for which the last one was given. */
+/** @typedef {{ steps: Api.Hint[], tried: string }} Had */
+
+/** @type {WeakMap<Api.Exercise, Map<string, Had>>} */
+const ALL = new WeakMap();
+
+/**
+ * Add hints to the messages of a report on the answers in the cells.
+ *
+ * @param {Front.HintHost} host
+ * @param {Front.PartView[]} parts
+ * @param {Api.Report} report
+ */
+export function offerHints(host, parts, report) {
+  if (!host.shadowRoot?.querySelector(`link[href="${STYLE}"]`)) {
+    host.shadowRoot?.append(h("link", { rel: "stylesheet", href: STYLE }));
+  }
+  const had = ALL.get(host.exercise) ?? new Map();
+  ALL.set(host.exercise, had);
+  const answered = { answers: host.answers, angle_unit: host.angleUnit };
+  for (const view of parts) {
+    const part = report.parts.find((each) => each.part === view.part.id);
+    if (!part) continue;
+    offerChoices(host, view, part);
+    for (const { element, feedback, place } of view.told) {
+      if (!hasHints(feedback, verdictAt(part, place))) continue;
+      const topic = { part: part.part, code: feedback.code, ...place };
+      const key = JSON.stringify(topic);
+      const earlier = had.get(key) ?? { steps: [], tried: "" };
+      had.set(key, earlier);
+      element.append(new HintBox(host, answered, topic, earlier).element);
+    }
+  }
+}
+
+/**
+ * True if a message is on a mistake: not on reading, and not on an empty cell.
+ *
+ * @param {Api.Feedback} feedback
+ * @param {Api.Verdict} verdict
+ */
+export function hasHints(feedback, verdict) {
+  return feedback.severity === "error" && !UNREAD.includes(verdict);
+}
+
+/**
+ * Return the verdict at a place of a part.
+ *
+ * @param {Api.PartReport} part
+ * @param {Front.Topic} place
+ */
+export function verdictAt(part, { row, cell }) {
+  const found = part.rows.find((each) => each.label === row);
+  return found?.cells.find((each) => each.label === cell)?.verdict ?? found?.verdict ?? part.verdict;
+}
+
+class HintBox {
+  /**
+   * @param {Front.HintHost} host
+   * @param {Pick<Api.HintRequest, "answers" | "angle_unit">} answered
+   * @param {Front.Topic & { part: string, code: string }} topic
+   * @param {Had} had
+   */
+  constructor(host, answered, topic, had) {
+    this.host = host;
+    this.answered = answered;
+    this.topic = topic;
+    this.had = had;
+    this.symbols = new Set(host.exercise.symbols.map(({ name }) => name));
+    this.button = h("button", { type: "button", class: "quiet-button", onclick: () => this.#next() });
+    this.note = h("p", { class: "quiet", role: "status" });
+    this.list = h("ol", { class: "hint-steps" });
+    this.element = h("div", { class: "hints" }, this.list, this.button, this.note);
+    this.#show();
+  }
+
+  get #isTried() {
+    return this.had.tried !== JSON.stringify(this.answered);
+  }
+
+  #show() {
+    const { steps } = this.had;
+    this.list.hidden = steps.length === 0;
+    this.list.replaceChildren(...steps.map((step) => this.#step(step)));
+    this.button.hidden = steps.length === STEPS || !this.#isTried;
+    this.button.textContent = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
+    this.note.textContent = steps.length > 0 && steps.length < STEPS && !this.#isTried ? TRY_FIRST : "";
+  }
+
+  /** @param {Api.Hint} hint */
+  #step({ step, title, text, picture }) {
+    return h(
+      "li",
+      { tabindex: -1 },
+      step === 1 ? h("strong", {}, ...typesetMessage(visible(title), this.symbols), ". ") : null,
+      ...typesetMessage(visible(text), this.symbols),
+      picture
+        ? h("img", {
+          class: "rule",
+          src: this.host.colours.figure(this.host.service.address(picture)),
+          alt: visible(`${title}: the picture of this rule`),
+        })
+        : null,
+    );
+  }
+
+  async #next() {
+    if (this.button.getAttribute("aria-disabled") === "true") return;
+    this.button.setAttribute("aria-disabled", "true");
+    try {
+      const body = { ...this.answered, ...this.topic, step: this.had.steps.length + 1 };
+      const hint = await this.host.service.hint(this.host.exercise.id, body);
+      this.had.steps.push(hint);
+      this.had.tried = JSON.stringify(this.answered);
+      this.#show();
+      // The button is gone: the reader goes on at the hint.
+      /** @type {HTMLElement | null} */ (this.list.lastElementChild)?.focus();
+    } catch (error) {
+      this.note.textContent = visible(error.message);
+    }
+    this.button.removeAttribute("aria-disabled");
+  }
+}

@@ -1,0 +1,1 @@
+"""Imports of robots in the editor."""

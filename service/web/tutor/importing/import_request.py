@@ -1,0 +1,68 @@
+"""A URDF file or a pasted DH table -> the text of an exercise file, for the editor."""
+
+from http import HTTPStatus
+from typing import Annotated, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from service.api.http.problems import ProblemError
+from service.catalogue import ID_ADVICE, is_exercise_id
+from service.importing.robot_import import (
+    ImportedRobot,
+    ImportOptions,
+    RefusedRobotError,
+    imported_table,
+    imported_urdf,
+)
+from service.kinematics.dh import Convention
+from service.submissions.strict_json import MAX_BODY_SIZE
+
+_Name = Annotated[str, Field(max_length=200)]
+_ROBOT: Final = TypeAdapter(ImportedRobot)
+
+
+class ImportRequest(BaseModel):
+    """A robot as text, and the author's choices."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    kind: Literal["urdf", "table"]
+    text: Annotated[str, Field(max_length=MAX_BODY_SIZE)]
+    id: _Name
+    title: _Name = ""
+    base: _Name = ""
+    tip: _Name = ""
+    letters: bool = False
+    convention: Convention = Convention.STANDARD
+
+
+def imported(body: ImportRequest) -> bytes:
+    """Return the exercise of a robot as JSON. Raises ProblemError with the reason of a refusal."""
+    if not is_exercise_id(body.id):
+        raise _refused(f"This cannot be the id of an exercise: {ID_ADVICE}.")
+    options = ImportOptions(
+        title=body.title or body.id,
+        source="Imported from a URDF file" if body.kind == "urdf" else "Imported from a DH table",
+        convention=body.convention,
+        base=body.base,
+        tip=body.tip,
+        letters=body.letters,
+    )
+    try:
+        if body.kind == "urdf":
+            found = imported_urdf(body.text.encode(), options)
+        else:
+            found = imported_table(body.text, options)
+    except RefusedRobotError as error:
+        text = str(error).rstrip(".")
+        raise _refused(f"{text[:1].upper()}{text[1:]}.") from error
+    return _ROBOT.dump_json(found)
+
+
+def _refused(detail: str) -> ProblemError:
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        detail,
+        "unusable-robot",
+        "The robot cannot become an exercise",
+    )

@@ -1,0 +1,86 @@
+"""A student asks for hints in a real browser, by mouse, keyboard and on a phone."""
+
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.fixtures import Visit
+from tests.browser.steps import cells, open_exercise
+from tests.browser.student.steps import PHONE
+from tests.browser.test_pages import violations
+
+Opening = Callable[..., Visit]
+TABLE = ["a1", "0", "0", "q1", "a2", "pi", "0", "q2"]
+ALPHA = 5
+
+
+def check(page: Page, alpha: str) -> None:
+    cells(page).nth(ALPHA).fill(alpha)
+    with page.expect_response("**/grade"):
+        page.get_by_role("button", name="Check").click()
+
+
+def wrong_table(page: Page, service: str) -> None:
+    open_exercise(page, service, "planar-rr")
+    for i, text in enumerate(TABLE):
+        cells(page).nth(i).fill(text)
+    check(page, "pi")
+
+
+def test_three_hints_with_a_try_in_between(visit: Opening, service: str, axe: str) -> None:
+    page = visit(bypass_csp=True).page
+    page.add_init_script(axe)
+    wrong_table(page, service)
+    button, steps = page.locator(".hints button"), page.locator(".hint-steps > li")
+    button.focus()
+    page.keyboard.press("Enter")
+    expect(steps).to_have_count(1)
+    expect(steps.first).to_be_focused()
+    expect(steps.first).to_contain_text("Look at")
+    # The same answer is no try; another one is.
+    expect(button).to_be_hidden()
+    check(page, "pi")
+    expect(button).to_be_hidden()
+    expect(steps).to_have_count(1)
+    check(page, "-pi")
+    expect(button).to_have_text("Hint 2 of 3")
+    button.click()
+    expect(steps).to_have_count(2)
+    picture = steps.nth(1).get_by_role("img", name="Link twist α: the picture of this rule")
+    expect(picture).to_be_visible()
+    assert picture.evaluate("each => each.decode().then(() => each.naturalWidth)") > 100
+    assert violations(page, "") == []
+    check(page, "pi")
+    button.click()
+    expect(steps).to_have_count(3)
+    expect(steps.last).to_contain_text("point your right thumb along")
+    expect(button).to_be_hidden()
+    check(page, "0")
+    expect(page.locator(".hints")).to_have_count(0)
+
+
+def test_a_first_view_loads_no_hints(visit: Opening, service: str) -> None:
+    opened = visit()
+    page = opened.page
+    loaded: list[str] = []
+    page.on("request", lambda request: loaded.append(request.url))
+    open_exercise(page, service, "planar-rr")
+    page.wait_for_load_state("networkidle")
+    assert loaded
+    assert [url for url in loaded if "/hints" in url] == []
+    for i, text in enumerate(TABLE):
+        cells(page).nth(i).fill(text)
+    check(page, "pi")
+    expect(page.locator(".hints button")).to_be_visible()
+    assert [url for url in loaded if "/static/hints-" in url]
+
+
+def test_a_hint_fits_on_a_phone(visit: Opening, service: str) -> None:
+    page = visit(**PHONE).page
+    wrong_table(page, service)
+    for alpha in ("-pi", "pi", "-pi"):
+        page.locator(".hints button").tap()
+        expect(page.locator(".hint-steps")).to_be_visible()
+        check(page, alpha)
+    expect(page.locator(".hint-steps img")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["viewport"]["width"]

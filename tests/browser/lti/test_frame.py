@@ -1,0 +1,142 @@
+"""Launches in a frame of another site, while the browser blocks third-party cookies."""
+
+import asyncio
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import jwt
+import pytest
+from playwright.sync_api import BrowserContext, Page, expect
+
+from service.attempts.storage.database import in_transaction, open_database
+from service.lti.registrations import NewRegistration, add_registration
+from tests.api.serving import served
+from tests.browser.chromium import OPTIONS, Chromium
+from tests.browser.fixtures import GUARD, Started, complaint
+from tests.lti.platform import DL, Platform, deep_linking, running
+
+SECRET = "0123456789abcdef" * 4
+OURS = [
+    *(each for each in OPTIONS if "resolver" not in each),
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
+]
+# Blocks the cookies of other sites in frames, without exceptions.
+CONTROLS = {
+    "enableThirdPartyCookieRestriction": True,
+    "disableThirdPartyCookieMetadata": True,
+    "disableThirdPartyCookieHeuristics": True,
+}
+
+
+@dataclass
+class Course:
+    """A platform on localhost, whose pages frame the service on 127.0.0.1."""
+
+    platform: Platform
+    context: BrowserContext
+    complaints: list[str]
+
+    def opened(self, user: str) -> Page:
+        page = self.context.new_page()
+        controls = self.context.new_cdp_session(page)
+        controls.send("Network.enable")
+        controls.send("Network.setCookieControls", CONTROLS)
+        page.goto(f"{self.platform.address}/course/{user}/link-1")
+        return page
+
+
+@pytest.fixture
+def course(started_browser: Started, chromium: Chromium, tmp_path: Path) -> Iterator[Course]:
+    environment = {"DH_GRADER_DATABASE": str(tmp_path / "lti.db"), "DH_GRADER_SECRET": SECRET}
+    platform = Platform(host="localhost")
+    with served(tmp_path, **environment) as server, running(platform.app()) as port:
+        platform.port, platform.tool = port, server.address
+        engine = open_database(environment["DH_GRADER_DATABASE"])
+        new = NewRegistration.model_validate(platform.registration)
+        in_transaction(engine, lambda it: add_registration(it, new, datetime.now(UTC)))
+        engine.dispose()
+        asyncio._set_running_loop(started_browser.loop)
+        browser = started_browser.browser.browser_type.launch(
+            executable_path=chromium.program,
+            args=OURS,
+            env={**os.environ, **chromium.environment},
+        )
+        context = browser.new_context(reduced_motion="reduce")
+        context.set_default_timeout(GUARD)
+        told: list[str] = []
+        context.on("console", lambda line: told.extend(complaint(line)))
+        yield Course(platform, context, told)
+        browser.close()
+        asyncio._set_running_loop(None)
+        assert told == []
+
+
+def test_a_learner_gets_in_by_the_storage_of_the_platform(course: Course) -> None:
+    page = course.opened("ada")
+    frame = page.frame_locator("iframe")
+    expect(frame.get_by_role("button", name="Hand in")).to_be_visible()
+    # The key is neither in the address nor in the page, and there is no cookie.
+    [inner] = [each for each in page.frames if each.name == "tool"]
+    assert inner.url.startswith(f"{course.platform.tool}/lti/launch#/lti-")
+    assert inner.evaluate("document.querySelector('[data-key]')") is None
+    assert inner.evaluate("sessionStorage.length") == 0
+    assert course.context.cookies(course.platform.tool) == []
+
+
+def test_without_storage_the_exercise_opens_in_a_window(course: Course) -> None:
+    course.platform.storage = False
+    page = course.opened("ada")
+    button = page.frame_locator("iframe").get_by_role("link", name="Open in a new window")
+    with course.context.expect_page() as opened:
+        button.click()
+    expect(opened.value.get_by_role("button", name="Hand in")).to_be_visible()
+
+
+def test_a_tutor_opens_the_course_in_a_window(course: Course) -> None:
+    page = course.opened("turing")
+    button = page.frame_locator("iframe").get_by_role("button", name="Open the course")
+    with course.context.expect_page() as opened:
+        button.click()
+    expect(opened.value.get_by_role("heading", name="Robotics 2026")).to_be_visible()
+
+
+# Return the width of the picture of the chosen exercise, once it is there.
+DRAWN = """async () => {
+  const picture = document.querySelector("li:has(:checked) img");
+  picture.scrollIntoView();
+  if (!picture.complete) await new Promise((end) => picture.onload = picture.onerror = end);
+  return picture.naturalWidth;
+}"""
+SIZES = {"wide": (1280, 900), "narrow": (375, 800)}
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_tutor_picks_exercises_in_a_frame(course: Course, axe: str, size: str) -> None:
+    platform = course.platform
+    platform.habits.append(deep_linking(f"{platform.address}/return?course=1"))
+    page = course.opened("turing")
+    width, height = SIZES[size]
+    page.set_viewport_size({"width": width, "height": height})
+    page.eval_on_selector("iframe", "(it, width) => { it.width = width }", width - 30)
+    frame = page.frame_locator("iframe")
+    frame.get_by_label("Find an exercise").fill("scara")
+    frame.get_by_role("button", name="Search").click()
+    expect(frame.locator('[name="exercise"][value="planar-rr"]')).to_have_count(0)
+    box = frame.locator('[name="exercise"][value="scara"]')
+    box.check()
+    frame.locator('[name="points:scara"]').fill("7")
+    [inner] = [each for each in page.frames if each.name == "tool"]
+    assert inner.evaluate(DRAWN) > 0
+    assert inner.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    inner.evaluate(f"() => {{ {axe} }}")
+    found = inner.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    assert [(each["id"], each["nodes"][0]["target"]) for each in found["violations"]] == []
+    frame.get_by_label("Title").fill("Arms")
+    frame.get_by_role("button", name="Add to the course").click()
+    expect(frame.get_by_role("heading", name="Added")).to_be_visible()
+    [text] = platform.returned
+    [item] = jwt.decode(text, options={"verify_signature": False})[f"{DL}content_items"]
+    assert (item["title"], item["custom"]) == ("Arms", {"exercise": "scara=7"})

@@ -1,0 +1,61 @@
+"""A lecturer makes a checked exercise from the URDF file of a UR5e, in the editor."""
+
+from collections.abc import Callable
+from pathlib import Path
+from time import monotonic
+
+from playwright.sync_api import expect
+
+from service.authoring import Level, examine
+from service.catalogue import load_exercise
+from tests.api.serving import served
+from tests.browser.fixtures import Visit
+from tests.browser.test_pages import violations
+from tests.browser.test_tutor import NARROW, wide
+from tests.importing.test_arms import ARMS
+
+
+def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
+    visit: Callable[..., Visit], axe: str, tmp_path: Path, figure: Callable[[str], None]
+) -> None:
+    [arm] = ARMS.glob("ur5e-*.urdf")
+    upload = tmp_path / "Our UR5e.urdf"
+    camera = '<link name="camera"/></robot>'
+    upload.write_text(arm.read_text("utf-8").replace("</robot>", camera), "utf-8")
+    folder = tmp_path / "written"
+    folder.mkdir()
+    with served(tmp_path, DH_GRADER_EDITOR_DIR=str(folder)) as server:
+        opened = visit(bypass_csp=True, viewport=NARROW)
+        page = opened.page
+        page.add_init_script(axe)
+        began = monotonic()
+        page.goto(f"{server.address}/tutor")
+        page.get_by_role("link", name="New exercise from a robot").click()
+        page.get_by_label("File", exact=True).set_input_files(upload)
+        expect(page.get_by_label("Exercise id")).to_have_value("our-ur5e")
+        page.get_by_label("Title").fill("The UR5e")
+        make = page.get_by_role("button", name="Make the exercise")
+        make.click()
+        told = page.locator("#imported")
+        expect(told).to_contain_text("Name the tool's link; the tree ends at: tool0, camera.")
+        assert "\n".join(violations(page, "")) == ""
+        # The browser complains of the refusal.
+        opened.complaints.clear()
+        page.get_by_label("Link of the tool").fill("tool0")
+        page.get_by_label("Letters for lengths").check()
+        make.click()
+        expect(told).to_contain_text("Largest difference to the URDF at 100 poses: 0.0000 mm")
+        expect(page.locator("#findings")).to_contain_text("1 right, 1 equivalent, 0 wrong")
+        preview = page.locator("#preview")
+        expect(preview).to_contain_text("The UR5e")
+        expect(preview).to_contain_text("Joint 6 turns about the axis through")
+        drawn = "img => img.decode().then(() => img.naturalWidth > 0)"
+        assert preview.locator("figure img").evaluate(drawn)
+        assert "\n".join(violations(page, "")) == ""
+        assert wide(page) <= NARROW["width"]
+        page.get_by_role("button", name="Save").click()
+        expect(page.get_by_text("our-ur5e.toml is saved")).to_be_visible()
+        figure(f"UR5e in the browser: {monotonic() - began:.1f} s from the start page to the file")
+    exercise = load_exercise(folder / "our-ur5e.toml")
+    assert exercise.structure == "RRRRRR"
+    assert not [remark for remark in examine(exercise) if remark.level is Level.FAILED]

@@ -1,0 +1,117 @@
+"""The gradebook as a workbook, read back with the standard library."""
+
+import io
+import re
+import zipfile
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from functools import partial
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+from zoneinfo import ZoneInfo
+
+import pytest
+from typer.testing import CliRunner
+
+from service.access.caller import Scope
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
+from service.cli.program import program
+from service.contract.courses import NewLearner
+from service.courses import roll
+from tests.courses.conftest import NOW, SECRET, Class, days
+
+_NAMES = {
+    "m": "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
+    "r": "http://schemas.openxmlformats.org/officeDocument/2006/relationships",
+}
+FORMULA = '=HYPERLINK("https://evil.example";"Grade")'
+
+
+def sheets(content: bytes) -> dict[str, list[list[str | float | None]]]:
+    """Return the cells of each sheet of a workbook; no cell may be a formula or a link."""
+    with zipfile.ZipFile(io.BytesIO(content)) as file:
+        parts = {name: ElementTree.fromstring(file.read(name)) for name in file.namelist()}
+    texts = ["".join(each.itertext()) for each in parts["xl/sharedStrings.xml"]]
+    named = parts["xl/workbook.xml"].iterfind(".//m:sheet", _NAMES)
+    assert not any("externalLink" in name for name in parts)
+    found = {}
+    for i, sheet in enumerate(named, start=1):
+        part = parts[f"xl/worksheets/sheet{i}.xml"]
+        for hostile in ("f", "hyperlink", "dataValidation"):
+            assert part.find(f".//m:{hostile}", _NAMES) is None
+        rows = part.iterfind(".//m:row", _NAMES)
+        found[sheet.attrib["name"]] = [_row(row, texts) for row in rows]
+    return found
+
+
+def _row(row: ElementTree.Element, texts: list[str]) -> list[str | float | None]:
+    cells: dict[int, str | float] = {}
+    for cell in row.iterfind("m:c", _NAMES):
+        place = 0
+        for letter in re.sub("[0-9]", "", cell.attrib["r"]):
+            place = 26 * place + ord(letter) - ord("A") + 1
+        value = float(cell.findtext("m:v", namespaces=_NAMES) or "nan")
+        cells[place - 1] = texts[int(value)] if cell.get("t") == "s" else value
+    return [cells.get(i) for i in range(max(cells) + 1)]
+
+
+def as_tutor(class_: Class, course: str | None = "robots") -> Class:
+    """Return the class as a tutor of a course asks for it."""
+    text, until = new_key_text(), NOW + timedelta(days=1)
+    digest = SECRET.key_digest(text)
+    class_.do(lambda it: add_key(it, "", digest, {Scope.TUTOR}, None, NOW, until, course))
+    return replace(class_, keys={**class_.keys, "tutor": text})
+
+
+@pytest.fixture
+def graded(class_: Class) -> Any:
+    """A class in which ada has handed in twice, and the name of grace is a formula."""
+    class_.assign(due=days(1))
+    for key in "ab":
+        assert class_.hand_in(key).status_code == 201
+    new = [NewLearner(learner="grace", name=FORMULA), NewLearner(learner="+1", name="\u202eX")]
+    class_.do(partial(roll.add_learners, course_id="robots", new=new))
+    return as_tutor(class_)
+
+
+def test_the_workbook_has_points_and_hand_ins_and_no_formula(graded: Class) -> None:
+    answer = graded.ask("GET", "/v1/courses/robots/gradebook?format=xlsx", "tutor")
+    assert answer.headers["content-type"].endswith("spreadsheetml.sheet")
+    assert answer.headers["content-disposition"].endswith('filename="gradebook-robots.xlsx"')
+    assert answer.headers["cache-control"] == "no-store"
+    found = sheets(answer.content)
+    earned = graded.own()["earned"]
+    title = "homework scara"
+    assert found["Points"] == [
+        ["learner", "name", "email", title, "total"],
+        ["grace", FORMULA, None, None, 0.0],
+        ["ada", "Ada", None, earned, earned],
+        ["+1", "\ufffdX", None, None, 0.0],
+    ]
+    head, *rows = found["Hand-ins"]
+    assert head == ["learner", "name", "email", title, f"{title}, last hand-in"]
+    assert [row[3:4] for row in rows] == [[], [2.0], []]
+    # A workbook counts the days since 1899-12-30, here on the clocks of Berlin.
+    now = datetime.now(ZoneInfo("Europe/Berlin")).replace(tzinfo=UTC)
+    last = (now - datetime(1899, 12, 30, tzinfo=UTC)).total_seconds() / 86400
+    assert rows[1][4] == pytest.approx(last, abs=0.01, rel=0)
+
+
+def test_only_tutors_of_the_course_get_the_workbook(graded: Class) -> None:
+    other = as_tutor(graded, "others")
+    path = "/v1/courses/robots/gradebook?format=xlsx"
+    assert [graded.ask("GET", path, by).status_code for by in ("ada", "tutor")] == [403, 200]
+    assert other.ask("GET", path, "tutor").status_code == 403
+
+
+def test_the_command_writes_the_workbook_of_an_assignment(
+    graded: Class, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(graded.store.engine.url.database))
+    file = tmp_path / "grades.xlsx"
+    words = ["courses", "gradebook", "robots", "--format", "xlsx", "--output", str(file)]
+    assert CliRunner().invoke(program, [*words, "--assignment", "homework"]).exit_code == 0
+    assert sheets(file.read_bytes())["Points"][2][:2] == ["ada", "Ada"]
+    assert CliRunner().invoke(program, [*words, "--assignment", "none"]).exit_code == 2

@@ -1,0 +1,48 @@
+"""An assignment file becomes an assignment of a course, or is refused with the reason."""
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from service.cli.program import program
+from tests.courses.conftest import Class
+
+FILE = """
+title = "Homework 5"
+feedback = "verdicts"
+
+[[exercises]]
+id = "scara"
+points = 30
+"""
+OWN = '[[exercises]]\npath = "{path}"\n'
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ("", ""),
+        ('[[exercises]]\nid = "planar-rr"\nparts = ["table"]\n', "planar-rr: an assignment of a"),
+        (OWN, "planar-rrr: an assignment of a course has whole exercises"),
+        ('[[exercises]]\nid = "no-such"\n', "no-such"),
+    ],
+)
+def test_an_assignment_file_is_taken_whole_or_refused(
+    class_: Class, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, more: str, said: str
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    own = tmp_path / "planar-rrr.toml"
+    shipped = Path(__file__).parents[2] / "exercises/planar-rrr.toml"
+    own.write_bytes(shipped.read_bytes())
+    file = tmp_path / "homework.toml"
+    file.write_text(FILE + more.format(path=own.name), encoding="utf-8")
+    words = ["courses", "assignments", "add", "robots", "homework-5", "--file", str(file)]
+    told = CliRunner().invoke(program, words)
+    assert told.exit_code == (2 if said else 0), told.output
+    assert said in " ".join(told.output.split())
+    if not said:
+        assert "homework-5: Homework 5, 30 points" in told.output
+        assert "feedback verdicts" in told.output
+    listed = CliRunner().invoke(program, ["courses", "assignments", "list", "robots"]).output
+    assert ("homework-5" in listed) is (said == "")

@@ -1,0 +1,95 @@
+"""A tutor of a course regrades the attempts in this course, and no others."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import pytest
+from sqlalchemy import select, update
+from typer.testing import CliRunner
+
+from service.attempts.regrades.outdated import Regrading
+from service.attempts.storage.tables import assignments, attempts
+from service.catalogue import Exercise, FeedbackLevel
+from service.cli.program import program
+from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from service.courses import roll
+from service.courses.assignments import add_assignment
+from service.courses.links import issue_links
+from tests.attempts.databases import KINDS
+from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, SECRET, Class
+from tests.courses.results.test_workbook import as_tutor
+
+PATH = "/v1/exercises/scara/regrade"
+BOTH = pytest.mark.parametrize("class_", KINDS, indirect=True)
+
+
+def set_up(class_: Class) -> Class:
+    """Record an attempt of ada in each of two courses, with the points of an older version."""
+    class_.assign()
+    exercises = [{"exercise": "scara", "points": 10}]
+    new = NewAssignment.model_validate({"id": "homework", "title": "H", "exercises": exercises})
+
+    def add(connection: Any) -> str:
+        course = NewCourse(id="others", title="Others", zone="UTC")
+        roll.add_course(connection, course, NOW)
+        roll.add_learners(connection, "others", [NewLearner(learner="ada", name="Ada")])
+        add_assignment(connection, "others", new, {"scara"})
+        [link] = issue_links(connection, "others", LinksRequest(), SECRET, ADDRESS, NOW)
+        return link.link.partition("#")[2]
+
+    both = replace(class_, keys={**class_.keys, "there": class_.do(add)})
+    for by, course in (("ada", "robots"), ("there", "others")):
+        path = f"/v1/courses/{course}/assignments/homework/attempts"
+        body = {"exercise": "scara", "answers": NO_TWIST}
+        assert both.ask("POST", path, by, course, **body).status_code == 201
+    class_.do(lambda it: it.execute(update(attempts).values(version="old", points=1.0)))
+    return as_tutor(both)
+
+
+def versions(class_: Class) -> dict[str, bool]:
+    """Return whether the attempt in each course was graded by an older version."""
+    rows = select(assignments.c.course, attempts.c.version).join_from(attempts, assignments)
+    return {course: version == "old" for course, version in class_.do(lambda it: it.execute(rows))}
+
+
+@BOTH
+def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
+    both = set_up(class_)
+    told = both.ask("POST", PATH, "tutor", apply=False).json()
+    assert (told["applied"], told["regraded"], told["left"]) == (False, 1, 0)
+    [change] = told["changes"]
+    assert change["before"] == 1.0 < change["after"]
+    assert versions(both) == {"robots": True, "others": True}
+    for refused in ("others", "no-such"):
+        answer = both.ask("POST", f"{PATH}?course={refused}", "tutor", apply=True)
+        assert answer.status_code == 403
+        assert answer.json()["type"].endswith(":other-course")
+    done = both.ask("POST", f"{PATH}?course=robots", "tutor", apply=True).json()
+    assert (done["applied"], done["regraded"], done.get("next")) == (True, 1, None)
+    assert versions(both) == {"robots": False, "others": True}
+    # A tutor of all courses may do one after the other, or the rest at once.
+    of_all = as_tutor(both, None)
+    assert of_all.ask("POST", PATH, "tutor", apply=True).json()["regraded"] == 1
+    assert versions(both) == {"robots": False, "others": False}
+
+
+def test_a_course_leaves_the_queue_of_the_others_alone(
+    class_: Class, catalogue: Mapping[str, Exercise]
+) -> None:
+    """An interrupted regrade of all attempts has put those of both courses into the queue."""
+    both = set_up(class_)
+    both.do(Regrading(catalogue["scara"], FeedbackLevel.FULL).enqueue)
+    assert both.ask("POST", PATH, "tutor", apply=True).json()["regraded"] == 1
+    assert versions(both) == {"robots": False, "others": True}
+
+
+def test_the_command_regrades_one_course(class_: Class, monkeypatch: pytest.MonkeyPatch) -> None:
+    both = set_up(class_)
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(both.store.engine.url.database))
+    run = partial(CliRunner().invoke, program)
+    words = ["attempts", "regrade", "scara", "--course", "others"]
+    assert "1 attempts were graded by another version" in run(words).output
+    assert "Regraded: 1." in run([*words, "--apply"]).output
+    assert versions(both) == {"robots": True, "others": False}

@@ -1,0 +1,185 @@
+"""Pasted texts of students in five languages, each with the meaning that a person gives it.
+
+``pasted_texts/*.txt`` has one file for each language. A line ``=== title | table elbow`` begins a
+text; the words after the bar name a meaning of ``meanings.toml``, or are ``refused``. ⇥ is a tab.
+The meanings are plain arithmetic, evaluated by ``reference``, which shares no code with the
+program.
+"""
+
+import tomllib
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from random import Random
+from typing import Any, Final, Literal, NamedTuple
+
+import numpy as np
+
+from service.expressions import (
+    AngleUnit,
+    Expression,
+    ExpressionError,
+    Kind,
+    Symbol,
+    Vocabulary,
+    joint_variable,
+    read,
+)
+from service.grading.numerics.samples import Samples
+from service.grading.reading.entry import Entry, Reader
+from service.grading.reading.pasted import pasted_grid
+from service.grading.reading.tables.pasted_table import entries_of, read_pasted_table
+from service.grids import GridError
+from tests.expressions.reference import worth
+
+FOLDER: Final = Path(__file__).with_name("pasted_texts")
+_MEANINGS: Final = tomllib.loads((FOLDER / "meanings.toml").read_text("utf-8"))
+# Programs print angles with as few as three digits.
+_ROUNDED: Final = 2e-3
+_LENGTHS: Final = ("l1", "l2", "l3", "a1", "a2", "a3", "d1", "d2", "d4")
+_QUANTITIES: Final[Sequence[Kind]] = ("length", "angle", "length", "angle")
+Outcome = Literal["read", "repaired", "advised", "refused", "misread"]
+
+
+class PastedText(NamedTuple):
+    """One text of the corpus; ``rows`` are the cells that it means, () if it must be refused."""
+
+    title: str
+    text: str
+    kind: str
+    angle_unit: AngleUnit
+    rows: tuple[tuple[str, ...], ...]
+
+
+class Reading(NamedTuple):
+    """How a text was read, and the codes and messages of everything that was not."""
+
+    outcome: Outcome
+    advice: tuple[str, ...] = ()
+
+
+def languages() -> list[str]:
+    """Return the names of the files."""
+    return sorted(file.stem for file in FOLDER.glob("*.txt"))
+
+
+def texts(language: str) -> list[PastedText]:
+    """Return the texts of a file."""
+    found = []
+    for piece in (FOLDER / f"{language}.txt").read_text("utf-8").split("=== ")[1:]:
+        head, _, text = piece.partition("\n")
+        title, _, meaning = head.rpartition(" | ")
+        angle_unit: AngleUnit = "degrees" if meaning.startswith("degrees ") else "radians"
+        kind, _, name = meaning.removeprefix("degrees ").partition(" ")
+        rows = _meant(kind, name) if name else ()
+        text = text.removesuffix("\n").replace("⇥", "\t")
+        found.append(PastedText(f"{language}: {title}", text, kind, angle_unit, rows))
+    return found
+
+
+def reading_of(case: PastedText) -> Reading:
+    """Return how the program reads a text, compared with its meaning."""
+    reader = Reader(_vocabulary(case.kind, _joints(case)), Samples({}), case.angle_unit, "m")
+    try:
+        entries = _matrix(case, reader) if case.kind == "matrix" else _table(case, reader)
+    except GridError as error:
+        return Reading("advised", (f"{error.code}: {error.message}",))
+    advice = [
+        f"{finding.code}: {finding.hint}"
+        for row in entries
+        for entry in row
+        if entry.expression is None
+        for finding in entry.findings
+    ]
+    if not case.rows:
+        return Reading("advised" if advice else "misread", tuple(advice))
+    if [len(row) for row in entries] != [len(row) for row in case.rows]:
+        size = [len(row) for row in entries]
+        return Reading("advised" if advice else "misread", (*advice, f"the rows have {size} cells"))
+    pairs = [
+        (entry, cell, kind)
+        for row, meant in zip(entries, case.rows, strict=True)
+        for entry, cell, kind in zip(row, meant, _kinds(case, row), strict=True)
+    ]
+    unread = [each for each in pairs if each[0].expression is None]
+    wrong = [
+        f"{entry.expression.text()} is not {cell}"
+        for entry, cell, kind in pairs
+        if entry.expression and not _means(entry.expression, cell, kind, case)
+    ]
+    if wrong:
+        return Reading("misread", tuple(wrong))
+    if not unread:
+        return Reading("read")
+    repaired = [_repaired(*each, case) for each in unread]
+    if False in repaired:
+        return Reading("misread", (*advice, "a repair has another meaning"))
+    return Reading("repaired" if None not in repaired else "advised", tuple(advice))
+
+
+def _kinds(case: PastedText, row: Sequence[Entry]) -> Sequence[Kind]:
+    return ["number"] * len(row) if case.kind == "matrix" else _QUANTITIES
+
+
+def _table(case: PastedText, reader: Reader) -> list[tuple[Entry, ...]]:
+    return entries_of(read_pasted_table(case.text, reader), reader)
+
+
+def _matrix(case: PastedText, reader: Reader) -> list[tuple[Entry, ...]]:
+    grid = pasted_grid(case.text, reader)
+    return [tuple(reader.read(cell.text, "number") for cell in row) for row in grid.rows]
+
+
+def _repaired(entry: Entry, cell: str, kind: Kind, case: PastedText) -> bool | None:
+    """Return True if a repaired text has the meaning of the cell; None if there is none."""
+    suggestion = next((each.suggestion for each in entry.findings if each.suggestion), None)
+    if suggestion is None:
+        return None
+    vocabulary = _vocabulary(case.kind, _joints(case))
+    try:
+        found = read(suggestion, vocabulary, quantity=kind, angle_unit=case.angle_unit)
+    except ExpressionError:
+        return False
+    return _means(found, cell, kind, case)
+
+
+def _means(expression: Expression, cell: str, kind: Kind, case: PastedText) -> bool:
+    for seed in range(3):
+        values = _values(seed)
+        symbols = {
+            symbol.name: np.array([values[symbol.aliases[0] if symbol.joint else symbol.name]])
+            for symbol in _vocabulary(case.kind, _joints(case)).symbols
+        }
+        [found] = np.ravel(expression.evaluate(symbols))
+        gap = abs(float(found) - worth(cell, values))
+        if not (gap <= _ROUNDED or (kind == "angle" and abs(gap - 2 * np.pi) <= _ROUNDED)):
+            return False
+    return True
+
+
+@cache
+def _values(seed: int) -> dict[str, float]:
+    random = Random(seed)
+    joints = {f"q{i}": random.uniform(0.2, 0.9) for i in range(1, 5)}
+    return {name: random.uniform(1.2, 1.9) for name in _LENGTHS} | joints | {"d3": joints["q3"]}
+
+
+def _joints(case: PastedText) -> int:
+    """Return the number of joints: the rows of a table, and 4 for other texts."""
+    return len(case.rows) if case.kind.startswith("table") else 4
+
+
+@cache
+def _vocabulary(kind: str, count: int) -> Vocabulary:
+    slides = kind == "table.scara"
+    joints = [joint_variable(i, sliding=slides and i == 3) for i in range(1, count + 1)]
+    lengths = _LENGTHS if slides else (*_LENGTHS, "d3")
+    return Vocabulary([*joints, *(Symbol(name, "length") for name in lengths)])
+
+
+def _meant(kind: str, name: str) -> tuple[tuple[str, ...], ...]:
+    table: Any = _MEANINGS
+    for key in kind.split("."):
+        table = table[key]
+    rows = " ".join(table[name].split()).split(";")
+    return tuple(tuple(cell.strip() for cell in row.split(", ")) for row in rows)

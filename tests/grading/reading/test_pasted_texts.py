@@ -1,0 +1,32 @@
+"""Pasted texts of students in five languages are read as meant, or refused with advice."""
+
+from collections import Counter
+from collections.abc import Callable
+
+import pytest
+
+from tests.grading.reading.pasted_texts import languages, reading_of, texts
+
+LEAST_TEXTS = 200
+LEAST_READ = 0.9
+
+
+@pytest.mark.parametrize("language", languages())
+def test_no_text_is_misread_and_each_refused_one_has_advice(language: str) -> None:
+    for case in texts(language):
+        reading = reading_of(case)
+        assert reading.outcome != "misread", (case.title, reading.advice)
+        if not case.rows:
+            assert reading.outcome == "advised", case.title
+        elif reading.outcome != "read":
+            assert reading.advice, case.title
+            assert not any(advice.startswith("no_grid") for advice in reading.advice), case.title
+
+
+def test_most_texts_are_read(figure: Callable[[str], None]) -> None:
+    found = [case for language in languages() for case in texts(language) if case.rows]
+    total = sum(len(texts(language)) for language in languages())
+    counts = Counter(reading_of(case).outcome for case in found)
+    figure(f"{total} pasted texts, {len(found)} with a meaning: {dict(counts)}")
+    assert total >= LEAST_TEXTS
+    assert counts["read"] / len(found) >= LEAST_READ

@@ -1,0 +1,45 @@
+"""Sentences around a table are removed only if they cannot change it."""
+
+import pytest
+
+from service.grids import GridError, read_grid
+
+TABLE = "i\ta\talpha\td\ttheta\n1\tl1\t0\t0\tq1\n2\tl2\t0\t0\tq2"
+
+
+def cells(text: str) -> list[list[str]]:
+    return [[cell.text for cell in row] for row in read_grid(text).rows]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"Table 1: parameters of the arm\n{TABLE}",
+        f"My robot with 3 degrees of freedom\n\n{TABLE}\nI hope this helps.",
+        f"机械臂参数\n{TABLE}",
+        f"```\n{TABLE}\n```",
+        f"The table:\n~~~text\n{TABLE}\n~~~\nRegards",
+    ],
+)
+def test_sentences_and_fences_are_no_rows(text: str) -> None:
+    assert cells(text) == cells(TABLE)
+
+
+def test_a_note_tells_that_sentences_were_ignored() -> None:
+    text = f"My table\n{TABLE}"
+    [note] = read_grid(text).notes
+    assert (note.code, text[slice(*note.span)]) == ("text_left_aside", "My table")
+
+
+@pytest.mark.parametrize("unit", ["degrees", "Grad", "grados", "degrés", "mm", "弧度", "°"])
+def test_a_sentence_with_a_unit_is_refused(unit: str) -> None:
+    with pytest.raises(GridError) as caught:
+        read_grid(f"Parameters in {unit}\n{TABLE}")
+    assert caught.value.code == "text_around"
+
+
+@pytest.mark.parametrize(
+    "line", ["theta d", "3", "l3 0 0 q3", "where l1 = 0.4", "Joint theta alpha"]
+)
+def test_a_line_that_may_be_a_row_stays(line: str) -> None:
+    assert len(cells(f"{line}\n{TABLE}")) == 4

@@ -1,0 +1,87 @@
+"""The steps of a hint name the axes of the row in the convention of the answer."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from service.catalogue import Exercise, FeedbackLevel
+from service.grading.misconception import Record, all_records
+from service.grading.report import Verdict, messages_of
+from service.hints.steps import Topic, has_hints, hint_step
+from tests.grading.diagnosis.traces import answered, exercises
+from tests.grading.support.submitting import handed_in
+from tests.together import together
+
+HINTS = FeedbackLevel.HINTS
+TWIST = Topic("table", "half_turn", "2", "alpha")
+STANDARD = "a1 0 0 θ1\na2 π 0 θ2"
+RECORDS = [record for record in all_records() if record.codes and record.example]
+
+
+def steps_of(exercise: Exercise, answer: Any, topic: Topic) -> list[str]:
+    answers = {topic.part: answer}
+    report = handed_in(exercise, answers, feedback=HINTS)
+    found = [hint_step(exercise, topic, step, answers, report) for step in (1, 2, 3)]
+    return [each.text for each in found if each]
+
+
+def test_the_steps_name_the_axes_of_a_standard_row(catalogue: Mapping[str, Exercise]) -> None:
+    look, rule, apply = steps_of(catalogue["planar-rr"], STANDARD, TWIST)
+    # Spong, Hutchinson, Vidyasagar, section 3.2: α_i is from z_{i-1} to z_i about x_i.
+    assert look.startswith("Look at z1 and z2")
+    assert rule.startswith("α_i is the angle from z_{i-1} to z_i about x_i,")
+    assert "thumb along x2. Turn z1 until it points as z2" in apply
+
+
+def test_the_steps_name_the_axes_of_a_modified_row(catalogue: Mapping[str, Exercise]) -> None:
+    table = "0 0 0 θ1\n0 90° 0 θ2\na2 0 d3 θ3\na3 -90° d4 θ4\n0 90° 0 θ5\n0 -90° 0 θ6"
+    topic = replace(TWIST, code="sign")
+    look, rule, apply = steps_of(catalogue["puma-560-craig"], table, topic)
+    # Craig, section 3.4: α_{i-1} is from z_{i-1} to z_i about x_{i-1}.
+    assert look.startswith("Look at z1 and z2")
+    assert "about x_{i-1}," in rule
+    assert "thumb along x1. Turn z1 until it points as z2" in apply
+
+
+def test_a_message_that_the_report_does_not_have_has_no_hint(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    exercise = catalogue["planar-rr"]
+    for other in ({"code": "sign"}, {"row": "1"}, {"cell": "a"}, {"row": None, "cell": None}):
+        assert steps_of(exercise, STANDARD, replace(TWIST, **other)) == []
+    assert steps_of(exercise, "a1 0 0 θ1\na2 0 0 θ2", TWIST) == []
+
+
+def test_an_unreadable_or_empty_cell_has_no_hint(catalogue: Mapping[str, Exercise]) -> None:
+    rows = [{"a": "sin(", "alpha": "", "d": 0, "theta": "theta1"}, {"a": "a2"}]
+    report = handed_in(catalogue["planar-rr"], {"table": {"rows": rows}}, feedback=HINTS)
+    told = list(messages_of(report.parts[0]))
+    assert {verdict for *_, verdict in told} <= {Verdict.UNREADABLE, Verdict.MISSING}
+    assert len(told) >= 2
+    assert not any(has_hints(message, verdict) for message, _, verdict in told)
+
+
+@together("record", RECORDS)
+def test_each_message_on_a_mistake_has_all_steps(record: Record) -> None:
+    assert record.example is not None
+    name, part, answer, *_ = record.example
+    exercise = exercises()[name]
+    answers = {part: answered(name, part, answer)}
+    report = handed_in(exercise, answers, feedback=HINTS)
+    for found in report.parts:
+        for message, places, verdict in messages_of(found):
+            if has_hints(message, verdict):
+                first = places[0] if places else None
+                place = (first.row, first.cell) if first else (None, None)
+                topic = Topic(found.part, message.code, *place)
+                steps = [hint_step(exercise, topic, k, answers, report) for k in (1, 2, 3)]
+                texts = {step.text for step in steps if step}
+                assert len(texts) == 3, message
+
+
+def test_the_row_of_the_end_effector_has_axes_of_its_own(catalogue: Mapping[str, Exercise]) -> None:
+    table = "0 0 0 θ1\nl1 0 0 θ2\nl2 0 0 θ3\n0 0 0 0"
+    topic = Topic("table", "distance_left_out", "e", "a")
+    look, _, apply = steps_of(catalogue["planar-rrr-drawn"], table, topic)
+    assert look.startswith("Look at z3 and z_e")
+    assert "positive in the direction of x3" in apply

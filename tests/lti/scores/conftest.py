@@ -1,0 +1,151 @@
+"""A course at a platform whose gradebook gets scores, and a clock that can be set."""
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import pytest
+from sqlalchemy import Row, select
+
+from service.attempts.storage import lti_tables as tables
+from service.lti.linking import pseudonym
+from service.lti.own_keys import ensure_key, published_keys
+from service.lti.scores.sender import ScoreSender
+from tests.lti.conftest import SECRET, Tool, token_of
+from tests.lti.conftest import one_platform as one_platform
+from tests.lti.conftest import platform as platform
+from tests.lti.conftest import tool as tool
+from tests.lti.gradebook import Gradebook
+
+# An answer that earns points, and one that earns none.
+RIGHT = {"table": "a1 0 0 θ1\na2 0 0 θ2"}
+WRONG = {"table": "7 1 1 0\n7 1 1 0"}
+
+
+@dataclass
+class Clock:
+    """The time of this machine, and what tests have added."""
+
+    added: timedelta = timedelta()
+
+    def now(self) -> datetime:
+        return datetime.now(UTC) + self.added
+
+    def go_on(self, **more: float) -> None:
+        self.added += timedelta(**more)
+
+
+@dataclass
+class Journey:
+    """Learners of a course who hand in, and a service that sends their scores."""
+
+    tool: Tool
+    clock: Clock
+    sender: ScoreSender
+    tokens: dict[str, dict[str, str]] = field(default_factory=dict)
+    numbers: Iterator[int] = field(default_factory=itertools.count)
+
+    @property
+    def gradebook(self) -> Gradebook:
+        return self.tool.platform.gradebook
+
+    def launch(self, user: str = "ada", link: str = "link-1") -> None:
+        page = self.tool.launch(user, link).text
+        self.tokens[user] = {"authorization": f"Bearer {token_of(page)}"}
+
+    def place(self, user: str = "ada", number: int = 0) -> tuple[str, str]:
+        """Return the course and an assignment of a learner."""
+        view = self.tool.send("GET", "/v1/me", headers=self.tokens[user]).json()
+        course = view["courses"][0]
+        return course["id"], course["assignments"][number]["id"]
+
+    def hand_in(
+        self,
+        user: str = "ada",
+        answers: dict[str, Any] = RIGHT,
+        exercise: str = "planar-rr",
+        number: int = 0,
+    ) -> dict[str, Any]:
+        """Hand in; return the recorded attempt."""
+        if user not in self.tokens:
+            self.launch(user)
+        course, assignment = self.place(user, number)
+        answer = self.tool.send(
+            "POST",
+            f"/v1/courses/{course}/assignments/{assignment}/attempts",
+            json={"exercise": exercise, "answers": answers},
+            headers=self.tokens[user] | {"Idempotency-Key": str(next(self.numbers))},
+        )
+        assert answer.status_code == 201, answer.text
+        found: dict[str, Any] = answer.json()["attempt"]
+        return found
+
+    def total(self, user: str = "ada") -> float:
+        """Return a learner's points in the gradebook of the course, as tutors see it."""
+        course, assignment = self.place(user)
+        learner = self.learner(user)
+        path = f"/v1/courses/{course}/gradebook?assignment={assignment}"
+        rows = self.tool.send("GET", path, headers=self.tutor()).json()["rows"]
+        [total] = [row["total"] for row in rows if row["learner"] == learner]
+        return float(total)
+
+    def learner(self, user: str = "ada") -> str:
+        """Return the pseudonym of a user."""
+        return pseudonym("moodle", f"user {user}", SECRET)
+
+    def post(self, path: str, **body: Any) -> dict[str, Any]:
+        """Send a tutor's request."""
+        answer = self.tool.send("POST", f"/v1/{path}", json=body, headers=self.tutor())
+        assert answer.status_code < 300, answer.text
+        found: dict[str, Any] = answer.json()
+        return found
+
+    def tutor(self) -> dict[str, str]:
+        """Return the headers of a tutor of all courses."""
+        from service.access.caller import Scope
+        from service.access.key_table import add_key
+        from service.access.key_text import new_key_text
+
+        if "tutor" not in self.tokens:
+            text, now = new_key_text(), datetime.now(UTC)
+            digest = SECRET.key_digest(text)
+            end = now + timedelta(days=1)
+            self.tool.do(lambda it: add_key(it, "t", digest, set(Scope), None, now, end))
+            self.tokens["tutor"] = {"authorization": f"Bearer {text}"}
+        return self.tokens["tutor"]
+
+    def send(self, most: int = 1000) -> int:
+        """Send what is due now; return the number of tries."""
+        for i in range(most):
+            if not self.sender.send_next():
+                return i
+        return most
+
+    def rows(self) -> list[Row[Any]]:
+        """Return the outbox."""
+        ordered = select(tables.scores).order_by(tables.scores.c.sub)
+        found: list[Row[Any]] = self.tool.do(lambda it: it.execute(ordered).all())
+        return found
+
+    def states(self) -> dict[str, str]:
+        """Return the state of each learner's score."""
+        return {each.sub.removeprefix("user "): each.state for each in self.rows()}
+
+    def another_sender(self, chance: Callable[[], float] = lambda: 1.0) -> ScoreSender:
+        """Return the sender of another replica."""
+        return ScoreSender(self.tool.store.engine, SECRET, self.clock.now, chance)
+
+
+@pytest.fixture
+def journey(tool: Tool) -> Journey:
+    """A service in the kind of database of the parameter of ``tool``, and its platform."""
+    clock = Clock()
+    sender = ScoreSender(tool.store.engine, SECRET, clock.now, lambda: 1.0)
+    made = Journey(tool, clock, sender)
+    tool.do(lambda it: ensure_key(it, SECRET, datetime.now(UTC)))
+    gradebook = tool.platform.gradebook
+    gradebook.now = clock.now
+    gradebook.own_keys = lambda: tool.do(published_keys)
+    return made

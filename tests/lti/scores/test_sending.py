@@ -1,0 +1,153 @@
+"""Replicas send scores, and are killed after the platform has one, before it has answered."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from service.lti.scores.sending import ScoreSending
+from tests.guards import ANSWER
+from tests.lti.conftest import SECRET, SECRET_TEXT
+from tests.lti.scores.conftest import Journey
+
+USERS = ("ada", "grace", "edsger", "barbara")
+ROOT = Path(__file__).parents[3]
+
+
+class Replicas:
+    """Two processes that send, and the clock that they share with the platform."""
+
+    def __init__(self, journey: Journey, folder: Path) -> None:
+        self._file = folder / "added"
+        url = journey.tool.store.engine.url.render_as_string(hide_password=False)
+        module = ["-m", "tests.lti.scores.replica"]
+        self._command = [sys.executable, *module, url, str(self._file), SECRET_TEXT]
+        self._running: list[subprocess.Popen[bytes]] = []
+        self._journey = journey
+        self.go_on(0)
+        for _ in range(2):
+            self._start()
+
+    def go_on(self, seconds: float) -> None:
+        self._journey.clock.go_on(seconds=seconds)
+        draft = self._file.with_suffix(".new")
+        draft.write_text(str(self._journey.clock.added.total_seconds()))
+        draft.replace(self._file)
+
+    def kill(self, number: int) -> None:
+        """Kill some of them, and wait until they are gone."""
+        for each in self._running[:number]:
+            os.kill(each.pid, signal.SIGKILL)
+            each.wait(ANSWER)
+        del self._running[:number]
+
+    def restart(self) -> None:
+        while len(self._running) < 2:
+            self._start()
+
+    def _start(self) -> None:
+        self._running.append(subprocess.Popen(self._command, cwd=ROOT))
+
+
+@pytest.fixture
+def replicas(journey: Journey, tmp_path: Path) -> Iterator[Replicas]:
+    (folder := tmp_path / "clock").mkdir()
+    made = Replicas(journey, folder)
+    yield made
+    made.kill(2)
+
+
+class Round:
+    """A round: the replicas are killed when the platform gets the score with this number."""
+
+    def __init__(self, replicas: Replicas, at: int, killed: int) -> None:
+        self._replicas, self._at, self._killed = replicas, at, killed
+        self._lock = threading.Lock()
+        self.received = 0
+
+    def answer(self) -> None:
+        """Kill replicas before the platform answers."""
+        with self._lock:
+            if self.received + 1 == self._at:
+                self._replicas.kill(self._killed)
+            self.received += 1
+
+    @property
+    def is_over(self) -> bool:
+        return self.received >= self._at
+
+
+def killed(journey: Journey, replicas: Replicas, rounds: int) -> str:
+    """Change scores in each round, and kill the senders at one of them; check the platform."""
+    choose = random.Random(rounds)
+    ids = {user: journey.hand_in(user) for user in USERS}
+    most = ids["ada"]["max_points"]
+    kills, wanted = 0, dict.fromkeys(USERS, -1.0)
+    for number in range(rounds):
+        # One replica goes on in every second round.
+        this = Round(replicas, choose.randint(1, len(USERS)), 2 - number % 2)
+        journey.gradebook.before_answer = this.answer
+        # Other points than before: all of them are sent.
+        further = {user: choose.randint(1, int(most) - 1) for user in USERS}
+        wanted = {user: (wanted[user] + further[user]) % most for user in USERS}
+        for user, points in wanted.items():
+            change = {"points": points, "reason": "r", "author": "t"}
+            journey.post(f"attempts/{ids[user]['id']}/override", **change)
+        _wait(lambda this=this: this.is_over or _is_done(journey))  # type: ignore[misc]
+        kills += this.is_over
+        replicas.restart()
+        # The leases of the killed senders end.
+        replicas.go_on(100)
+        _wait(lambda: _is_done(journey))
+        share = {user: points / most * 100 for user, points in wanted.items()}
+        assert journey.gradebook.grades() == pytest.approx(share, abs=1e-3), number
+    assert journey.gradebook.refused == []
+    received = len(journey.gradebook.received)
+    changes = rounds * len(USERS)
+    return f"{kills} kills in {rounds} rounds: {received} scores received for {changes} changes"
+
+
+def _is_done(journey: Journey) -> bool:
+    return set(journey.states().values()) == {"sent"}
+
+
+def _wait(until: Callable[[], bool]) -> None:
+    end = time.monotonic() + 2 * ANSWER
+    while not until():
+        assert time.monotonic() < end, "the scores do not arrive"
+        time.sleep(0.05)
+
+
+def test_the_service_sends_what_it_has_committed(journey: Journey) -> None:
+    """The thread wakes up after the commit, long before it would look by itself."""
+    sending = ScoreSending(journey.tool.store.engine, SECRET)
+    try:
+        attempt = journey.hand_in()
+        _wait(lambda: len(journey.gradebook.received) == 1)
+        body = {"points": 0, "reason": "r", "author": "t"}
+        journey.post(f"attempts/{attempt['id']}/override", **body)
+        _wait(lambda: len(journey.gradebook.received) == 2)
+    finally:
+        sending.close()
+    assert journey.gradebook.grades() == {"ada": 0}
+
+
+def test_a_killed_sender_loses_no_score(journey: Journey, replicas: Replicas) -> None:
+    killed(journey, replicas, 1)
+
+
+@pytest.mark.campaign
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize("tool", ["sqlite", "postgresql"], indirect=True)
+def test_senders_that_are_killed_twenty_times(
+    journey: Journey, replicas: Replicas, figure: Callable[[str], None]
+) -> None:
+    kind = journey.tool.store.engine.dialect.name
+    figure(f"{kind}: {killed(journey, replicas, 20)}")

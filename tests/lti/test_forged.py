@@ -1,0 +1,371 @@
+"""Forged, replayed, mixed-up and stale messages: each is refused, with a reason of its own."""
+
+import base64
+import json
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import jwt
+import pytest
+from sqlalchemy import update
+
+from service.attempts.storage.lti_tables import launches, registrations
+from service.lti.logins import digest
+from service.lti.problems import LTI_PROBLEMS
+from service.lti.registrations import NewRegistration, add_registration, remove_registration
+from tests.lti.conftest import Begun, Tool, hidden
+from tests.lti.platform import (
+    CLIENT,
+    DL,
+    LTI,
+    MEMBER,
+    TEST_USER,
+    Platform,
+    deep_linking,
+    public_jwk,
+    rsa_key,
+)
+
+OTHER_KEY = rsa_key()
+SHORT_KEY = rsa_key(1024)
+Claims = dict[str, Any]
+
+
+def without(name: str) -> Callable[[Claims], None]:
+    return lambda claims: claims.__delitem__(name)
+
+
+def put(name: str, value: Any) -> Callable[[Claims], None]:
+    return lambda claims: claims.update({name: value})
+
+
+def lti(name: str, value: Any) -> Callable[[Claims], None]:
+    return put(f"{LTI}{name}", value)
+
+
+def setting(name: str, value: Any) -> Callable[[Claims], None]:
+    return lambda claims: claims[SETTINGS].update({name: value})
+
+
+def now(seconds: float) -> int:
+    return int(time.time() + seconds)
+
+
+# A change of the claims of a right message, and the reason for which it is refused.
+CLAIMS: list[tuple[str, Callable[[Claims], None], str]] = [
+    ("no issuer", without("iss"), "wrong-issuer"),
+    ("another issuer", put("iss", "https://evil.example"), "wrong-issuer"),
+    ("no audience", without("aud"), "wrong-audience"),
+    ("another audience", put("aud", "client-2"), "wrong-audience"),
+    ("a list of other audiences", put("aud", ["client-2", "client-3"]), "wrong-audience"),
+    ("an audience that contains ours", put("aud", f"{CLIENT}0"), "wrong-audience"),
+    ("several audiences without party", put("aud", [CLIENT, "client-2"]), "wrong-party"),
+    ("another party", put("azp", "client-2"), "wrong-party"),
+    ("no expiry", without("exp"), "no-expiry"),
+    ("an expiry in words", put("exp", "tomorrow"), "no-expiry"),
+    ("expired", lambda it: it.update(exp=now(-11)), "expired"),
+    ("no time of issue", without("iat"), "no-issue-time"),
+    ("true as the time of issue", put("iat", True), "no-issue-time"),
+    ("issued in the future", lambda it: it.update(iat=now(30)), "issued-later"),
+    ("issued yesterday", lambda it: it.update(iat=now(-86400)), "issued-before"),
+    ("valid tomorrow", lambda it: it.update(nbf=now(86400)), "not-yet-valid"),
+    ("no nonce", without("nonce"), "no-nonce"),
+    ("an empty nonce", put("nonce", ""), "no-nonce"),
+    ("another nonce", put("nonce", "x" * 43), "wrong-nonce"),
+    ("version 1.1", lti("version", "LTI-1p0"), "wrong-version"),
+    ("no version", without(f"{LTI}version"), "wrong-version"),
+    ("an unknown message", lti("message_type", "LtiEverythingRequest"), "wrong-message"),
+    ("a list as message", lti("message_type", ["LtiResourceLinkRequest"]), "wrong-message"),
+    ("no deployment", without(f"{LTI}deployment_id"), "no-deployment"),
+    ("a number as deployment", lti("deployment_id", 1), "no-deployment"),
+    ("the deployment of another login", lti("deployment_id", "other"), "other-deployment"),
+    ("no target", without(f"{LTI}target_link_uri"), "no-target"),
+    (
+        "a target elsewhere",
+        lti("target_link_uri", "https://evil.example/lti/launch"),
+        "other-target",
+    ),
+    ("another path", lti("target_link_uri", "http://127.0.0.1:8000/tutor"), "other-target"),
+    (
+        "a user in the target",
+        lti("target_link_uri", "http://x@127.0.0.1:8000/lti/launch"),
+        "other-target",
+    ),
+    ("no roles", without(f"{LTI}roles"), "no-roles"),
+    ("one role as text", lti("roles", "Instructor"), "no-roles"),
+    ("an empty user", put("sub", ""), "bad-user"),
+    ("a number as user", put("sub", 7), "bad-user"),
+    ("a long user", put("sub", "x" * 256), "bad-user"),
+    ("no context", without(f"{LTI}context"), "no-context"),
+    ("an empty context", lti("context", {"id": ""}), "no-context"),
+    ("no resource link", without(f"{LTI}resource_link"), "no-resource-link"),
+    ("a text as context", lti("context", "course-1"), "bad-claim"),
+    ("a list as parameters", lti("custom", ["exercise=scara"]), "bad-claim"),
+]  # fmt: skip
+
+
+# The same for a message of deep linking; the return address is that of the platform.
+SETTINGS = f"{DL}deep_linking_settings"
+LINKING: list[tuple[str, Callable[[Claims], None], str]] = [
+    ("no settings", without(SETTINGS), "no-linking-settings"),
+    ("a text as settings", put(SETTINGS, "return"), "bad-claim"),
+    ("a learner", lti("roles", [f"{MEMBER}#Learner"]), "not-a-tutor"),
+    ("a mentor", lti("roles", [f"{MEMBER}#Mentor"]), "not-a-tutor"),
+    ("a test user", lti("roles", [f"{MEMBER}#Instructor", TEST_USER]), "not-a-tutor"),
+    ("no user", without("sub"), "not-a-tutor"),
+    ("no return", setting("deep_link_return_url", None), "no-return-address"),
+    ("a script as return", setting("deep_link_return_url", "javascript:x"), "no-return-address"),
+    ("a list as return", setting("deep_link_return_url", []), "no-return-address"),
+    (
+        "a return without HTTPS",
+        setting("deep_link_return_url", "http://evil.example/"),
+        "no-return-address",
+    ),
+    (
+        "a return elsewhere",
+        setting("deep_link_return_url", "https://evil.example/"),
+        "foreign-return-address",
+    ),
+    (
+        "a return to another port",
+        setting("deep_link_return_url", "http://127.0.0.1:9/"),
+        "foreign-return-address",
+    ),
+    ("no types", setting("accept_types", None), "no-links-accepted"),
+    ("files only", setting("accept_types", ["file", "html"]), "no-links-accepted"),
+    ("a text as types", setting("accept_types", "ltiResourceLink"), "no-links-accepted"),
+    ("a number as data", setting("data", 7), "bad-claim"),
+    ("much data", setting("data", "x" * 16_001), "bad-claim"),
+    ("another nonce", put("nonce", "x" * 43), "wrong-nonce"),
+    ("another deployment", lti("deployment_id", "other"), "other-deployment"),
+]  # fmt: skip
+
+
+def tokens(platform: Platform, begun: Begun) -> list[tuple[str, str, str]]:
+    """Return forged tokens with their reasons."""
+    claims = platform.claims("ada", "link-1", begun.asked["nonce"])
+    good = platform.signed(claims)
+    head, body, signature = good.split(".")
+    other = body[:-8] + ("A" if body[-8] != "A" else "B") + body[-7:]
+
+    def encoded(text: str) -> str:
+        return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
+
+    def header(**fields: Any) -> str:
+        return f"{encoded(json.dumps(fields))}.{body}.{signature}"
+
+    confused = jwt.PyJWS().encode(json.dumps(claims).encode(), "x" * 40, "HS256", {"kid": "key-1"})
+    own = public_jwk(OTHER_KEY, "key-1")
+    address = "http://169.254.169.254/jwks.json"
+    return [
+        ("no token", "", "no-token"),
+        ("a long token", "x" * 50_000, "token-too-long"),
+        ("no parts", "nonsense", "token-malformed"),
+        ("two parts", f"{head}.{body}", "token-malformed"),
+        ("nested lists", f"{encoded('[' * 20_000)}.{body}.{signature}", "token-malformed"),
+        ("no object", platform.signed(["claims"]), "token-malformed"),
+        ("no signature", f"{head}.{body}.", "wrong-signature"),
+        ("another signature", f"{head}.{other}.{signature}", "wrong-signature"),
+        ("alg none", header(alg="none", kid="key-1"), "wrong-algorithm"),
+        ("HS256", confused, "wrong-algorithm"),
+        ("RS512", header(alg="RS512", kid="key-1"), "wrong-algorithm"),
+        ("no key id", header(alg="RS256"), "no-key-id"),
+        ("a number as key id", header(alg="RS256", kid=1), "token-malformed"),
+        ("another key", platform.signed(claims, OTHER_KEY), "wrong-signature"),
+        ("its own key", platform.signed(claims, OTHER_KEY, jwk=own), "wrong-signature"),
+        ("an address of keys", platform.signed(claims, OTHER_KEY, jku=address), "wrong-signature"),
+        ("a certificate", platform.signed(claims, OTHER_KEY, x5u=address), "wrong-signature"),
+        ("an unknown key", platform.signed(claims, OTHER_KEY, kid="evil"), "unknown-key"),
+        ("a short key", header(alg="RS256", kid="short"), "unusable-key"),
+        ("a key for encryption", platform.signed(claims, kid="encrypts"), "unusable-key"),
+    ]  # fmt: skip
+
+
+def reason(page: Any) -> str:
+    """Return the code on the page of a refused launch."""
+    assert page.status_code in (403, 503), page.status_code
+    assert "Reference number" in page.text
+    assert "data-key" not in page.text
+    assert 'name="ticket"' not in page.text
+    return str(page.text.rpartition("</code> (")[2].partition(")")[0])
+
+
+@pytest.fixture
+def keys(platform: Platform) -> Platform:
+    """The platform with a short key and a key for encryption, too."""
+    platform.keys.append(public_jwk(SHORT_KEY, "short"))
+    platform.keys.append(public_jwk(platform.key, "encrypts", use="enc"))
+    return platform
+
+
+def test_forged_messages_are_refused(tool: Tool, keys: Platform) -> None:
+    before, begun = tool.counts(), tool.login()
+    told = {}
+    for name, change, _ in CLAIMS:
+        claims = keys.claims("ada", "link-1", begun.asked["nonce"])
+        change(claims)
+        told[name] = reason(tool.post(begun.asked["state"], keys.signed(claims), begun.cookies))
+    assert told == {name: expected for name, _, expected in CLAIMS}
+    forged = tokens(keys, begun)
+    told = {
+        name: reason(tool.post(begun.asked["state"], token, begun.cookies))
+        for name, token, _ in forged
+    }
+    assert told == {name: expected for name, _, expected in forged}
+    assert tool.counts() == before
+    # The right message is still accepted: the platform's keys were fetched once.
+    right = keys.signed(keys.claims("ada", "link-1", begun.asked["nonce"]))
+    assert tool.post(begun.asked["state"], right, begun.cookies).status_code == 200
+    assert keys.fetched == ["/jwks.json"]
+    assert len(CLAIMS) + len(forged) >= 40
+
+
+def test_forged_messages_of_deep_linking_are_refused(tool: Tool, platform: Platform) -> None:
+    platform.habits.append(deep_linking(f"{platform.address}/return"))
+    before, begun = tool.counts(), tool.login("turing")
+
+    def sent(*changes: Callable[[Claims], None]) -> Any:
+        claims = platform.claims("turing", "", begun.asked["nonce"])
+        for change in changes:
+            change(claims)
+        return tool.post(begun.asked["state"], platform.signed(claims), begun.cookies)
+
+    told = {name: reason(sent(change)) for name, change, _ in LINKING}
+    assert told == {name: expected for name, _, expected in LINKING}
+    assert tool.counts() == before
+    page = sent()
+    assert page.status_code == 200
+    assert reason(sent()) == "state-used"
+    # Tickets are not taken for those of the other form, nor from a page of another site.
+    ticket = {"ticket": hidden(page.text, "ticket"), "action": "cancel"}
+    assert reason(tool.send("POST", "/lti/session", data=ticket)) == "ticket-expired"
+    platform.habits.clear()
+    other = {"ticket": hidden(tool.launch("turing").text, "ticket"), "action": "cancel"}
+    assert reason(tool.send("POST", "/lti/links", data=other)) == "ticket-expired"
+    foreign = {"origin": "https://evil.example", "sec-fetch-site": "cross-site"}
+    refused = tool.send("POST", "/lti/links", data=ticket, headers=foreign)
+    assert reason(refused) == "binding-from-elsewhere"
+    tool.do(lambda it: remove_registration(it, "moodle"))
+    assert reason(tool.send("POST", "/lti/links", data=ticket)) == "no-longer-registered"
+
+
+def test_replayed_and_mixed_up_messages_are_refused(tool: Tool, platform: Platform) -> None:
+    one, two = tool.login(), tool.login("grace")
+    first, second = (
+        platform.signed(platform.claims(user, "link-1", begun.asked["nonce"]))
+        for user, begun in (("ada", one), ("grace", two))
+    )
+    before = tool.counts()
+    cases = {
+        "the nonce of another login": (one.asked["state"], second, one.cookies, "wrong-nonce"),
+        "no state": ("", first, one.cookies, "no-state"),
+        "a state that nobody began": ("x" * 43, first, one.cookies, "unknown-state"),
+    }
+    told = {
+        name: reason(tool.post(state, token, cookies))
+        for name, (state, token, cookies, _) in cases.items()
+    }
+    assert told == {name: case[-1] for name, case in cases.items()}
+    # Another browser has no cookie, or that of another login.
+    assert "Open in a new window" in tool.post(one.asked["state"], first, two.cookies).text
+    stolen = f"{one.cookies.partition('=')[0]}={two.cookies.partition('=')[2]}"
+    assert reason(tool.post(one.asked["state"], first, stolen)) == "other-browser"
+    # A page of another site has what the platform's storage keeps for its own login.
+    secret = one.cookies.partition("=")[2]
+    sent = tool.post(one.asked["state"], first, "", browser=secret)
+    assert reason(sent) == "binding-from-elsewhere"
+    ours = {"origin": "http://127.0.0.1:8000", "sec-fetch-site": "same-origin"}
+    fields = {"state": one.asked["state"], "id_token": first, "browser": "x" * 43}
+    assert reason(tool.send("POST", "/lti/launch", data=fields, headers=ours)) == "other-browser"
+    window = {"sec-fetch-dest": "document"}
+    sent = tool.send("POST", "/lti/launch", data=fields | {"browser": ""}, headers=window)
+    assert reason(sent) == "cookies-blocked"
+    failed = tool.post(one.asked["state"], "", one.cookies, error="login_required")
+    assert reason(failed) == "platform-error"
+    assert tool.counts() == before
+    assert tool.post(one.asked["state"], first, one.cookies).status_code == 200
+    after = tool.counts()
+    assert reason(tool.post(one.asked["state"], first, one.cookies)) == "state-used"
+    assert tool.counts() == after
+
+
+def test_stale_logins_are_refused(tool: Tool, platform: Platform) -> None:
+    begun = tool.login()
+    token = platform.signed(platform.claims("ada", "link-1", begun.asked["nonce"]))
+
+    def aged(minutes: float) -> None:
+        mine = launches.c.state == digest(begun.asked["state"])
+        ended = datetime.now(UTC) - timedelta(minutes=minutes)
+        tool.do(lambda it: it.execute(update(launches).where(mine).values(expires_at=ended)))
+
+    aged(0)
+    assert reason(tool.post(begun.asked["state"], token, begun.cookies)) == "state-expired"
+    aged(11)
+    tool.login()
+    assert reason(tool.post(begun.asked["state"], token, begun.cookies)) == "unknown-state"
+
+
+def test_forged_logins_are_refused(tool: Tool, platform: Platform) -> None:
+    other = platform.registration | {"id": "second", "client_id": "client-2"}
+    new = NewRegistration.model_validate(other)
+    tool.do(lambda it: add_registration(it, new, datetime.now(UTC)))
+    cases = {
+        "no issuer": ({"iss": ""}, "login-incomplete"),
+        "no user": ({"login_hint": ""}, "login-incomplete"),
+        "no target": ({"target_link_uri": ""}, "login-incomplete"),
+        "a long hint": ({"login_hint": "x" * 4001}, "login-too-long"),
+        "an unknown issuer": ({"iss": "https://evil.example"}, "unknown-platform"),
+        "an unknown client": ({"client_id": "client-3"}, "unknown-platform"),
+        "one of two clients": ({"client_id": ""}, "several-platforms"),
+        "a target elsewhere": (
+            {"target_link_uri": "https://evil.example/lti/launch"},
+            "foreign-target",
+        ),
+        "a target without meaning": ({"target_link_uri": "javascript:alert(1)"}, "foreign-target"),
+        "another path": ({"target_link_uri": "http://127.0.0.1:8000/tutor"}, "foreign-target"),
+    }
+    told = {name: reason(tool.login(**more).answer) for name, (more, _) in cases.items()}
+    assert told == {name: case[-1] for name, case in cases.items()}
+
+
+def test_a_deployment_must_be_registered_where_some_are(tool: Tool, platform: Platform) -> None:
+    platform.habits.append(lti("deployment_id", "deployment-2"))
+    before = tool.counts()
+    page = tool.launch(lti_deployment_id="deployment-2")
+    assert (reason(page), tool.counts()) == ("unknown-deployment", before)
+    open_to_all = update(registrations).values(any_deployment=True)
+    tool.do(lambda it: it.execute(open_to_all))
+    assert tool.launch(lti_deployment_id="deployment-2").status_code == 200
+    # The same context in two deployments is two courses.
+    platform.habits.clear()
+    assert tool.launch().status_code == 200
+    assert tool.counts()["courses"] == 2
+
+
+def test_a_removed_registration_launches_nothing(tool: Tool, platform: Platform) -> None:
+    tool.launch()
+    begun = tool.login()
+    tool.do(lambda it: remove_registration(it, "moodle"))
+    token = platform.signed(platform.claims("ada", "link-1", begun.asked["nonce"]))
+    assert reason(tool.post(begun.asked["state"], token, begun.cookies)) == "unknown-state"
+    assert reason(tool.login().answer) == "unknown-platform"
+
+
+def test_every_reason_says_what_to_do() -> None:
+    for code, problem in LTI_PROBLEMS.items():
+        assert problem.cause.endswith((".", ": {reason}")), code
+        assert (
+            "course" in problem.advice or "teacher" in problem.advice or "browser" in problem.advice
+        )
+
+
+def test_two_platforms_with_the_same_user_are_two_learners() -> None:
+    from service.lti.linking import pseudonym
+    from tests.lti.conftest import SECRET
+
+    one, two = (pseudonym(each, "user 1", SECRET) for each in ("moodle", "canvas"))
+    assert one != two
+    assert one == pseudonym("moodle", "user 1", SECRET)
+    assert pseudonym("a", "b\nc", SECRET) != pseudonym("a\nb", "c", SECRET)

@@ -1,0 +1,104 @@
+"""Generated robots are sound: a sample of ``python -m tests.variants.robots``."""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from service.kinematics.dh import Convention
+from service.variants.robots.generate import generated
+from tests.variants.robots.checks import (
+    drawn,
+    form,
+    is_the_robot_of_its_statement,
+    lazy_share,
+    model_share,
+    nearest_links,
+    overlapping_labels,
+)
+
+LEVELS = (1, 2, 3, 4)
+JOINTS = {1: {2, 3}, 2: {3, 4}, 3: {4, 5, 6}, 4: {5, 6, 7}}
+SAMPLE = 3
+# Links to robots are shared, so a robot must never change: the digests of the first ones.
+DIGEST = "a86c9670b8756cd0"
+
+
+def digest() -> str:
+    """Return the digest of all that students see of the first robots, and of their tables."""
+    seen = [
+        (each.id, each.version, each.statement, each.summary, str(each.view))
+        for level in LEVELS
+        for convention in Convention
+        for number in range(5)
+        for each in [drawn(level, number, convention)]
+    ]
+    return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:16]
+
+
+def test_robots_are_the_same_on_every_python() -> None:
+    assert digest() == DIGEST
+
+
+@pytest.mark.parametrize(
+    "seed", ["1", *(pytest.param(each, marks=pytest.mark.campaign) for each in ("2", "3", "4"))]
+)
+def test_robots_are_the_same_with_every_hash_seed(seed: str) -> None:
+    program = "from tests.variants.robots.test_robot_exercise import digest; print(digest())"
+    environment = os.environ | {"PYTHONHASHSEED": seed}
+    ran = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, check=True, text=True
+    )
+    assert ran.stdout.strip() == DIGEST
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("convention", Convention)
+def test_the_statement_proves_itself_and_the_marks_are_fair(
+    level: int, convention: Convention
+) -> None:
+    for number in range(100, 100 + SAMPLE):
+        exercise = drawn(level, number, convention)
+        assert len(exercise.joints) in JOINTS[level], exercise.id
+        assert is_the_robot_of_its_statement(exercise, number), exercise.id
+        assert model_share(exercise, solved=number == 100) == 1, exercise.id
+        assert lazy_share(exercise) <= 0.25, exercise.id
+        assert nearest_links(exercise) > 0.12, exercise.id
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_no_labels_of_a_figure_overlap(level: int) -> None:
+    assert overlapping_labels(drawn(level, 77)) == []
+
+
+@pytest.mark.parametrize(
+    ("level", "count"),
+    [
+        *((level, 30) for level in LEVELS),
+        *(pytest.param(level, 500, marks=pytest.mark.campaign) for level in LEVELS),
+    ],
+)
+def test_no_two_of_the_first_robots_are_alike(level: int, count: int) -> None:
+    assert len({form(drawn(level, number)) for number in range(count)}) == count
+
+
+def test_a_statement_of_another_robot_is_noticed() -> None:
+    exercise = drawn(2, 7)
+    words = exercise.statement.replace("along z0", "opposite to z0", 1)
+    assert not is_the_robot_of_its_statement(replace(exercise, statement=words), 1)
+    assert form(exercise) != form(replace(exercise, statement=words))
+
+
+def test_the_hardest_level_has_odd_twists() -> None:
+    for number in range(20):
+        rows = generated(4, number).plan.rows
+        assert any(row.alpha % 90 for row in rows)
+        assert not any(
+            first.sliding and second.sliding and first.alpha % 180 == 0
+            for first, second in pairwise(rows)
+        )

@@ -1,0 +1,227 @@
+"""Variants of an exercise: their values, texts, versions and faults."""
+
+import hashlib
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from service.catalogue import CatalogueError, Exercise
+from service.catalogue.varying.conditions import read_condition, vocabulary_of
+from service.submissions.lookup import UnknownExerciseError, find_exercise
+from service.variants.variant import BuiltVariants, NoVariantError, built, hidden_variant
+from tests.together import together
+from tests.variants.varied_files import VARY, varied, varied_text
+
+FREE = VARY.replace("conditions", "#")
+SEEDS = [str(i) for i in range(60)]
+
+
+def numbers(statement: str) -> list[float]:
+    return [float(each) for each in re.findall(r"(\d\.\d+) m", statement)]
+
+
+def test_without_a_seed_an_exercise_has_the_first_choices() -> None:
+    exercise = varied()
+    assert exercise.title == "An arm with links of 0.3 m and 0.2 m"
+    assert exercise.id == exercise.plain_id == "arm"
+    assert not exercise.seed
+
+
+def test_without_a_seed_other_choices_come_if_the_first_do_not_meet_the_conditions() -> None:
+    exercise = varied(VARY.replace("a1 > a2", "a1 = a2"))
+    first, second, _ = numbers(exercise.statement)
+    assert first == second
+    assert first in (0.3, 0.4)
+
+
+def test_all_texts_of_a_variant_have_its_values_and_meet_the_conditions() -> None:
+    exercise = varied()
+    seen = set()
+    for seed in SEEDS:
+        variant = built(exercise, seed)
+        a1, a2, both = numbers(variant.statement)
+        down = "points down" in variant.statement
+        assert a1 > a2
+        assert a1 + a2 == pytest.approx(both)
+        assert both <= 0.8 + 1e-9
+        assert variant.title == f"An arm with links of {a1:g} m and {a2:g} m"
+        assert "frame {0}" in variant.statement
+        assert r"$\frac{a1}{2}$" in variant.statement
+        table = variant.robot.tables[variant.robot.convention]
+        [[a, alpha, *_], [second, *_]] = table.values({"theta1": [0.0], "theta2": [0.0]}, 1)  # type: ignore[dict-item]
+        assert (a[0], second[0]) == (a1, a2)
+        assert alpha[0] == pytest.approx(-1.5707963 if down else 1.5707963)
+        seen.add((a1, a2, down))
+    # 14 pairs of lengths meet the conditions, each with both directions.
+    assert {each[0] for each in seen} == {0.3, 0.4, 0.5}
+    assert {each[2] for each in seen} == {True, False}
+    assert len(seen) > 15
+
+
+def test_a_choice_follows_from_the_sha_256_of_id_seed_and_name() -> None:
+    exercise = varied(
+        "a1 = [1, 2, 3, 4, 5, 6, 7]\na2 = [1, 2]\nj2 = [{sign='', says='a'}, {sign='-', says='b'}]"
+    )
+    for seed in SEEDS:
+        digest = hashlib.sha256(f"arm~{seed}/0/a1".encode()).hexdigest()
+        assert f"links have {int(digest[:16], 16) % 7 + 1} m" in built(exercise, seed).statement
+
+
+def test_another_name_leaves_the_values_of_the_others() -> None:
+    one, two = varied(FREE), varied(FREE + "extra = [1, 2, 3]")
+    assert all(built(one, seed).title == built(two, seed).title for seed in SEEDS)
+
+
+def test_variants_are_the_same_in_every_process() -> None:
+    code = (
+        "from tests.variants.varied_files import varied\n"
+        "from service.variants.variant import built\n"
+        "e = varied()\n"
+        "print([(v.version, v.statement) for v in (built(e, str(i)) for i in range(40))])"
+    )
+    environments = [{**os.environ, "PYTHONHASHSEED": seed} for seed in ("0", "4242")]
+    printed = {
+        subprocess.run(
+            [sys.executable, "-c", code], env=each, capture_output=True, check=True
+        ).stdout
+        for each in environments
+    }
+    assert len(printed) == 1
+    assert len(printed.pop()) > 1000
+
+
+def test_a_version_is_that_of_the_file_and_the_values() -> None:
+    exercise = varied()
+    versions = {built(exercise, seed).version for seed in SEEDS}
+    titles = {built(exercise, seed).statement for seed in SEEDS}
+    assert len(versions) == len(titles)
+    assert {each.partition("-")[0] for each in versions} == {exercise.version.partition("-")[0]}
+    deployed = varied(VARY + 'deployed = ["a", "b"]')
+    assert deployed.version == exercise.version
+    assert varied(VARY.replace("0.05", "0.1")).version.split("-")[0] not in exercise.version
+
+
+def _catalogue() -> dict[str, Exercise]:
+    exercise = varied()
+    return {"arm": exercise, "plain": replace(exercise, id="plain", vary=None)}
+
+
+def test_an_id_with_a_seed_finds_the_variant() -> None:
+    catalogue = _catalogue()
+    found = find_exercise(catalogue, "arm~x7")
+    assert (found.id, found.plain_id, found.seed) == ("arm~x7", "arm", "x7")
+    assert found.statement == built(catalogue["arm"], "x7").statement
+
+
+_BAD_SEED = "The seed of a variant has 1 to 20 small letters and digits."
+REFUSED = {
+    "plain~1": "The exercise plain has no variants.",
+    "arm~": _BAD_SEED,
+    "arm~A": _BAD_SEED,
+    "arm~1~2": _BAD_SEED,
+    "arm~" + "1" * 21: _BAD_SEED,
+    "rm~1": "There is no exercise 'rm'. Did you mean 'arm'?",
+}
+
+
+@together(("name", "message"), REFUSED.items())
+def test_an_id_with_a_wrong_seed_or_exercise_is_refused(name: str, message: str) -> None:
+    with pytest.raises(UnknownExerciseError) as caught:
+        find_exercise(_catalogue(), name)
+    assert str(caught.value) == message
+
+
+def test_a_hidden_variant_has_the_id_of_the_exercise() -> None:
+    exercise = varied()
+    hidden = hidden_variant(exercise, "secret7")
+    assert hidden.id == "arm"
+    assert hidden.statement == built(exercise, "secret7").statement
+
+
+def test_only_the_variants_that_were_used_last_are_kept() -> None:
+    variants = BuiltVariants(most=3)
+    exercise = varied()
+    first = variants.get(exercise, "0")
+    for seed in ("1", "2"):
+        variants.get(exercise, seed)
+    assert variants.get(exercise, "0") is first
+    variants.get(exercise, "3")
+    assert len(variants) == 3
+    assert variants.get(exercise, "0") is first
+    assert variants.get(varied(), "0") is not first
+    with pytest.raises(NoVariantError):
+        variants.get(exercise, "NO")
+    assert len(variants) == 3
+
+
+FAULTS = {
+    "a1 = [0.3]\n": "arm.toml: vary.a1 (line 10): has one value; write 2 to 1000",
+    "a1 = 3\n": "vary.a1 (line 10): is not a list; write a list of choices, such as [0.3,",
+    "a1 = [0.3, true]\n": "vary.a1[1] (line 10): must be a number or a text",
+    "a1 = [0.3, nan]\n": "vary.a1[1] (line 10): is too large; write a number up to 1e9",
+    "a1 = { from = 1, to = 2 }\n": "vary.a1 (line 10): needs step;",
+    "a1 = { from = 2, to = 1, step = 1 }\n": "vary.a1 (line 10): must rise",
+    "a1 = { from = 0, to = 1, step = 1e-9 }\n": "vary.a1.step (line 10): has 1,000,000,001 values;",
+    "a1 = { from = 0, to = 1, by = 1 }\n": "vary.a1.by (line 10): there is no such key; a range",
+    "a1 = [{ x = 1 }, { y = 1 }]\n": "vary.a1[1] (line 10): must have the same keys",
+    '"a 1" = [1, 2]\n': "is no name; write letters and digits, such as a1",
+    "pi = [1, 2]\n": "vary.pi (line 10):",
+    "": "vary (line 9): varies nothing; write a list of choices",
+    'a1 = [1, 2]\nconditions = ["a1"]': "vary.conditions[0] (line 11): must compare two formulas",
+    'a1 = [1, 2]\nconditions = ["a1 < b"]': "vary.conditions[0] (line 11): This exercise has no",
+    'a1 = [1, 2]\nconditions = ["a1 > 2"]': "vary.conditions (line 11): no one of 256 draws meets",
+    'a1 = [1, 2]\nconditions = "a1 > 0"': "vary.conditions (line 11): must be a list of texts",
+    'a1 = [1, 2]\nconditions = ["__import__(1) > 0"]': "vary.conditions[0] (line 11):",
+    'a1 = [1, 2]\ndeployed = ["A"]': "vary.deployed[0] (line 11): is no seed; write 1 to 20 small",
+    'a1 = [1, 2]\ndeployed = ["a", "a"]': "vary.deployed[1] (line 11): a is there twice",
+    "b = [1, 2]": "title (line 2): ",
+}
+
+
+@together(("vary", "fault"), FAULTS.items())
+def test_faults_of_the_table_vary_are_reported_with_their_places(vary: str, fault: str) -> None:
+    with pytest.raises(CatalogueError) as caught:
+        varied(vary)
+    assert fault in str(caught.value)
+
+
+IN_BRACES = {
+    "{{j2.word}}": "there is no {{j2.word}}; write one of j2.sign, j2.says",
+    "{{j2}}": "there is no {{j2}}; write one of j2.sign, j2.says",
+    "{{a3}}": "This exercise has no `a3`. It has a1, a2",
+    "{{1/(a1 - 0.3)}}": "{{1/(a1 - 0.3)}} has no value",
+}
+
+
+@together(("more", "reason"), IN_BRACES.items())
+def test_faults_in_double_braces_are_reported_where_they_are(more: str, reason: str) -> None:
+    with pytest.raises(CatalogueError) as caught:
+        varied(more=more)
+    [fault] = caught.value.faults
+    line = (
+        varied_text(more=more).splitlines().index(f'    ["{{{{a2}}}}", "{more}0", "0", "theta2"],')
+    )
+    assert (fault.field, fault.line) == ("robot.table[1][1]", line + 1)
+    assert reason in fault.reason
+
+
+def test_conditions_compare_up_to_rounding() -> None:
+    names = vocabulary_of(["a", "b"])
+    values = {"a": np.array([0.1 + 0.2, 0.3, 0.4]), "b": np.array([0.3, 0.4, 0.3])}
+    expected = {
+        "a = b": [True, False, False],
+        "a != b": [False, True, True],
+        "a < b": [False, True, False],
+        "a ≥ b": [True, False, True],
+        "a <= b": [True, True, False],
+        "a > b": [False, False, True],
+    }
+    for text, result in expected.items():
+        assert read_condition("", text, names).holds(values, 3).tolist() == result
+    for text in ("a/(b - b) >= 0", "sqrt(-a) != 1", "1/(a - a) != 1"):
+        assert not read_condition("", text, names).holds(values, 3).any()

@@ -1,0 +1,48 @@
+"""Exercise files with ``[vary]`` for the tests."""
+
+from pathlib import Path
+
+from service.catalogue import Exercise, read_exercise
+
+VARY = """
+a1 = [0.3, 0.4, 0.5]
+a2 = { from = 0.2, to = 0.6, step = 0.05 }
+j2 = [{ sign = "", says = "up" }, { sign = "-", says = "down" }]
+conditions = ["a1 > a2", "a1 + a2 <= 0.8"]
+"""
+_FILE = """
+title = "An arm with links of {{{{a1}}}} m and {{{{a2}}}} m"
+source = "a test"
+statement = '''
+In frame {{0}}, the links have {{{{a1}}}} m and {{{{ a2 }}}} m, together
+{{{{a1 + a2}}}} m, so $\\frac{{a1}}{{2}}$.
+Joint 2 points {{{{j2.says}}}}.
+'''
+[vary]
+{vary}
+[robot]
+structure = "RR"
+convention = "standard"
+joints = ["theta1", "theta2"]
+table = [
+    ["{{{{a1}}}}", "{{{{j2.sign}}}}90deg", "0", "theta1"],
+    ["{{{{a2}}}}", "{more}0", "0", "theta2"],
+]
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+points = 8
+convention = "standard"
+frames = "free"
+"""
+
+
+def varied_text(vary: str = VARY, more: str = "") -> str:
+    """Return a file with this table ``[vary]``; ``more`` is text in a cell of the robot."""
+    return _FILE.format(vary=vary, more=more)
+
+
+def varied(vary: str = VARY, more: str = "", name: str = "arm") -> Exercise:
+    """Return the exercise of ``varied_text``. Raises CatalogueError."""
+    return read_exercise(Path(f"{name}.toml"), varied_text(vary, more))

@@ -1,0 +1,63 @@
+"""The import of the editor: the same text as the command line, and hostile files refused."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from service.catalogue import Exercise
+from service.cli.commands.exercises import commands
+from tests.importing.test_arms import ARMS
+from tests.importing.test_exercise_text import PASTED
+from tests.importing.test_urdf import REFUSED
+from tests.web.tutor.test_tutor_routes import Tutor
+
+
+@pytest.fixture
+def tutor(catalogue: Mapping[str, Exercise]) -> Tutor:
+    return Tutor(catalogue)
+
+
+def test_a_robot_is_imported_as_by_the_command(tutor: Tutor, tmp_path: Path) -> None:
+    [arm] = ARMS.glob("panda-*.urdf")
+    table = tmp_path / "pasted.txt"
+    table.write_text(PASTED, encoding="utf-8")
+    for file, kind, option in ((arm, "urdf", "--letters"), (table, "table", "--table")):
+        source = f"Imported from a {'DH table' if kind == 'table' else 'URDF file'}"
+        folder = tmp_path / kind
+        named = ["--id", "arm", "--source", source, "--output", str(folder)]
+        made = CliRunner().invoke(commands, ["import", str(file), option, *named])
+        assert made.exit_code == 0, made.output
+        body = {
+            "kind": kind,
+            "text": file.read_text(encoding="utf-8"),
+            "id": "arm",
+            "letters": file is arm,
+        }
+        answer = tutor.ask("POST", "/tutor/import", json=body)
+        assert answer.json()["text"] == (folder / "arm.toml").read_text("utf-8")
+        [finding] = tutor.check(answer.json()["text"], "arm")["findings"]
+        assert finding["text"].startswith("1 right, 1 equivalent, 0 wrong")
+
+
+@pytest.mark.parametrize("name", ["doctype", "loop", "nan", "xacro", "eleven joints", "deep"])
+def test_a_hostile_file_is_refused_with_the_reason(tutor: Tutor, name: str) -> None:
+    text, reason = REFUSED[name]
+    body = {"kind": "urdf", "text": text.decode()[:200_000], "id": "arm", "tip": "l1"}
+    if name == "loop":
+        body["tip"] = "l2"
+    elif name == "eleven joints":
+        body["tip"] = "l11"
+    answer = tutor.ask("POST", "/tutor/import", json=body)
+    assert answer.status_code == 422
+    assert reason in answer.json()["detail"]
+
+
+def test_other_refusals_have_their_reasons(tutor: Tutor) -> None:
+    table = {"kind": "table", "text": "good morning", "id": "arm"}
+    assert tutor.ask("POST", "/tutor/import", json=table).status_code == 422
+    named = tutor.ask("POST", "/tutor/import", json={**table, "text": PASTED, "id": "../arm"})
+    assert "cannot be the id of an exercise" in named.json()["detail"]
+    unknown = tutor.ask("POST", "/tutor/import", json={**table, "text": PASTED, "kind": "sdf"})
+    assert unknown.status_code == 422
