@@ -32,6 +32,20 @@ export function byId(id, kind) {
   return element;
 }
 
+/**
+ * Call `use` when the user chooses files, and at once if the user chose them before this script ran.
+ *
+ * @param {HTMLInputElement} input
+ * @param {(files: File[]) => void} use
+ */
+export function whenChosen(input, use) {
+  const chosen = () => {
+    if (input.files?.length) use([...input.files]);
+  };
+  input.addEventListener("change", chosen);
+  chosen();
+}
+
 // Characters that are invisible, or that change the direction of the text.
 const UNSEEN = /[\p{Cc}\p{Cf}\p{Co}\p{Cn}\u2028\u2029]/gu;
 

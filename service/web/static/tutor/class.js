@@ -1,6 +1,6 @@
 // The report on a class: local files or an archive of them, graded by the service and shown in a frame.
 
-import { byId, h, visible } from "../shared/dom.js";
+import { byId, h, visible, whenChosen } from "../shared/dom.js";
 import { documentOf } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
 import { archiveOf, bytesOf, entries, textOf } from "./zip.js";
@@ -128,10 +128,8 @@ async function classFiles(chosen) {
   return files.filter((file) => !isHidden(file));
 }
 
-/** @param {HTMLInputElement} input */
-async function grade(input) {
-  const chosen = [...(input.files ?? [])];
-  input.value = "";
+/** @param {File[]} chosen */
+async function grade(chosen) {
   frame.hidden = bar.hidden = true;
   try {
     const files = await classFiles(chosen);
@@ -225,7 +223,11 @@ async function gradebook(graded) {
 exercise.addEventListener("change", showParts);
 for (const id of ["zip", "folder", "files"]) {
   const input = byId(id, HTMLInputElement);
-  input.addEventListener("change", () => grade(input));
+  whenChosen(input, (files) => {
+    // The same files can be chosen again.
+    input.value = "";
+    grade(files);
+  });
 }
 back.addEventListener("click", () => show(INDEX));
 /** @type {[string, string, (archive: ArrayBuffer) => Blob | Promise<Blob>][]} */

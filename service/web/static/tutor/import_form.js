@@ -1,6 +1,6 @@
 // The form *New exercise from…* of the editor: a URDF file or a DH table becomes the text of an exercise file.
 
-import { byId, h, visible } from "../shared/dom.js";
+import { byId, h, visible, whenChosen } from "../shared/dom.js";
 import { post, refusal } from "./tutor_service.js";
 
 // The most characters that the service takes, with room for the other fields and for escapes.
@@ -30,9 +30,7 @@ export function importForm({ id, named, written }) {
   /** @param {string} name */
   const value = (name) => byId(name, HTMLInputElement).value.trim();
 
-  file.addEventListener("change", async () => {
-    const [chosen] = file.files ?? [];
-    if (!chosen) return;
+  whenChosen(file, async ([chosen]) => {
     robot.value = await chosen.text();
     kind.value = /\.(urdf|xml)$/iu.test(chosen.name) ? "urdf" : "table";
     named(idOf(chosen.name));

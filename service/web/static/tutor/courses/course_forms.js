@@ -1,6 +1,6 @@
 // The forms of the pages of courses. Each posts its fields as JSON to the route in its attribute data-post.
 
-import { h } from "../../shared/dom.js";
+import { h, whenChosen } from "../../shared/dom.js";
 import { failed, tell } from "../records/records.js";
 import { address, send } from "../tutor_service.js";
 
@@ -97,10 +97,9 @@ function growing(list) {
 
 /** @param {HTMLInputElement} input */
 function filling(input) {
-  input.addEventListener("change", async () => {
+  whenChosen(input, async ([file]) => {
     const place = document.getElementById(input.dataset.fills ?? "");
-    const file = input.files?.[0];
-    if (file && place instanceof HTMLTextAreaElement) place.value = await file.text();
+    if (place instanceof HTMLTextAreaElement) place.value = await file.text();
   });
 }
 
