@@ -9,7 +9,7 @@ from tests.frame_choice.rows.shipped_robots import shipped_robots
 from tests.frame_choice.rows.student_rows import Texts
 from tests.frame_choice.trials import grade_rows
 
-EACH = 22
+EACH = 6
 SOME_ROBOTS = 4
 
 FREE = {policy.name: policy for policy in POLICIES}

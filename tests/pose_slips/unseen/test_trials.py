@@ -1,6 +1,7 @@
 """A sample of the random arms: ``make slips`` tries more of them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import cache
 
 import pytest
 
@@ -10,6 +11,7 @@ from tests.pose_slips.unseen.arms import Arm, arms
 from tests.pose_slips.unseen.slips import CELL, CLASSES, PRODUCT, slips_of
 from tests.pose_slips.unseen.trials import (
     KINDS,
+    ArmTrial,
     answer_to,
     exercise_of,
     right_answer,
@@ -22,8 +24,14 @@ SAMPLE = tuple(arms(7, 10))
 LEAST = 10
 
 
+@cache
+def one_slip_each() -> Sequence[ArmTrial]:
+    """Return the trials with one slip in each arm of the sample."""
+    return [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
+
+
 def test_slips_in_rows_and_columns_are_named(figure: Callable[[str], None]) -> None:
-    found = [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
+    found = one_slip_each()
     for kind in CLASSES:
         alone = [trial for trial in found if trial.slip.kind == kind and trial.is_alone]
         named = [trial for trial in alone if trial.is_named and trial.is_placed]
@@ -33,8 +41,7 @@ def test_slips_in_rows_and_columns_are_named(figure: Callable[[str], None]) -> N
 
 
 def test_if_several_slips_fit_one_of_them_is_named() -> None:
-    found = [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
-    shared = [trial for trial in found if not trial.is_alone]
+    shared = [trial for trial in one_slip_each() if not trial.is_alone]
     assert len(shared) > LEAST
     assert sum(trial.is_named for trial in shared) >= 0.95 * len(shared)
 

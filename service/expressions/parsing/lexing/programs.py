@@ -8,7 +8,9 @@ from service.expressions.tree import Binary, Call, Node, Number, Pi
 from service.expressions.vocabulary.functions import CONSTANTS
 
 MEMBER: Final = re.compile(r"(?:\.|::)(?=[^\W\d_])")
-_RADIANS: Final = re.compile(r"(?:radians|toRadians)(?=\()")
+_RADIANS: Final = re.compile(r"(?:radians|toRadians|rad)(?=\()")
+# More than a turn in radians, so probably degrees, which ``rad`` converts in SymPy.
+_MANY: Final = re.compile(r"\(\s*[-+]?\s*(?:[7-9]|\d\d+)(?:\.\d*)?\s*\)")
 _SUBSCRIPT: Final = re.compile(rf"\[\s*([A-Za-z{greek.CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
 # Mathematica and Maxima count from 1, and write an index in square brackets.
 _COUNTS_FROM_ONE: Final = re.compile(
@@ -17,9 +19,17 @@ _COUNTS_FROM_ONE: Final = re.compile(
 
 
 def degrees_function_end(text: str, at: int) -> int | None:
-    """Return the end of ``radians`` or ``toRadians`` after a module's name, or None."""
+    """Return the end of a function that converts degrees, after a module's name, or None.
+
+    These are radians, toRadians, and rad: sympy.rad, and math.rad in Lua.
+    """
     found = _RADIANS.match(text, at)
     return found and found.end()
+
+
+def is_more_than_a_turn(text: str, at: int) -> bool:
+    """True if a bracket with one number begins at ``at``, and is more than a turn in radians."""
+    return _MANY.match(text, at) is not None
 
 
 def subscripted(text: str, at: int) -> tuple[str, int] | None:

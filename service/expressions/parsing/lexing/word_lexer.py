@@ -12,6 +12,7 @@ from service.expressions.parsing.lexing.programs import (
     constant,
     counts_from_one,
     degrees_function_end,
+    is_more_than_a_turn,
     subscripted,
 )
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS, TokenWriter
@@ -88,7 +89,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _after_module(self, at: int) -> int:
-        """Read ``radians`` after ``np.`` as degrees; return the place after it."""
+        """Read ``radians`` or ``rad`` after ``np.`` as degrees; return the place after it."""
         end = degrees_function_end(self.text, at)
         if end is None:
             return at
@@ -198,7 +199,12 @@ class WordLexer(TokenWriter):
         opens = self.text[end : end + 1] == "("
         if self.last in OPERAND_ENDS and not opens:
             self._emit("UNIT", unit, a, b)
-        elif self.last not in OPERAND_ENDS and opens and self.text[start:end] in UNIT_FUNCTIONS:
+        elif (
+            self.last not in OPERAND_ENDS
+            and opens
+            and self.text[start:end] in UNIT_FUNCTIONS
+            and not (unit == "rad" and is_more_than_a_turn(self.text, end))
+        ):
             self._emit("FUNCTION", (unit, None), a, b)
         else:
             raise UnreadableError("ambiguous_unit", (a, b), opens=opens)
