@@ -19,6 +19,8 @@ from tests.samples import one_in
 IDS = [file.stem for file in exercise_files(shipped_folder())]
 # The sample begins at the exercise that has most kinds of answers.
 SAMPLED = one_in(24, IDS[8:] + IDS[:8])
+# A length that no robot has.
+ANY = "0.4171"
 PART, POSE, EXERCISE = 0.25, 0.5, 0.4
 ZERO_ROW = {"a": "0", "alpha": "0", "d": "0", "theta": "0"}
 GARBAGE = {"a": "0.37", "alpha": "0.61", "d": "0.83", "theta": "1.27"}
@@ -36,7 +38,7 @@ def padded(rows: Rows) -> Iterator[Rows]:
         yield [*chain.from_iterable((row, each) for each in rows)][:MOST_ROWS]
     if room >= 2 * 2:
         # Rows that cancel each other may be in any valid table.
-        there, back = ZERO_ROW | {"d": "0.4"}, ZERO_ROW | {"d": "-0.4"}
+        there, back = ZERO_ROW | {"d": ANY}, ZERO_ROW | {"d": f"-{ANY}"}
         yield [there, back, *rows]
         yield [*rows, there, back]
 
@@ -47,11 +49,11 @@ def dressed_up(rows: Rows) -> Iterator[Rows]:
         for first in range(len(rows) - 1):
             changed = [dict(row) for row in rows]
             for row, sign in zip(changed[first : first + 2], "+-", strict=True):
-                row[column] = f"{row[column]} {sign} 0.4"
+                row[column] = f"{row[column]} {sign} {ANY}"
             yield changed
         changed = [dict(row) for row in rows]
         for row, sign in zip(changed, "+-" * 6, strict=False):
-            row[column] = f"{row[column]} {sign} 0.4"
+            row[column] = f"{row[column]} {sign} {ANY}"
         yield changed
     yield [{column: f"-({cell})" for column, cell in row.items()} for row in rows]
 
@@ -84,7 +86,7 @@ def without_knowledge(part: PartSpec, exercise: Exercise) -> list[object]:
         every = motion(exercise.joints)
         slides = sliding(exercise)
         shifted = [
-            [*each[:2], [*each[2][:3], f"{each[2][3]} {sign} 0.4"], each[3]]
+            [*each[:2], [*each[2][:3], f"{each[2][3]} {sign} {ANY}"], each[3]]
             for each, sign in zip(answers[0], "+-" * count, strict=False)  # type: ignore[call-overload]
         ]
         return [
