@@ -77,8 +77,8 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
 def is_older(before: datetime) -> ColumnElement[bool]:
     """Return the condition of attempts whose time to be kept began before a moment.
 
-    It begins with the attempt, or, in an assignment, when nobody can hand in there any more.
-    Without a due date this never happens.
+    The time begins with the attempt. In an assignment it begins when the last learner can no longer
+    hand in; without a due date it never begins.
     """
     later = and_(
         extensions.c.assignment == assignments.c.number,

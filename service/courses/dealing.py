@@ -1,8 +1,8 @@
 """Which variant of an exercise a learner has in an assignment. Learners never see the seed.
 
-It follows from a secret of the assignment, so that nobody can compute it, and so that the learner
-has the same variant each time. If seeds are deployed, it is one of them: the one with the largest
-keyed hash, so that another deployed seed changes the variant of few learners.
+The service computes the seed from a secret of the assignment: a learner has the same variant each
+time, and cannot find out which. If seeds are deployed, the learner gets the one with the largest
+keyed hash. So one more deployed seed changes the variant of few learners.
 """
 
 import hashlib
