@@ -6,7 +6,7 @@ from functools import partial
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Request, Response
 
 from service.access.caller import Caller
 from service.api.courses.asking import (
@@ -25,7 +25,7 @@ from service.api.monitor import Monitor
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
 from service.api.recording.attempting import AttemptTerms, Recorder
-from service.api.recording.new_attempts import not_recorded
+from service.api.recording.new_attempts import IDEMPOTENCY_KEY, not_recorded
 from service.api.recording.store import private
 from service.api.routes.solutions import SolvedExercises
 from service.catalogue import Exercise, FeedbackLevel
@@ -42,17 +42,6 @@ if TYPE_CHECKING:  # they load the drivers of databases
     from service.attempts.attempt import Standing
     from service.attempts.store import AttemptStore
     from service.courses.terms import LearnerTerms
-
-_Key = Annotated[
-    str,
-    Header(
-        alias="Idempotency-Key",
-        min_length=1,
-        max_length=255,
-        description="Any text that you choose for this attempt. If the request is sent again with "
-        "the same key, the answer is the same, and nothing is recorded twice.",
-    ),
-]
 
 
 def routes(
@@ -94,7 +83,10 @@ def routes(
         **changing(HandInRequest, AttemptResponse, success=HTTPStatus.CREATED),
     )
     async def hand_in(
-        request: Request, course_id: CourseId, assignment_id: AssignmentId, idempotency_key: _Key
+        request: Request,
+        course_id: CourseId,
+        assignment_id: AssignmentId,
+        idempotency_key: Annotated[str, IDEMPOTENCY_KEY],
     ) -> Response:
         """Grade answers and record them in an assignment, once for each idempotency key.
 

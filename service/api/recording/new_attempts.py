@@ -2,7 +2,7 @@
 
 from collections.abc import Awaitable, Callable, Collection
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 from fastapi import APIRouter, Header, Request, Response
 
@@ -21,16 +21,13 @@ from service.contract.attempts import AttemptRequest, AttemptResponse
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
-IdempotencyKey = Annotated[
-    str | None,
-    Header(
-        alias="Idempotency-Key",
-        min_length=1,
-        max_length=255,
-        description="Any text that you choose for this attempt. If the request is sent again with "
-        "the same key, the answer is the same, and nothing is recorded twice.",
-    ),
-]
+IDEMPOTENCY_KEY: Final = Header(
+    alias="Idempotency-Key",
+    min_length=1,
+    max_length=255,
+    description="Any text that you choose for this attempt. If the request is sent again with the "
+    "same key, the answer is the same, and nothing is recorded twice.",
+)
 
 
 def routes(
@@ -66,7 +63,9 @@ def routes(
         ),
     )
     async def record_attempt(
-        exercise_id: ExerciseId, request: Request, idempotency_key: IdempotencyKey = None
+        exercise_id: ExerciseId,
+        request: Request,
+        idempotency_key: Annotated[str | None, IDEMPOTENCY_KEY] = None,
     ) -> Response:
         """Grade answers and record them with their report, once for each idempotency key.
 
