@@ -88,7 +88,7 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps, self._exercises = stamps, in_order(found.values())
 
     def _complain(self, complaint: str) -> None:
-        """Log a fault of the folders, once as long as it lasts."""
+        """Log a fault of the folders, but not again while it stays the same."""
         if complaint != self._complaint:
             _log.error("The exercises stay as they were:\n%s", complaint)
         self._complaint = complaint

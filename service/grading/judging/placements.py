@@ -158,9 +158,10 @@ def ways_to_judge(
 ) -> list[JudgedFrames]:
     """Judge frames, each relative to its neighbour as it was placed, in all sensible ways.
 
-    The first way takes the axis of each sliding joint as moved to the chosen origin, if the rules
-    allow that. If cells are wrong, the others take some of these axes as drawn, or one of them
-    where the frames beside it need it, so that one wrong origin need not make another frame wrong.
+    The axis of a sliding joint has no fixed place. The first way puts each of these axes through
+    the origin that the student chose, if the rules allow that. If cells are then wrong, the other
+    ways leave some of these axes where the figure draws them, or put one where the frames beside it
+    need it. So one wrong origin need not make another frame wrong.
     ``written`` are the entries, which may be rounded.
     """
     everywhere = (True,) * len(robot.asked)
