@@ -25,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack probe load worst campaign rows policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -89,6 +89,9 @@ load: $(dev) ## 200 clients for SECONDS= (60), graded and recorded, on SQLite an
 	$(python) -m tests.load --seconds "$(SECONDS)"
 	$(python) -m tests.load --seconds "$(SECONDS)" --database postgresql --replicas 2 --workers 1
 	$(python) -m tests.load.wrong_answers
+
+sizing: $(dev) ## simulate a deadline with measured times: how many students one, two and eight processes hold
+	$(python) -m tests.load.sizing
 	$(python) -m tests.courses.hand_ins.last_minute
 	$(python) -m pytest -m campaign tests/load
 

@@ -1,0 +1,1 @@
+"""How many students one installation can serve."""

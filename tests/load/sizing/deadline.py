@@ -1,0 +1,103 @@
+"""Simulate a class that hands in before a deadline: who waits how long for how many processes.
+
+The model: a week of work, and a power law for the times of hand-in, half of them on the last day.
+This is more than one in six in the last hour and one in 27 in the last minute. Before a hand-in, a
+student types the answers (each pause is a preview) and checks them, sometimes wrongly. The process
+of a student is chosen by chance, because connections are; each process takes one request at a time.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Numbers = NDArray[np.float64]
+# Measured processor seconds of requests, by their kind.
+Costs = Mapping[str, Numbers]
+
+WEEK: Final = 7 * 24 * 3600.0
+HOUR: Final = 3600.0
+# Half of all hand-ins in the last of seven days: (1 / 7) ** EXPONENT is 1 / 2.
+EXPONENT: Final = float(np.log(2) / np.log(7))
+# What a student asks for before and with a hand-in: how often, and within how many seconds.
+REQUESTS: Final[Mapping[str, tuple[int, float]]] = {
+    "page": (1, 1800.0),
+    "preview": (60, 1800.0),
+    "right": (1, 900.0),
+    "wrong": (3, 1800.0),
+    "hand_in": (1, 1.0),
+}
+
+
+@dataclass(frozen=True)
+class Waits:
+    """Seconds from a hand-in of the last hour to its answer, and the load of the busiest minute.
+
+    ``busiest`` is the share of the time of all processes that the requests of that minute need.
+    """
+
+    median: float
+    p99: float
+    longest: float
+    busiest: float
+
+
+def before_deadline(students: int, choose: np.random.Generator) -> Numbers:
+    """Return for each student how many seconds before the deadline the hand-in is."""
+    return WEEK * choose.random(students) ** (1 / EXPONENT)
+
+
+def waits(students: int, processes: int, seconds: Costs, choose: np.random.Generator) -> Waits:
+    """Simulate the last hour with measured processor times of each kind of request."""
+    moments, costs, places, handed_in = [], [], [], []
+    hand_ins = -before_deadline(students, choose)
+    at = choose.integers(processes, size=students)
+    for kind, (times, span) in REQUESTS.items():
+        asked = hand_ins[:, None] - span * choose.random((students, times))
+        moments.append(asked.ravel())
+        costs.append(choose.choice(seconds[kind], asked.size))
+        places.append(np.repeat(at, times))
+        handed_in.append(np.full(asked.size, kind == "hand_in"))
+    asked, cost, place, counts = map(np.concatenate, (moments, costs, places, handed_in))
+    is_late = asked > -HOUR
+    asked, cost, place, counts = asked[is_late], cost[is_late], place[is_late], counts[is_late]
+    answered = np.empty_like(asked)
+    for k in range(processes):
+        answered[place == k] = waited(asked[place == k], cost[place == k])
+    minute = np.bincount(((asked + HOUR) // 60).astype(int), weights=cost)
+    return Waits(
+        median=float(np.median(answered[counts])),
+        p99=float(np.quantile(answered[counts], 0.99)),
+        longest=float(answered[counts].max()),
+        busiest=float(minute.max() / 60 / processes),
+    )
+
+
+def waited(asked: Numbers, cost: Numbers) -> Numbers:
+    """Return the seconds to each answer of one process that answers in the order of the requests.
+
+    A request ends at its cost after the later of its own moment and the end of the one before.
+    """
+    order = np.argsort(asked, kind="stable")
+    asked, cost = asked[order], cost[order]
+    worked = np.cumsum(cost)
+    ends = worked + np.maximum.accumulate(asked - worked + cost)
+    found = np.empty_like(ends)
+    found[order] = ends - asked
+    return found
+
+
+def most_students(processes: int, seconds: Costs, p99: float, choose: np.random.Generator) -> int:
+    """Return how many students are answered within ``p99`` seconds, to two figures."""
+    enough, too_many = 100, 100
+    while waits(too_many, processes, seconds, choose).p99 <= p99:
+        enough, too_many = too_many, 2 * too_many
+    while too_many - enough > enough // 20:
+        middle = (enough + too_many) // 2
+        if waits(middle, processes, seconds, choose).p99 <= p99:
+            enough = middle
+        else:
+            too_many = middle
+    return int(float(f"{enough:.1e}"))
