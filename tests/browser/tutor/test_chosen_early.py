@@ -8,8 +8,13 @@ from playwright.sync_api import Page, Route, expect
 from tests.browser.fixtures import Visit
 
 
-def choose_before_scripts(page: Page, address: str, field: str, chosen: Path) -> None:
-    """Choose a file while the page waits for its scripts, then let the scripts through."""
+def choose_before_scripts(
+    page: Page, address: str, field: str, chosen: Path, *pressed: str
+) -> None:
+    """Choose a file and press buttons while the page waits for its scripts, then let them through.
+
+    A button has no effect before the scripts arrive.
+    """
     held: list[Route] = []
     is_chosen = False
 
@@ -22,6 +27,8 @@ def choose_before_scripts(page: Page, address: str, field: str, chosen: Path) ->
     page.route("**/*.js*", hold)
     page.goto(address, wait_until="commit")
     page.get_by_label(field, exact=True).set_input_files(chosen)
+    for text in pressed:
+        page.get_by_text(text, exact=True).click()
     is_chosen = True
     assert held
     for route in held:
@@ -34,7 +41,10 @@ def test_a_robot_chosen_before_the_scripts_is_read(
     chosen = tmp_path / "Our Arm.urdf"
     chosen.write_text('<robot name="arm"/>', "utf-8")
     page = visit().page
-    choose_before_scripts(page, f"{service}/tutor/editor#import", "File", chosen)
+    address = f"{service}/tutor/editor"
+    opened = "New exercise from a URDF file or a DH table …"
+    choose_before_scripts(page, address, "File", chosen, opened, "Make the exercise")
+    assert page.url == address
     expect(page.get_by_label("Exercise id")).to_have_value("our-arm")
     expect(page.get_by_label("or paste it")).to_have_value('<robot name="arm"/>')
 

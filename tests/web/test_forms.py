@@ -1,0 +1,20 @@
+"""A form does nothing before its script has arrived, or it is sent by POST."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from service import web
+
+PAGES = sorted(Path(web.__file__).parent.rglob("*.html"))
+FORMS = [
+    (page, form) for page in PAGES for form in re.findall(r"<form\b[^>]*>", page.read_text("utf-8"))
+]
+
+
+@pytest.mark.parametrize(("page", "form"), FORMS, ids=lambda each: getattr(each, "name", None))
+def test_no_form_puts_its_fields_into_an_address(page: Path, form: str) -> None:
+    """Without a method, a browser sends what is typed as the query of an address."""
+    [method] = re.findall(r'method="(\w+)"', form)
+    assert method in ("post", "dialog"), page
