@@ -6,6 +6,7 @@ A new key is published for a day before it signs: platforms memoize the keys tha
 import json
 import secrets
 from datetime import datetime, timedelta
+from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 from cryptography.hazmat.primitives.asymmetric import rsa
@@ -52,11 +53,9 @@ def signing_key(connection: Connection, secret: Secret, now: datetime) -> Signin
     if row is None:
         raise LtiError("no-secret")
     try:
-        key = load_pem_private_key(row.private_key.encode(), secret.lti_secret)
+        return SigningKey(row.id, _private_key(row.private_key, secret.lti_secret))
     except ValueError as error:
         raise LtiError("no-secret") from error
-    assert isinstance(key, RSAPrivateKey)
-    return SigningKey(row.id, key)
 
 
 def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
@@ -82,6 +81,14 @@ def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
     signs_from = now + PUBLISHED_BEFORE
     _add(connection, secret, now, signs_from)
     return signs_from
+
+
+@lru_cache(maxsize=4)
+def _private_key(pem: str, password: bytes) -> RSAPrivateKey:
+    """Return a stored key. Decrypting it takes longer than signing with it."""
+    key = load_pem_private_key(pem.encode(), password)
+    assert isinstance(key, RSAPrivateKey)
+    return key
 
 
 def _add(connection: Connection, secret: Secret, now: datetime, signs_from: datetime) -> None:
