@@ -5,6 +5,7 @@ A new key is published for a day before it signs: platforms memoize the keys tha
 
 import json
 import secrets
+from collections.abc import Sequence
 from datetime import datetime, timedelta
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
@@ -18,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import (
     load_pem_private_key,
 )
 from jwt.algorithms import RSAAlgorithm
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, Row, delete, insert, select
 
 from service.access.keys import Secret
 from service.attempts.storage.lti_tables import own_keys
@@ -40,6 +41,12 @@ def published_keys(connection: Connection) -> dict[str, list[dict[str, Any]]]:
     """Return our public keys as a JSON Web Key Set."""
     rows = connection.execute(select(own_keys.c.public_key).order_by(own_keys.c.created_at))
     return {"keys": [json.loads(row.public_key) for row in rows]}
+
+
+def own_key_list(connection: Connection) -> Sequence[Row[Any]]:
+    """Return the id of each key, when it was created, and when it begins to sign."""
+    chosen = select(own_keys.c.id, own_keys.c.created_at, own_keys.c.signs_from)
+    return connection.execute(chosen.order_by(own_keys.c.created_at)).all()
 
 
 def signing_key(connection: Connection, secret: Secret, now: datetime) -> SigningKey:
