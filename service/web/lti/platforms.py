@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 from fastapi import APIRouter, Path
 from starlette.responses import HTMLResponse, Response
 
-from service.api.courses.asking import read
+from service.api.courses.asking import read, write
 from service.api.http.problems import ProblemError
 from service.contract.courses import CourseName
 from service.lti.checking import check_registration, last_refusal
-from service.lti.own_keys import own_key_list, signing_key
+from service.lti.own_keys import SigningKey, ensure_key, own_key_list, signing_key
 from service.lti.problems import LtiError
 from service.lti.registrations import (
     Registration,
@@ -72,14 +72,15 @@ def platform_routes(landings: Landings) -> APIRouter:
     @router.post("/{registration_id}/check")
     async def check(registration_id: _RegistrationId) -> Response:
         """Test a registration; answer with the page and what the test has found."""
-        now = datetime.now(UTC)
+        secret, now = landings.secret, datetime.now(UTC)
 
-        def known(connection: "Connection") -> Registration:
-            return registration(connection, registration_id)
+        def known(connection: "Connection") -> tuple[Registration, SigningKey]:
+            found = registration(connection, registration_id)
+            ensure_key(connection, secret, now)
+            return found, signing_key(connection, secret, now)
 
         try:
-            found = await read(landings.store, known)
-            key = await read(landings.store, lambda it: signing_key(it, landings.secret, now))
+            found, key = await write(landings.store, known)
         except RegistrationError as error:
             raise ProblemError(HTTPStatus.NOT_FOUND, str(error)) from error
         except LtiError as error:

@@ -102,7 +102,8 @@ class Browser:
     ) -> httpx.Response:
         self._rush.requests += 1
         answer = await self._client.request(method, self._platform.tool + path, **more)  # type: ignore[arg-type]
-        assert answer.status_code == status, f"{method} {path}: {answer.status_code}"
+        told = re.sub(r"<[^>]*>|\s+", " ", answer.text)[-300:]
+        assert answer.status_code == status, f"{method} {path}: {answer.status_code} {told}"
         return answer
 
 
