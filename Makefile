@@ -93,7 +93,8 @@ load: $(dev) ## 200 clients for SECONDS= (60), graded and recorded, on SQLite an
 sizing: $(dev) ## simulate a deadline with measured times: how many students one, two and eight processes hold
 	$(python) -m tests.load.sizing
 	$(python) -m tests.courses.hand_ins.last_minute
-	$(python) -m pytest -m campaign tests/load
+	$(python) -m tests.lti.load.rush
+	$(python) -m pytest -m campaign tests/load tests/lti/scores/test_outbox.py
 
 worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)
 	$(python) -m tests.worst --minutes "$(MINUTES)" --seed "$(SEED)"
@@ -121,7 +122,7 @@ slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip
 	$(python) -m tests.pose_slips.unseen --arms 200 --show
 
 durability: $(dev) ## kill the service while it records attempts and hand-ins, and migrations, 20 times on each database
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/test_hand_ins.py tests/attempts/test_migrations.py
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"

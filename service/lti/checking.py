@@ -50,12 +50,17 @@ def check_registration(registration: Registration, key: SigningKey) -> Iterator[
     launched = registration.launched_at
     told = f"{launched:%Y-%m-%d %H:%M} UTC" if launched else "never"
     yield CheckLine(None, f"last launch: {told}")
-    if registration.refused_at is not None:
-        problem = LTI_PROBLEMS.get(registration.refusal or "")
-        cause = registration.refusal if problem is None else problem.cause.partition(" {")[0]
-        yield CheckLine(
-            None, f"last refusal: {registration.refused_at:%Y-%m-%d %H:%M} UTC: {cause}"
-        )
+    if refusal := last_refusal(registration):
+        yield CheckLine(None, f"last refusal: {refusal}")
+
+
+def last_refusal(registration: Registration) -> str:
+    """Return when and why a launch was refused last, or ""."""
+    if registration.refused_at is None:
+        return ""
+    problem = LTI_PROBLEMS.get(registration.refusal or "")
+    cause = registration.refusal if problem is None else problem.cause.partition(" {")[0]
+    return f"{registration.refused_at:%Y-%m-%d %H:%M} UTC: {cause}"
 
 
 def _token(registration: Registration, key: SigningKey) -> CheckLine:

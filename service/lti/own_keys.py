@@ -5,7 +5,9 @@ A new key is published for a day before it signs: platforms memoize the keys tha
 
 import json
 import secrets
+from collections.abc import Sequence
 from datetime import datetime, timedelta
+from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 from cryptography.hazmat.primitives.asymmetric import rsa
@@ -17,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import (
     load_pem_private_key,
 )
 from jwt.algorithms import RSAAlgorithm
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, Row, delete, insert, select
 
 from service.access.keys import Secret
 from service.attempts.storage.lti_tables import own_keys
@@ -41,6 +43,12 @@ def published_keys(connection: Connection) -> dict[str, list[dict[str, Any]]]:
     return {"keys": [json.loads(row.public_key) for row in rows]}
 
 
+def own_key_list(connection: Connection) -> Sequence[Row[Any]]:
+    """Return the id of each key, when it was created, and when it begins to sign."""
+    chosen = select(own_keys.c.id, own_keys.c.created_at, own_keys.c.signs_from)
+    return connection.execute(chosen.order_by(own_keys.c.created_at)).all()
+
+
 def signing_key(connection: Connection, secret: Secret, now: datetime) -> SigningKey:
     """Return the newest key that may sign. Raises LtiError, if there is none or its secret differs.
 
@@ -52,11 +60,9 @@ def signing_key(connection: Connection, secret: Secret, now: datetime) -> Signin
     if row is None:
         raise LtiError("no-secret")
     try:
-        key = load_pem_private_key(row.private_key.encode(), secret.lti_secret)
+        return SigningKey(row.id, _private_key(row.private_key, secret.lti_secret))
     except ValueError as error:
         raise LtiError("no-secret") from error
-    assert isinstance(key, RSAPrivateKey)
-    return SigningKey(row.id, key)
 
 
 def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
@@ -82,6 +88,14 @@ def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
     signs_from = now + PUBLISHED_BEFORE
     _add(connection, secret, now, signs_from)
     return signs_from
+
+
+@lru_cache(maxsize=4)
+def _private_key(pem: str, password: bytes) -> RSAPrivateKey:
+    """Return a stored key. Decrypting it takes longer than signing with it."""
+    key = load_pem_private_key(pem.encode(), password)
+    assert isinstance(key, RSAPrivateKey)
+    return key
 
 
 def _add(connection: Connection, secret: Secret, now: datetime, signs_from: datetime) -> None:

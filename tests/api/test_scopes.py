@@ -261,6 +261,7 @@ def guarded(
             "exercise_id": EXERCISE,
             "course_id": "robots",
             "assignment_id": "homework",
+            "registration_id": "moodle",
             "convention": "standard",
             "rule": "link_twist",
             "learner": "ada",

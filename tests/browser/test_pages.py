@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from typing import Any, Literal
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Frame, Page, expect
 
 from tests.api.serving import ROOT
 from tests.browser.conftest import Origin
@@ -38,17 +38,18 @@ FORCED_FILL = """() => {
 }"""
 
 
-def violations(page: Page, axe: str) -> list[str]:
+def violations(shown: Page | Frame, axe: str) -> list[str]:
     """Return the violations that axe-core finds: all in light mode, contrast in the others."""
-    page.evaluate(f"({json.dumps(axe)}, 0)")
-    page.evaluate(FORCED_FILL)
+    page = shown.page if isinstance(shown, Frame) else shown
+    shown.evaluate(f"({json.dumps(axe)}, 0)")
+    shown.evaluate(FORCED_FILL)
     found = []
     options: dict[str, Any] = {"resultTypes": ["violations"]}
     for name, scheme, forced in MEDIA:
         page.emulate_media(color_scheme=scheme, forced_colors=forced)
         # The element follows the colours of its page in the next frame.
-        page.evaluate("new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
-        result: dict[str, Any] = page.evaluate(f"axe.run(document, {json.dumps(options)})")
+        shown.evaluate("new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
+        result: dict[str, Any] = shown.evaluate(f"axe.run(document, {json.dumps(options)})")
         options["runOnly"] = ["color-contrast"]
         found += [
             f"{name}: {each['id']}: {node['target']} {node['failureSummary']}"

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from html import unescape
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -21,11 +20,13 @@ from service.api.application import application
 from service.api.permissions.access import Access
 from service.attempts.storage import lti_tables as tables
 from service.attempts.storage.database import in_transaction
-from service.attempts.storage.tables import course_learners, courses
+from service.attempts.storage.tables import course_learners, courses, metadata
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
+from service.lti.own_keys import ensure_key
 from service.lti.registrations import NewRegistration, add_registration
 from service.web import Tutoring, web_routes
+from tests.attempts.databases import TEMPLATE, new_database, new_file
 from tests.lti.platform import Platform, running
 
 SECRET_TEXT = "0123456789abcdef" * 4
@@ -53,6 +54,8 @@ def one_platform() -> Iterator[Platform]:
 def platform(one_platform: Platform) -> Iterator[Platform]:
     """The platform with its usual habits and keys."""
     keys = list(one_platform.keys)
+    # The service memoizes keys by their address.
+    one_platform.visit += 1
     yield one_platform
     one_platform.habits.clear()
     one_platform.fetched.clear()
@@ -78,6 +81,11 @@ class Tool:
     app: Any
     store: AttemptStore
     platform: Platform
+
+    @property
+    def url(self) -> str:
+        """The address of the database."""
+        return self.store.engine.url.render_as_string(hide_password=False)
 
     def do(self, work: Callable[[Connection], Any]) -> Any:
         return in_transaction(self.store.engine, work)
@@ -111,7 +119,8 @@ class Tool:
     def launch(self, user: str = "ada", link: str = "link-1", **more: str) -> httpx.Response:
         """Go the whole way of a launch, over the platform's own page."""
         begun = self.login(user, link, **more)
-        page = httpx.get(begun.answer.headers["location"], timeout=60)
+        # Reading the certificates of the authorities takes longer than a launch.
+        page = httpx.get(begun.answer.headers["location"], timeout=60, verify=False)
         fields = dict(re.findall(r'name="(\w+)" value="([^"]*)"', page.text))
         return self.post(unescape(fields["state"]), unescape(fields["id_token"]), begun.cookies)
 
@@ -124,28 +133,70 @@ class Tool:
             }
 
 
-@pytest.fixture(params=["sqlite"])
-def tool(
+class Services:
+    """The service on each kind of database: built once, because that takes longer than a test."""
+
+    def __init__(self, catalogue: Mapping[str, Exercise], url: Callable[[str], str]) -> None:
+        self._catalogue, self._url = catalogue, url
+        self._built: dict[str, tuple[Any, AttemptStore, KeyRing]] = {}
+        self._own_key: dict[str, Any] = {}
+
+    def empty(self, kind: str) -> tuple[Any, AttemptStore]:
+        """Return the application and its store, with a key that signs and no other row."""
+        if kind not in self._built:
+            self._built[kind] = self._build(AttemptStore.open(self._url(kind)))
+        app, store, ring = self._built[kind]
+        ring.has_keys = False
+        in_transaction(store.engine, self._renew)
+        return app, store
+
+    def close(self) -> None:
+        for _, store, ring in self._built.values():
+            ring.close()
+            store.close()
+
+    def _build(self, store: AttemptStore) -> tuple[Any, AttemptStore, KeyRing]:
+        ring = KeyRing(store.engine, SECRET, seconds=0.01)
+        access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
+        tutoring = Tutoring(access, records=True, store=store)
+        pages = web_routes(self._catalogue, tutoring)
+        app = application(self._catalogue, access=access, store=store, pages=pages)
+        store.start()
+        return app, store, ring
+
+    def _renew(self, connection: Connection) -> None:
+        for table in reversed(metadata.sorted_tables):
+            connection.execute(table.delete())
+        if self._own_key:
+            connection.execute(tables.own_keys.insert(), self._own_key)
+            return
+        ensure_key(connection, SECRET, datetime.now(UTC))
+        self._own_key = connection.execute(select(tables.own_keys)).one()._asdict()
+
+
+@pytest.fixture(scope="session")
+def services(
     request: pytest.FixtureRequest,
     catalogue: Mapping[str, Exercise],
-    platform: Platform,
-    tmp_path: Path,
-) -> Iterator[Tool]:
-    """The service, in the kind of database of the parameter."""
-    is_sqlite = request.param == "sqlite"
-    url = str(tmp_path / "lti.db") if is_sqlite else request.getfixturevalue("postgresql_url")
-    store = AttemptStore.open(url)
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Services]:
+    def url(kind: str) -> str:
+        if kind == "sqlite":
+            return new_file(tmp_path_factory.mktemp("lti"))
+        return new_database(request.getfixturevalue("postgresql"), "lti", TEMPLATE)
+
+    made = Services(catalogue, url)
+    yield made
+    made.close()
+
+
+@pytest.fixture(params=["sqlite"])
+def tool(request: pytest.FixtureRequest, services: Services, platform: Platform) -> Tool:
+    """The service, in the kind of database of the parameter, where the platform is registered."""
+    app, store = services.empty(request.param)
     new = NewRegistration.model_validate(platform.registration)
     in_transaction(store.engine, lambda it: add_registration(it, new, datetime.now(UTC)))
-    ring = KeyRing(store.engine, SECRET, seconds=0.01)
-    access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
-    tutoring = Tutoring(access, records=True, store=store)
-    pages = web_routes(catalogue, tutoring)
-    app = application(catalogue, access=access, store=store, pages=pages)
-    store.start()
-    yield Tool(app, store, platform)
-    ring.close()
-    store.close()
+    return Tool(app, store, platform)
 
 
 def hidden(page: str, name: str) -> str:

@@ -94,6 +94,7 @@ class Platform:
     members: list[dict[str, Any]] = field(default_factory=list)
     page_size: int = 50
     next_page: str = ""
+    visit: int = 0
     host: str = "127.0.0.1"
     tool: str = "http://127.0.0.1:8000"
 
@@ -114,7 +115,7 @@ class Platform:
             "issuer": self.address,
             "client_id": CLIENT,
             "auth_url": f"{self.address}/auth",
-            "jwks_url": f"{self.address}/jwks.json",
+            "jwks_url": f"{self.address}/jwks.json?{self.visit}",
             "token_url": f"{self.address}/token",
             "address": self.tool,
             "zone": "Europe/Berlin",

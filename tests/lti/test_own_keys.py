@@ -4,6 +4,7 @@ from typing import Any
 import pytest
 
 from service.access.keys import Secret
+from service.attempts.storage.lti_tables import own_keys
 from service.lti.own_keys import ensure_key, published_keys, rotate, signing_key
 from service.lti.problems import LtiError
 from tests.lti.conftest import SECRET, Tool
@@ -21,6 +22,7 @@ def test_a_new_key_is_published_for_a_day_before_it_signs(tool: Tool) -> None:
     def signing(now: datetime) -> Any:
         return tool.do(lambda it: signing_key(it, SECRET, now)).id
 
+    tool.do(lambda it: it.execute(own_keys.delete()))
     tool.do(lambda it: ensure_key(it, SECRET, NOW))
     [first] = ids()
     assert tool.do(lambda it: rotate(it, SECRET, NOW)) == NOW + DAY

@@ -156,6 +156,8 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "GET /tutor/courses/{course_id}/learner": _read_course(),
     "POST /tutor/courses/{course_id}/links.csv": _change_course(),
     "POST /tutor/courses/{course_id}/roster": _change_course(),
+    "GET /tutor/platforms": _change(Reach.ALL),
+    "POST /tutor/platforms/{registration_id}/check": _change(Reach.ALL),
     "GET /tutor/editor": _solutions(Reach.ALL),
     "POST /tutor/check": _solutions(Reach.ALL),
     "POST /tutor/import": _solutions(Reach.ALL),

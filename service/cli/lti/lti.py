@@ -19,7 +19,7 @@ from service.cli.terminal import give_up, stdout
 from service.formats.shared.plain_text import visible
 from service.lti import registrations
 from service.lti.checking import check_registration
-from service.lti.own_keys import ensure_key, published_keys, rotate, signing_key
+from service.lti.own_keys import ensure_key, own_key_list, rotate, signing_key
 from service.lti.problems import LtiError
 from service.lti.registrations import NewRegistration, Registration, RegistrationError
 from service.lti.roster.enrolment import (
@@ -186,9 +186,9 @@ def rotate_keys() -> None:
 
 @_keys.command("list")
 def list_keys() -> None:
-    """List the ids of the published keys, the oldest first."""
-    for each in _done(published_keys)["keys"]:
-        typer.echo(each["kid"])
+    """List the published keys, the oldest first, and when they begin to sign."""
+    for each in _done(own_key_list):
+        typer.echo(f"{each.id}  signs from {each.signs_from:%Y-%m-%d %H:%M} UTC on")
 
 
 def _secret() -> Secret:

@@ -54,6 +54,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     from service.web.lti.deep_linking.picker_forms import picker_forms
     from service.web.lti.joining.joining_forms import joining_forms
     from service.web.lti.landing import Landings
+    from service.web.lti.platforms import platform_routes
     from service.web.lti.tutor_forms import tutor_forms
 
     landings = Landings(catalogue, assets, tutoring.store, keys, keys.secret)
@@ -111,6 +112,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     both.include_router(tutor_forms(landings, launching.answered))
     both.include_router(picker_forms(landings, launching.answered))
     both.include_router(joining_forms(landings))
+    both.include_router(platform_routes(landings))
     return both
 
 

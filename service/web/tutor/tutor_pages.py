@@ -22,6 +22,7 @@ def tutor_page(
     *,
     of_all: bool = True,
     has_courses: bool = False,
+    has_platforms: bool = False,
     signed_in: bool = False,
 ) -> bytes:
     """Return the page with links to all pages for tutors.
@@ -35,6 +36,7 @@ def tutor_page(
         exercises=list(catalogue.values()),
         of_all=of_all,
         has_courses=has_courses,
+        has_platforms=has_platforms,
         signed_in=signed_in,
     )
 

@@ -54,6 +54,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     router = APIRouter(include_in_schema=False)
     work = BoundedWork()
+    has_lti = tutoring.store is not None and access.keys is not None and bool(access.keys.secret)
     folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
     for routes in (
         _solution_routes(catalogue, assets, access),
@@ -72,6 +73,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
             assets,
             of_all=caller.reaches_all,
             has_courses=tutoring.records and caller.exercises is None,
+            has_platforms=has_lti and caller.reaches_all,
             signed_in=access.is_signed_in(request),
         )
         return HTMLResponse(content, headers=FORM_HEADERS)

@@ -1,77 +1,11 @@
 """Launches in a frame of another site, while the browser blocks third-party cookies."""
 
-import asyncio
-import os
-from collections.abc import Iterator
-from dataclasses import dataclass
-from datetime import UTC, datetime
-from pathlib import Path
-
 import jwt
 import pytest
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import expect
 
-from service.attempts.storage.database import in_transaction, open_database
-from service.lti.registrations import NewRegistration, add_registration
-from tests.api.serving import served
-from tests.browser.chromium import OPTIONS, Chromium
-from tests.browser.fixtures import GUARD, Started, complaint
-from tests.lti.platform import DL, Platform, deep_linking, running
-
-SECRET = "0123456789abcdef" * 4
-OURS = [
-    *(each for each in OPTIONS if "resolver" not in each),
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
-]
-# Blocks the cookies of other sites in frames, without exceptions.
-CONTROLS = {
-    "enableThirdPartyCookieRestriction": True,
-    "disableThirdPartyCookieMetadata": True,
-    "disableThirdPartyCookieHeuristics": True,
-}
-
-
-@dataclass
-class Course:
-    """A platform on localhost, whose pages frame the service on 127.0.0.1."""
-
-    platform: Platform
-    context: BrowserContext
-    complaints: list[str]
-
-    def opened(self, user: str) -> Page:
-        page = self.context.new_page()
-        controls = self.context.new_cdp_session(page)
-        controls.send("Network.enable")
-        controls.send("Network.setCookieControls", CONTROLS)
-        page.goto(f"{self.platform.address}/course/{user}/link-1")
-        return page
-
-
-@pytest.fixture
-def course(started_browser: Started, chromium: Chromium, tmp_path: Path) -> Iterator[Course]:
-    environment = {"DH_GRADER_DATABASE": str(tmp_path / "lti.db"), "DH_GRADER_SECRET": SECRET}
-    platform = Platform(host="localhost")
-    with served(tmp_path, **environment) as server, running(platform.app()) as port:
-        platform.port, platform.tool = port, server.address
-        engine = open_database(environment["DH_GRADER_DATABASE"])
-        new = NewRegistration.model_validate(platform.registration)
-        in_transaction(engine, lambda it: add_registration(it, new, datetime.now(UTC)))
-        engine.dispose()
-        asyncio._set_running_loop(started_browser.loop)
-        browser = started_browser.browser.browser_type.launch(
-            executable_path=chromium.program,
-            args=OURS,
-            env={**os.environ, **chromium.environment},
-        )
-        context = browser.new_context(reduced_motion="reduce")
-        context.set_default_timeout(GUARD)
-        told: list[str] = []
-        context.on("console", lambda line: told.extend(complaint(line)))
-        yield Course(platform, context, told)
-        browser.close()
-        asyncio._set_running_loop(None)
-        assert told == []
+from tests.browser.lti.conftest import Course
+from tests.lti.platform import DL, deep_linking
 
 
 def test_a_learner_gets_in_by_the_storage_of_the_platform(course: Course) -> None:

@@ -11,12 +11,9 @@ from sqlalchemy import Row, select
 
 from service.attempts.storage import lti_tables as tables
 from service.lti.linking import pseudonym
-from service.lti.own_keys import ensure_key, published_keys
+from service.lti.own_keys import published_keys
 from service.lti.scores.sender import ScoreSender
 from tests.lti.conftest import SECRET, Tool, token_of
-from tests.lti.conftest import one_platform as one_platform
-from tests.lti.conftest import platform as platform
-from tests.lti.conftest import tool as tool
 from tests.lti.gradebook import Gradebook
 
 # An answer that earns points, and one that earns none.
@@ -144,7 +141,6 @@ def journey(tool: Tool) -> Journey:
     clock = Clock()
     sender = ScoreSender(tool.store.engine, SECRET, clock.now, lambda: 1.0)
     made = Journey(tool, clock, sender)
-    tool.do(lambda it: ensure_key(it, SECRET, datetime.now(UTC)))
     gradebook = tool.platform.gradebook
     gradebook.now = clock.now
     gradebook.own_keys = lambda: tool.do(published_keys)

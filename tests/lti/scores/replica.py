@@ -1,10 +1,14 @@
-"""A process that sends scores until it is killed.
+"""A process whose children send scores until it kills them.
 
 ``python -m tests.lti.scores.replica URL FILE SECRET``
 
-The file has the seconds that are added to the time of this machine.
+The file has the seconds that are added to the time of this machine. Each line of the input is
+``start`` or ``kill`` with a number of children; each is answered with a line. A child begins at
+once, because its parent has imported the service already.
 """
 
+import os
+import signal
 import sys
 import time
 from datetime import UTC, datetime, timedelta
@@ -16,15 +20,31 @@ from service.lti.scores.sender import ScoreSender
 
 
 def main(url: str, file: str, secret: str) -> None:
-    added = Path(file)
+    running: list[int] = []
+    for line in sys.stdin:
+        word, number = line.split()
+        for _ in range(int(number)):
+            if word == "kill":
+                child = running.pop(0)
+                os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+            elif child := os.fork():
+                running.append(child)
+            else:
+                send(url, Path(file), secret)
+        print("done", flush=True)  # noqa: T201
+    for child in running:
+        os.kill(child, signal.SIGKILL)
 
+
+def send(url: str, added: Path, secret: str) -> None:
     def now() -> datetime:
         return datetime.now(UTC) + timedelta(seconds=float(added.read_text() or 0))
 
     sender = ScoreSender(open_database(url), Secret(secret), now)
     while True:
         if not sender.send_next():
-            time.sleep(0.02)
+            time.sleep(0.05)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,5 @@
 """What tutors see of the scores that went to a platform, and sending again."""
 
-from pathlib import Path
-
 import pytest
 
 from tests.cli.conftest import Run
@@ -56,11 +54,9 @@ def test_the_pages_show_it(journey: Journey) -> None:
         assert "Send again" in page.text
 
 
-def test_the_command(
-    journey: Journey, run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_command(journey: Journey, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     course = refused_and_sent(journey)
-    monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "lti.db"))
+    monkeypatch.setenv("DH_GRADER_DATABASE", journey.tool.url)
     monkeypatch.setenv("DH_GRADER_SECRET", "0123456789abcdef" * 4)
     lines = run("lti", "scores", course).output.splitlines()
     assert len(lines) == 2

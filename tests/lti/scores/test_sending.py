@@ -1,8 +1,6 @@
 """Replicas send scores, and are killed after the platform has one, before it has answered."""
 
-import os
 import random
-import signal
 import subprocess
 import sys
 import threading
@@ -26,14 +24,14 @@ class Replicas:
 
     def __init__(self, journey: Journey, folder: Path) -> None:
         self._file = folder / "added"
-        url = journey.tool.store.engine.url.render_as_string(hide_password=False)
         module = ["-m", "tests.lti.scores.replica"]
-        self._command = [sys.executable, *module, url, str(self._file), SECRET_TEXT]
-        self._running: list[subprocess.Popen[bytes]] = []
+        command = [sys.executable, *module, journey.tool.url, str(self._file), SECRET_TEXT]
+        pipe = subprocess.PIPE
+        self._parent = subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True)
+        self._number = 0
         self._journey = journey
         self.go_on(0)
-        for _ in range(2):
-            self._start()
+        self.restart()
 
     def go_on(self, seconds: float) -> None:
         self._journey.clock.go_on(seconds=seconds)
@@ -43,17 +41,22 @@ class Replicas:
 
     def kill(self, number: int) -> None:
         """Kill some of them, and wait until they are gone."""
-        for each in self._running[:number]:
-            os.kill(each.pid, signal.SIGKILL)
-            each.wait(ANSWER)
-        del self._running[:number]
+        self._ask("kill", number)
+        self._number -= number
 
     def restart(self) -> None:
-        while len(self._running) < 2:
-            self._start()
+        self._ask("start", 2 - self._number)
+        self._number = 2
 
-    def _start(self) -> None:
-        self._running.append(subprocess.Popen(self._command, cwd=ROOT))
+    def close(self) -> None:
+        self._parent.communicate(timeout=ANSWER)
+
+    def _ask(self, word: str, number: int) -> None:
+        assert self._parent.stdin is not None
+        assert self._parent.stdout is not None
+        self._parent.stdin.write(f"{word} {number}\n")
+        self._parent.stdin.flush()
+        assert self._parent.stdout.readline() == "done\n"
 
 
 @pytest.fixture
@@ -61,7 +64,7 @@ def replicas(journey: Journey, tmp_path: Path) -> Iterator[Replicas]:
     (folder := tmp_path / "clock").mkdir()
     made = Replicas(journey, folder)
     yield made
-    made.kill(2)
+    made.close()
 
 
 class Round:

@@ -1,56 +1,11 @@
 """A launch and links for a platform by others: the library lti1p3platform."""
 
-from typing import Any
-
 import jwt
 import pytest
-from cryptography.hazmat.primitives.serialization import (
-    Encoding,
-    NoEncryption,
-    PrivateFormat,
-    PublicFormat,
-)
-from lti1p3platform.ltiplatform import LTI1P3PlatformConfAbstract
-from lti1p3platform.message_launch import LTIAdvantageMessageLaunchAbstract
-from lti1p3platform.registration import Registration
-from lti1p3platform.request import Request
 
 from tests.lti.conftest import Tool, hidden, token_of
-from tests.lti.platform import CLIENT, DEPLOYMENT, MEMBER, deep_linking
-
-
-class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
-    """The registration of our service at the other platform, with the keys of ours."""
-
-    def init_platform_config(self, **kwargs: Any) -> None:
-        platform = kwargs["platform"]
-        private = platform.key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
-        public = platform.key.public_key().public_bytes(
-            Encoding.PEM, PublicFormat.SubjectPublicKeyInfo
-        )
-        made = Registration().set_iss(platform.address).set_client_id(CLIENT)
-        made.set_deployment_id(DEPLOYMENT).set_launch_url(f"{platform.tool}/lti/launch")
-        made.set_oidc_login_url(f"{platform.tool}/lti/login")
-        made.set_platform_public_key(public.decode())
-        made.set_platform_private_key(private.decode())
-        self._registration = made
-
-    def get_registration_by_params(self, **_: Any) -> Registration:
-        raise NotImplementedError
-
-
-class Launch(LTIAdvantageMessageLaunchAbstract):  # type: ignore[misc]
-    """A launch that returns the fields of its form."""
-
-    def render_launch_form(self, launch_data: dict[str, Any], **_: Any) -> Any:
-        return launch_data
-
-
-class Preflight(Request):  # type: ignore[misc]
-    """The request that our login has sent to the platform."""
-
-    def build_metadata(self, request: Any) -> Any:
-        return {"get_data": request, "form_data": {}}
+from tests.lti.library.services import Configuration, Launch, Preflight
+from tests.lti.platform import MEMBER, deep_linking
 
 
 def test_a_platform_by_others_launches(tool: Tool) -> None:

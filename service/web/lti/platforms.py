@@ -1,0 +1,98 @@
+"""The page of the registered platforms: their last launches, our keys, and a self-test."""
+
+import asyncio
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+from fastapi import APIRouter, Path
+from starlette.responses import HTMLResponse, Response
+
+from service.api.courses.asking import read, write
+from service.api.http.problems import ProblemError
+from service.contract.courses import CourseName
+from service.lti.checking import check_registration, last_refusal
+from service.lti.own_keys import SigningKey, ensure_key, own_key_list, signing_key
+from service.lti.problems import LtiError
+from service.lti.registrations import (
+    Registration,
+    RegistrationError,
+    all_registrations,
+    deployments_of,
+    registration,
+)
+from service.web.lti.landing import Landings
+from service.web.page_headers import FORM_HEADERS
+from service.web.pages import page
+
+if TYPE_CHECKING:
+    from sqlalchemy import Connection
+
+    from service.lti.checking import CheckLine
+
+# Registrations are named as courses are.
+_RegistrationId = Annotated[CourseName, Path(description="The id of a registration.")]
+
+
+class _Shown(NamedTuple):
+    """A registration on the page."""
+
+    registration: Registration
+    deployments: list[str]
+    refusal: str
+
+
+def platform_routes(landings: Landings) -> APIRouter:
+    """Return the routes of the page."""
+    router = APIRouter(prefix="/tutor/platforms")
+
+    async def answer(tested: str = "", lines: "tuple[CheckLine, ...]" = ()) -> Response:
+        found, keys = await read(landings.store, lambda it: (_shown(it), own_key_list(it)))
+        root = "../../../" if tested else "../"
+        content = page(
+            "web/lti/templates/platforms.html",
+            landings.assets,
+            root,
+            ["page.js"],
+            styles=["tutor.css", "records.css"],
+            tutor=True,
+            platforms=found,
+            keys=keys,
+            now=datetime.now(UTC),
+            tested=tested,
+            lines=lines,
+        )
+        return HTMLResponse(content, headers=FORM_HEADERS)
+
+    @router.get("")
+    async def platforms() -> Response:
+        """Answer with the registrations and our keys."""
+        return await answer()
+
+    @router.post("/{registration_id}/check")
+    async def check(registration_id: _RegistrationId) -> Response:
+        """Test a registration; answer with the page and what the test has found."""
+        secret, now = landings.secret, datetime.now(UTC)
+
+        def known(connection: "Connection") -> tuple[Registration, SigningKey]:
+            found = registration(connection, registration_id)
+            ensure_key(connection, secret, now)
+            return found, signing_key(connection, secret, now)
+
+        try:
+            found, key = await write(landings.store, known)
+        except RegistrationError as error:
+            raise ProblemError(HTTPStatus.NOT_FOUND, str(error)) from error
+        except LtiError as error:
+            raise ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, str(error)) from error
+        lines = await asyncio.to_thread(lambda: tuple(check_registration(found, key)))
+        return await answer(found.id, lines)
+
+    return router
+
+
+def _shown(connection: "Connection") -> list[_Shown]:
+    return [
+        _Shown(each, deployments_of(connection, each.id), last_refusal(each))
+        for each in all_registrations(connection)
+    ]

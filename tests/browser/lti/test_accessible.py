@@ -1,0 +1,84 @@
+"""The pages of LTI in light, dark and forced colours, as axe-core sees them."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import pytest
+from playwright.sync_api import Frame, Page, expect
+
+from service.access.caller import Scope
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
+from service.access.keys import Secret
+from service.attempts.storage.database import in_transaction, open_database
+from tests.browser.lti.conftest import SECRET, Course
+from tests.browser.test_pages import violations
+from tests.lti.platform import LTI, deep_linking
+
+NOW = datetime.now(UTC)
+# The styles that axe-core sets for a moment are against the policy of the pages.
+checked = pytest.mark.parametrize("course", ["bypass_csp"], indirect=True)
+
+
+def without_exercises(claims: dict[str, Any]) -> None:
+    claims[f"{LTI}custom"] = {}
+
+
+def framed(page: Page, text: str) -> Frame:
+    """Return the frame of the service as soon as it has a text."""
+    expect(page.frame_locator("iframe").get_by_text(text).first).to_be_visible()
+    [found] = [each for each in page.frames if each.name == "tool"]
+    return found
+
+
+@checked
+def test_the_pages_in_frames_are_accessible(course: Course, axe: str) -> None:
+    course.context.add_init_script(axe)
+    platform, return_address = course.platform, f"{course.platform.address}/return"
+    found = []
+    for user, link, habits, text in (
+        ("ada", "link-1", [], "Planar RR arm"),
+        ("turing", "link-1", [], "What your students get"),
+        ("preview", "link-1", [], "This is a preview"),
+        ("parent", "link-1", [], "Only the students and teachers"),
+        ("ada", "link-2", [without_exercises], "has not chosen exercises"),
+        ("turing", "link-2", [without_exercises], "Your students see these exercises"),
+        ("turing", "link-1", [deep_linking(return_address)], "Your course gets a link"),
+        ("ada", "link-1", [lambda claims: claims.update(aud="x")], "could not be opened"),
+    ):
+        platform.habits[:] = habits
+        page = course.opened(user, link)
+        found += [f"{user} {link}: {each}" for each in violations(framed(page, text), "")]
+        page.close()
+    platform.storage = False
+    page = course.opened("ada")
+    found += violations(framed(page, "In a window of its own"), "")
+    assert found == []
+    # The refused launch was answered with 403.
+    [complaint] = course.complaints
+    assert "403" in complaint
+    course.complaints.clear()
+
+
+@checked
+def test_the_pages_of_admins_are_accessible(course: Course, axe: str) -> None:
+    text, until = new_key_text(), NOW + timedelta(days=1)
+    digest = Secret(SECRET).key_digest(text)
+    engine = open_database(course.database)
+    in_transaction(engine, lambda it: add_key(it, "", digest, [Scope.TUTOR], None, NOW, until))
+    engine.dispose()
+    course.context.add_init_script(axe)
+    tool = course.platform.tool
+    page = course.context.new_page()
+    # The service may not have noticed yet that it has a key: then none is needed.
+    page.set_extra_http_headers({"authorization": f"Bearer {text}"})
+    page.goto(f"{tool}/tutor")
+    page.get_by_role("link", name="Learning platforms").click()
+    expect(page.get_by_role("heading", name="Moodle of the university")).to_be_visible()
+    assert violations(page, "") == []
+    page.get_by_role("button", name="Test").click()
+    expect(page.get_by_text("keys of the platform: 1 of 1")).to_be_visible()
+    assert violations(page, "") == []
+    page.set_viewport_size({"width": 320, "height": 700})
+    assert violations(page, "") == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320

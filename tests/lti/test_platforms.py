@@ -1,0 +1,58 @@
+"""The page of the registered platforms, for those who run the service."""
+
+from tests.lti.conftest import hidden
+from tests.lti.scores.conftest import Journey
+from tests.lti.scores.conftest import journey as journey
+
+PAGE = "/tutor/platforms"
+CHECK = f"{PAGE}/moodle/check"
+
+
+def test_the_page_lists_registrations_and_keys(journey: Journey) -> None:
+    tool, tutor = journey.tool, journey.tutor()
+
+    def shown() -> str:
+        page = tool.send("GET", PAGE, headers=tutor)
+        assert page.status_code == 200, page.text
+        return page.text
+
+    assert "<td>never</td>" in shown()
+    assert "Last refusal" not in shown()
+    journey.launch("ada")
+    tool.platform.habits.append(lambda claims: claims.update(aud="somebody else"))
+    assert tool.launch("ada").status_code == 403
+    page = shown()
+    assert "<td>never</td>" not in page
+    assert "Last refusal" in page
+    for value in (tool.platform.address, "client-1", "deployment-1", "/lti/jwks.json", "/token"):
+        assert value in page
+    [key] = tool.send("GET", "/lti/jwks.json").json()["keys"]
+    assert key["kid"] in page
+    home = tool.send("GET", "/tutor", headers=tutor).text
+    assert 'href="tutor/platforms"' in home
+
+
+def test_a_registration_is_tested_by_page(journey: Journey) -> None:
+    tool, tutor = journey.tool, journey.tutor()
+    page = tool.send("POST", CHECK, headers=tutor).text
+    assert "OK: access token: the platform gives one for scores" in page
+    assert "OK: keys of the platform: 1 of 1 can be used" in page
+    assert "Wrong" not in page
+    tool.platform.keys.clear()
+    journey.gradebook.token_trouble = (400, {})
+    page = tool.send("POST", CHECK, headers=tutor).text
+    assert page.count("Wrong:") == 2
+    assert "the status is 400" in page
+    for name in ("another", "A%00"):
+        unknown = tool.send("POST", f"{PAGE}/{name}/check", headers=tutor)
+        assert unknown.status_code in (404, 422)
+
+
+def test_a_tutor_of_one_course_sees_no_registrations(journey: Journey) -> None:
+    tool = journey.tool
+    ticket = hidden(tool.launch("turing").text, "ticket")
+    opened = tool.send("POST", "/lti/session", data={"ticket": ticket})
+    session = {"cookie": opened.headers["set-cookie"].partition(";")[0]}
+    for method, path in (("GET", PAGE), ("POST", CHECK)):
+        assert tool.send(method, path, headers=session).status_code == 403
+    assert "tutor/platforms" not in tool.send("GET", "/tutor", headers=session).text
