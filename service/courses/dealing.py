@@ -1,13 +1,9 @@
 """Which variant of an exercise a learner has in an assignment. Learners never see the seed.
 
-It follows from a secret of the assignment, so that nobody can compute it, and so that the learner
-has the same variant each time. If seeds are deployed, it is one of them: the one with the largest
-keyed hash, so that another deployed seed changes the variant of few learners.
+It follows from a secret of the assignment, so that the learner has the same variant each time.
 """
 
-import hashlib
-import hmac
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Final
 
 from sqlalchemy import Connection, insert, select, update
@@ -17,27 +13,11 @@ from service.catalogue import Exercise
 from service.contract.courses import LearnerVariant
 from service.courses.errors import CourseError
 from service.courses.terms import LearnerTerms, terms_of
+from service.variants.seeds import seed_of
 from service.variants.variant import hidden_variant
 
-# The letters of a free seed: 36^16 seeds cannot be tried.
-_DIGITS: Final = "0123456789abcdefghijklmnopqrstuvwxyz"
-_LENGTH: Final = 16
 # The most deals that are tried until the seed is another one.
 _TRIES: Final = 1000
-
-
-def seed_of(
-    secret: str, learner: str, exercise: str, number: int, deployed: Sequence[str] = ()
-) -> str:
-    """Return the seed of a learner; ``number`` counts the deals from 0."""
-    if deployed:
-        return max(deployed, key=lambda seed: _keyed(secret, learner, exercise, number, seed))
-    whole = int.from_bytes(_keyed(secret, learner, exercise, number, ""), "big")
-    digits = []
-    for _ in range(_LENGTH):
-        whole, digit = divmod(whole, len(_DIGITS))
-        digits.append(_DIGITS[digit])
-    return "".join(digits)
 
 
 def assigned(
@@ -139,10 +119,3 @@ def _number(connection: Connection, terms: LearnerTerms, learner: str, exercise:
             deals.c.exercise == exercise,
         )
     )
-
-
-def _keyed(secret: str, learner: str, exercise: str, number: int, seed: str) -> bytes:
-    # The lengths keep the parts apart, whatever they contain.
-    parts = (exercise, learner, str(number), seed)
-    message = "".join(f"{len(part)}:{part}" for part in parts).encode("utf-8", "surrogatepass")
-    return hmac.new(secret.encode(), message, hashlib.sha256).digest()

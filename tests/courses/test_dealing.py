@@ -21,9 +21,10 @@ from service.attempts.tutoring import forget
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.courses import AssignmentChange, NewAssignment
 from service.courses.assignments import add_assignment, change_assignment
-from service.courses.dealing import deal_again, learner_variants, seed_of
+from service.courses.dealing import deal_again, learner_variants
 from service.courses.errors import CourseError
 from service.courses.terms import terms_of
+from service.variants.seeds import seed_of
 from service.variants.variant import built
 from tests.courses.conftest import Class
 from tests.variants.varied_files import VARY, varied

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 import pytest
 
 from service.catalogue import Exercise
-from service.courses.dealing import seed_of
 from service.figures.figure import exercise_figure
 from service.grading import Submission, grade
 from service.variants.comparison import Form, difficulty_of, form_of
 from service.variants.deployment import checked_variant
+from service.variants.seeds import seed_of
 from service.variants.variant import built
 from tests.variants.shipped import VARIED, shipped
 

@@ -48,7 +48,8 @@ ExercisesOption = Annotated[
     typer.Option("--exercise", help="An exercise and its points: scara=10. Repeatable."),
 ]
 FileOption = Annotated[
-    Path | None, typer.Option(help="An assignment file: its title, exercises and feedback.")
+    Path | None,
+    typer.Option(help="An assignment file: its title, exercises, feedback and variants."),
 ]
 OpensOption = Annotated[str | None, typer.Option(help="From when on attempts are accepted.")]
 DueOption = Annotated[
@@ -284,6 +285,8 @@ def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
     yield "exercises", exercises
     if assignment.feedback is not None:
         yield "feedback", [assignment.feedback]
+    if assignment.variants:
+        yield "variants", True
 
 
 def _points(option: str) -> Mapping[str, Any]:
