@@ -146,9 +146,14 @@ def add(
         fields["variants"] = variants
     fields.setdefault("title", assignment)
     body = checked(NewAssignment, id=assignment, **fields)
-    known = installed().keys()
-    added = changed(lambda it: assignments.add_assignment(it, course, body, known))
-    _print(added)
+    catalogue = installed()
+
+    def added(connection: Connection) -> CourseAssignment:
+        made = assignments.add_assignment(connection, course, body, catalogue.keys())
+        dealing.pin_choices(connection, course, assignment, catalogue)
+        return made
+
+    _print(changed(added))
 
 
 @commands.command("change")
@@ -178,8 +183,15 @@ def change(
     body = checked(AssignmentChange, **(fields | removed))
     # A field that is None on purpose removes what was set.
     body = body.model_copy(update=removed)
-    known = installed().keys()
-    _print(changed(lambda it: assignments.change_assignment(it, course, assignment, body, known)))
+    catalogue = installed()
+
+    def done(connection: Connection) -> CourseAssignment:
+        known = catalogue.keys()
+        made = assignments.change_assignment(connection, course, assignment, body, known)
+        dealing.pin_choices(connection, course, assignment, catalogue)
+        return made
+
+    _print(changed(done))
 
 
 @commands.command("list")
@@ -238,7 +250,20 @@ def variants_of_learner(
     found = changed(lambda it: dealing.learner_variants(it, course, assignment, learner, catalogue))
     for each in found:
         dealt = "" if each.deals == 1 else f", deal {each.deals}"
-        stdout().print(f"{visible(learner)}: {each.variant}{dealt}", soft_wrap=True)
+        if each.values is not None:
+            values = ", ".join(f"{name} = {value}" for name, value in each.values.items())
+            dealt += f", by earlier choices: {values}"
+        stdout().print(f"{visible(learner)}: {each.variant}{visible(dealt)}", soft_wrap=True)
+
+
+@commands.command("renew")
+def renew_variants(course: CourseOption, assignment: AssignmentName) -> None:
+    """Deal the variants by the choices that `[vary]` has now in the exercise files.
+
+    Learners may get other numbers. Their attempts stay as they are.
+    """
+    catalogue = installed()
+    changed(lambda it: dealing.pin_choices(it, course, assignment, catalogue, renew=True))
 
 
 def _fields(
