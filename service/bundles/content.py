@@ -1,11 +1,12 @@
 """The content of every bundle: the program, pinned dependencies, the assignment, its exercises."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from service.bundles.archive import BundledFile
 from service.bundles.own_wheel import locked_requirements, own_wheel
+from service.bundles.variants import BundleVariants, variants_of
 from service.catalogue import Exercise, load_exercise
 from service.submissions.assignment import Assignment
 
@@ -21,13 +22,15 @@ class BundleContent:
     """An assignment with all files that are needed to grade it.
 
     ``exercises`` are the assigned exercises with only the assigned parts. ``image`` is the name of
-    the grader's container image, if the platform uses one.
+    the grader's container image, if the platform uses one. ``variants`` is None if all students get
+    the same exercises.
     """
 
     title: str
     exercises: tuple[Exercise, ...]
     files: tuple[BundledFile, ...]
     image: str = ""
+    variants: BundleVariants | None = None
 
     def program(self) -> Iterator[BundledFile]:
         """Yield the program as a wheel, and its pinned dependencies."""
@@ -36,12 +39,16 @@ class BundleContent:
 
 
 def content_of(
-    assignment: Assignment, file: Path | None, catalogue: dict[str, Path], image: str = ""
+    assignment: Assignment,
+    file: Path | None,
+    catalogue: dict[str, Path],
+    image: str = "",
+    secret: str = "",
 ) -> BundleContent:
     """Return the content for an assignment, from ``file`` if it has one. Raises BundleError.
 
     ``catalogue`` has the exercise files of this installation by id. The assigned ones are bundled,
-    so that the platform grades with the same version.
+    so that the platform grades with the same version. Variants follow from the ``secret``.
     """
     files = [BundledFile("assignment.toml", _assignment_text(assignment, file))]
     exercises = []
@@ -50,9 +57,15 @@ def content_of(
         name = _below(each.path, file) if each.path else f"exercises/{source.name}"
         files.append(BundledFile(name, source.read_bytes()))
         whole = load_exercise(source)
-        parts = tuple(part for part in whole.parts if part.id not in each.left_out)
-        exercises.append(replace(whole, parts=parts))
-    return BundleContent(assignment.title, tuple(exercises), tuple(files), image)
+        exercises.append(with_parts(whole, each.left_out))
+    variants = variants_of(exercises, secret) if assignment.variants else None
+    return BundleContent(assignment.title, tuple(exercises), tuple(files), image, variants)
+
+
+def with_parts(exercise: Exercise, left_out: Container[str]) -> Exercise:
+    """Return the exercise without some parts."""
+    parts = tuple(part for part in exercise.parts if part.id not in left_out)
+    return replace(exercise, parts=parts)
 
 
 def setup_script() -> BundledFile:
@@ -83,6 +96,6 @@ def _below(path: Path, file: Path | None) -> str:
         raise BundleError(
             f"{path} is outside the folder of the assignment; put it beside the assignment file"
         ) from None
-    if name in ("assignment.toml", "requirements.lock"):
+    if name in ("assignment.toml", "requirements.lock", "variants.json"):
         raise BundleError(f"{path} has the name of another file of the bundle; give it another")
     return name

@@ -13,6 +13,7 @@ def files(content: BundleContent) -> list[BundledFile]:
     return [
         *content.program(),
         *content.files,
+        *([] if content.variants is None else [content.variants.file()]),
         setup_script(),
         BundledFile("run_autograder", script, is_executable=True),
     ]

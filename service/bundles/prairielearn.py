@@ -10,9 +10,10 @@ from html import escape
 from typing import Final
 
 from service.bundles.archive import BundledFile
-from service.bundles.content import BundleContent, template
+from service.bundles.content import BundleContent, template, with_parts
 from service.catalogue import Exercise
 from service.typeset.statement import statement_html
+from service.variants.variant import hidden_variant
 
 ENTRY_POINT: Final = "/usr/local/bin/grade-submission"
 # The program starts and grades within two seconds; a container on a busy machine takes longer.
@@ -34,6 +35,7 @@ def files(content: BundleContent) -> list[BundledFile]:
         *(_moved("question/tests", file) for file in content.files),
         BundledFile("question/info.json", _info(content)),
         BundledFile("question/question.html", _page(content)),
+        *_pages_of_variants(content),
     ]
 
 
@@ -49,7 +51,7 @@ def _info(content: BundleContent) -> bytes:
         "title": content.title,
         "topic": "Forward kinematics",
         "type": "v3",
-        "singleVariant": True,
+        "singleVariant": content.variants is None,
         "gradingMethod": "External",
         "externalGradingOptions": {
             "enabled": True,
@@ -62,7 +64,7 @@ def _info(content: BundleContent) -> bytes:
 
 
 def _page(content: BundleContent) -> bytes:
-    exercises = "".join(line for each in content.exercises for line in _exercise(each))
+    exercises = "".join(_places(content))
     return (
         f"<pl-question-panel>\n{exercises}"
         f'  <pl-file-upload optional-file-patterns="{_PATTERNS}"></pl-file-upload>\n'
@@ -72,6 +74,31 @@ def _page(content: BundleContent) -> bytes:
         "  <pl-file-preview></pl-file-preview>\n"
         "</pl-submission-panel>\n"
     ).encode()
+
+
+def _places(content: BundleContent) -> Iterator[str]:
+    """Yield the HTML of each exercise, or the place where ``server.py`` puts that of a variant."""
+    variants = {} if content.variants is None else content.variants.deployed
+    places = {name: f"  {{{{{{params.page_{i}}}}}}}\n" for i, name in enumerate(variants, 1)}
+    for exercise in content.exercises:
+        yield places.get(exercise.id) or "".join(_exercise(exercise))
+
+
+def _pages_of_variants(content: BundleContent) -> Iterator[BundledFile]:
+    """Yield the statements of all variants, and the script that chooses one of each exercise."""
+    if content.variants is None:
+        return
+    pages: dict[str, dict[str, str]] = {}
+    for exercise in content.exercises:
+        if exercise.id in content.variants.deployed:
+            kept = {part.id for part in exercise.parts}
+            pages[exercise.id] = {}
+            for seed in content.variants.some(exercise.id):
+                variant = hidden_variant(exercise, seed)
+                shown = with_parts(variant, {part.id for part in variant.parts} - kept)
+                pages[exercise.id][seed] = "".join(_exercise(shown))
+    yield BundledFile("question/variants.json", (json.dumps(pages, indent=1) + "\n").encode())
+    yield BundledFile("question/server.py", template("prairielearn", "server.py"))
 
 
 def _exercise(exercise: Exercise) -> Iterator[str]:

@@ -260,6 +260,11 @@ class LearnerVariant(BaseModel):
     variant: str = Field(description="The id of the variant: `<exercise>~<seed>`.")
     seed: str
     deals: int = Field(description="The number of this deal; 1 is the learner's first variant.")
+    values: dict[str, str] | None = Field(
+        None,
+        description="The values of `[vary]`, if the exercise file has other choices than when the "
+        "assignment got its variants: the learner still has these, and `variant` shows others.",
+    )
 
 
 class LearnerVariants(BaseModel):

@@ -52,16 +52,16 @@ def change_assignment(
     late. Raises CourseError.
     """
     zone = _zone(connection, course)
-    row = _row(connection, course, assignment)
+    row = assignment_row(connection, course, assignment)
     values = dict(_values(change, zone, known))
     if row.variants is not None and change.variants:
         # Another secret would change the variants of all learners.
-        del values["variants"]
+        del values["variants"], values["choices"]
     if values:
         mine = assignments.c.number == row.number
         connection.execute(update(assignments).where(mine).values(values))
     changed = _checked(connection, course, assignment)
-    _excuse(connection, _row(connection, course, assignment), zone)
+    _excuse(connection, assignment_row(connection, course, assignment), zone)
     if change.exercises is not None:
         handed_in = attempts.c.assignment == row.number
         queue_scores(connection, handed_in, Priority.REGRADE)
@@ -77,7 +77,7 @@ def extend(
     CourseError.
     """
     zone = _zone(connection, course)
-    row = _row(connection, course, assignment)
+    row = assignment_row(connection, course, assignment)
     enrolled = (course_learners.c.course == course) & (
         course_learners.c.learner == extension.learner
     )
@@ -146,7 +146,8 @@ def _zone(connection: Connection, course: str) -> ZoneInfo:
     return ZoneInfo(roll.course(connection, course).zone)
 
 
-def _row(connection: Connection, course: str, assignment: str) -> Row[Any]:
+def assignment_row(connection: Connection, course: str, assignment: str) -> Row[Any]:
+    """Return the row of an assignment. Raises CourseError."""
     mine = (assignments.c.course == course) & (assignments.c.id == assignment)
     found = connection.execute(select(assignments).where(mine)).one_or_none()
     if found is None:
@@ -172,6 +173,7 @@ def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) ->
                 values[name] = None if value is None else json.dumps(value)
             case "variants" if value is not None:
                 values[name] = secrets.token_hex(32) if value else None
+                values["choices"] = None
             case "exercises" if value is not None:
                 _check_exercises([each["exercise"] for each in value], known)
                 values[name] = json.dumps(value)

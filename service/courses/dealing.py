@@ -1,43 +1,27 @@
 """Which variant of an exercise a learner has in an assignment. Learners never see the seed.
 
 The service computes the seed from a secret of the assignment: a learner has the same variant each
-time, and cannot find out which. If seeds are deployed, the learner gets the one with the largest
-keyed hash. So one more deployed seed changes the variant of few learners.
+time, and cannot find out which.
 """
 
-import hashlib
-import hmac
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Mapping
 from typing import Final
 
 from sqlalchemy import Connection, insert, select, update
 
-from service.attempts.storage.tables import deals
+from service.attempts.storage.tables import assignments, deals
 from service.catalogue import Exercise
 from service.contract.courses import LearnerVariant
+from service.courses.assignments import assignment_row
 from service.courses.errors import CourseError
 from service.courses.terms import LearnerTerms, terms_of
+from service.variants.pinned import choices_of, pinned
+from service.variants.seeds import seed_of
 from service.variants.variant import hidden_variant
 
-# The letters of a free seed: 36^16 seeds cannot be tried.
-_DIGITS: Final = "0123456789abcdefghijklmnopqrstuvwxyz"
-_LENGTH: Final = 16
 # The most deals that are tried until the seed is another one.
 _TRIES: Final = 1000
-
-
-def seed_of(
-    secret: str, learner: str, exercise: str, number: int, deployed: Sequence[str] = ()
-) -> str:
-    """Return the seed of a learner; ``number`` counts the deals from 0."""
-    if deployed:
-        return max(deployed, key=lambda seed: _keyed(secret, learner, exercise, number, seed))
-    whole = int.from_bytes(_keyed(secret, learner, exercise, number, ""), "big")
-    digits = []
-    for _ in range(_LENGTH):
-        whole, digit = divmod(whole, len(_DIGITS))
-        digits.append(_DIGITS[digit])
-    return "".join(digits)
 
 
 def assigned(
@@ -47,33 +31,73 @@ def assigned(
 
     Raises CourseError.
     """
-    terms, seed = assigned_seed(connection, course, assignment, learner, exercise)
-    return terms, exercise if seed is None else hidden_variant(exercise, seed)
+    terms, own, seed = assigned_seed(connection, course, assignment, learner, exercise)
+    return terms, own if seed is None else hidden_variant(own, seed)
 
 
 def assigned_seed(
     connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
-) -> tuple[LearnerTerms, str | None]:
-    """Return the terms of an assignment, and the seed of the learner's variant, if there is one.
+) -> tuple[LearnerTerms, Exercise, str | None]:
+    """Return the terms of an assignment, and the exercise with the seed of the learner's variant.
 
+    The exercise has the choices of the assignment. The seed is None if there are no variants.
     Raises CourseError.
     """
     terms = terms_of(connection, course, assignment, learner)
     if exercise.id not in terms.exercises:
         message = f"The exercise {exercise.id} is not part of the assignment {assignment}."
         raise CourseError("not-assigned", message)
-    return terms, dealt_seed(connection, terms, learner, exercise)
+    own = pinned(exercise, terms.choices)
+    return terms, own, _dealt_seed(connection, terms, learner, own)
 
 
 def own_variant(
     connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
 ) -> Exercise:
     """Return the learner's variant of an exercise under its plain id, or the exercise itself."""
-    seed = dealt_seed(connection, terms, learner, exercise)
-    return exercise if seed is None else hidden_variant(exercise, seed)
+    own = pinned(exercise, terms.choices)
+    seed = _dealt_seed(connection, terms, learner, own)
+    return exercise if seed is None else hidden_variant(own, seed)
 
 
-def dealt_seed(
+def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
+    """True if an assignment has variants of the exercise, but does not keep its choices yet.
+
+    An earlier version made it, or the exercise has become one with variants.
+    """
+    if terms.variants is None or exercise.vary is None:
+        return False
+    return terms.choices is None or exercise.id not in json.loads(terms.choices)
+
+
+def pin_choices(
+    connection: Connection,
+    course: str,
+    assignment: str,
+    catalogue: Mapping[str, Exercise],
+    *,
+    renew: bool = False,
+) -> None:
+    """Keep what the exercises of an assignment may vary, so that a new file changes no variant.
+
+    Choices that are kept already stay, unless ``renew``. Raises CourseError.
+    """
+    row = assignment_row(connection, course, assignment)
+    if row.variants is None:
+        return
+    exercises = {
+        each["exercise"]: catalogue[each["exercise"]]
+        for each in json.loads(row.exercises)
+        if each["exercise"] in catalogue
+    }
+    kept = {} if renew or row.choices is None else json.loads(row.choices)
+    written = json.dumps({**choices_of(exercises), **kept})
+    if written != row.choices:
+        mine = assignments.c.number == row.number
+        connection.execute(update(assignments).where(mine).values(choices=written))
+
+
+def _dealt_seed(
     connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
 ) -> str | None:
     """Return the seed of the learner's variant; None if there are no variants."""
@@ -94,26 +118,42 @@ def learner_variants(
     terms = terms_of(connection, course, assignment, learner)
     found = []
     for name in terms.exercises:
-        exercise = catalogue.get(name)
-        seed = exercise and dealt_seed(connection, terms, learner, exercise)
-        if seed:
+        if name not in catalogue:
+            continue
+        exercise = catalogue[name]
+        own = pinned(exercise, terms.choices)
+        seed = _dealt_seed(connection, terms, learner, own)
+        if seed is not None:
             deal = _number(connection, terms, learner, name) or 0
-            variant = f"{name}~{seed}"
-            found.append(LearnerVariant(exercise=name, variant=variant, seed=seed, deals=deal + 1))
+            found.append(_told(exercise, own, seed, deal))
     return found
+
+
+def _told(exercise: Exercise, own: Exercise, seed: str, deal: int) -> LearnerVariant:
+    """Return a variant for tutors; ``own`` has the choices of the assignment."""
+    assert exercise.vary is not None
+    assert own.vary is not None
+    values = own.vary.written(seed)
+    return LearnerVariant(
+        exercise=exercise.id,
+        variant=f"{exercise.id}~{seed}",
+        seed=seed,
+        deals=deal + 1,
+        values=None if exercise.vary.written(seed) == values else dict(values),
+    )
 
 
 def deal_again(
     connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
 ) -> LearnerVariant:
     """Give a learner another variant of an exercise. Raises CourseError."""
-    terms, _ = assigned(connection, course, assignment, learner, exercise)
-    if terms.variants is None or exercise.vary is None:
+    terms, own, _ = assigned_seed(connection, course, assignment, learner, exercise)
+    if terms.variants is None or own.vary is None:
         reason = f"The assignment {assignment} has no variants of {exercise.id}."
         raise CourseError("unusable", reason)
     dealt = _number(connection, terms, learner, exercise.id)
     before = seed_of(
-        terms.variants, learner, exercise.id, dealt or 0, deployed := exercise.vary.deployed
+        terms.variants, learner, exercise.id, dealt or 0, deployed := own.vary.deployed
     )
     for number in range((dealt or 0) + 1, (dealt or 0) + _TRIES):
         seed = seed_of(terms.variants, learner, exercise.id, number, deployed)
@@ -125,10 +165,9 @@ def deal_again(
     if dealt is None:
         connection.execute(insert(deals).values(mine | {"number": number}))
     else:
-        own = [deals.c[name] == value for name, value in mine.items()]
-        connection.execute(update(deals).where(*own).values(number=number))
-    variant = f"{exercise.id}~{seed}"
-    return LearnerVariant(exercise=exercise.id, variant=variant, seed=seed, deals=number + 1)
+        its = [deals.c[name] == value for name, value in mine.items()]
+        connection.execute(update(deals).where(*its).values(number=number))
+    return _told(exercise, own, seed, number)
 
 
 def _number(connection: Connection, terms: LearnerTerms, learner: str, exercise: str) -> int | None:
@@ -139,10 +178,3 @@ def _number(connection: Connection, terms: LearnerTerms, learner: str, exercise:
             deals.c.exercise == exercise,
         )
     )
-
-
-def _keyed(secret: str, learner: str, exercise: str, number: int, seed: str) -> bytes:
-    # The lengths keep the parts apart, whatever they contain.
-    parts = (exercise, learner, str(number), seed)
-    message = "".join(f"{len(part)}:{part}" for part in parts).encode("utf-8", "surrogatepass")
-    return hmac.new(secret.encode(), message, hashlib.sha256).digest()

@@ -44,7 +44,8 @@ class LearnerTerms:
     """The terms of an assignment for one learner, with an extension if there is one.
 
     ``number`` is that of the row of the assignment; ``exercises`` are the points of each exercise.
-    ``variants`` is the secret of the learners' variants, or None if there are none.
+    ``variants`` is the secret of the learners' variants, or None if there are none; ``choices`` are
+    what their exercises may vary, as JSON, or None if the files say so.
     """
 
     number: int
@@ -58,6 +59,7 @@ class LearnerTerms:
     solution: ShowSolution
     is_extended: bool
     variants: str | None = field(default=None, repr=False)
+    choices: str | None = field(default=None, repr=False)
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
         """The highest level of the learner's attempt; never more than the exercise allows."""
@@ -142,6 +144,7 @@ def _terms(row: Row[Any]) -> LearnerTerms:
         solution=row.solution,
         is_extended=row.extended is not None,
         variants=row.variants,
+        choices=row.choices,
     )
 
 

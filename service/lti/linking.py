@@ -5,7 +5,7 @@ Everything is done on one connection, in the transaction that uses up the login.
 
 import hmac
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from hashlib import sha256
@@ -25,6 +25,7 @@ from service.catalogue import Exercise
 from service.contract.courses import CourseAssignment, NewAssignment, NewCourse
 from service.courses import roll
 from service.courses.assignments import add_assignment, assignment_of
+from service.courses.dealing import pin_choices
 from service.courses.errors import CourseError
 from service.lti.messages import LaunchMessage
 from service.lti.problems import LtiError
@@ -157,7 +158,7 @@ def context_of(connection: Connection, message: LaunchMessage, now: datetime) ->
 
 
 def assign(
-    connection: Connection, link: int, new: NewAssignment, known: Collection[str]
+    connection: Connection, link: int, new: NewAssignment, catalogue: Mapping[str, Exercise]
 ) -> CourseAssignment:
     """Make an assignment for a resource link, or return the one that it has. Raises CourseError."""
     row = connection.execute(
@@ -170,7 +171,8 @@ def assign(
     found = linked_assignment(connection, row.course, row.assignment)
     if found is not None:
         return found
-    made = add_assignment(connection, row.course, new, known)
+    made = add_assignment(connection, row.course, new, catalogue.keys())
+    pin_choices(connection, row.course, made.id, catalogue)
     _set_assignment(connection, link, row.course, made.id)
     ensure_line_item(connection, link)
     return made
@@ -300,6 +302,7 @@ def _assign_by_parameters(
         try:
             with connection.begin_nested():
                 add_assignment(connection, course, new, catalogue.keys())
+                pin_choices(connection, course, wanted, catalogue)
         except CourseError:
             return
     elif "assignment" not in message.custom:
@@ -313,7 +316,8 @@ def parameters_assignment(
     """Return the assignment that custom parameters ask for, or None.
 
     ``exercise`` names one or more exercises, with or without points: ``planar-rr=10,scara``.
-    ``opens`` and ``due`` are dates, in the time zone of the course if they name none.
+    ``opens`` and ``due`` are dates, in the time zone of the course if they name none. With
+    ``variants=true``, each learner gets variants of their own.
     """
     named = [each.strip() for each in message.custom.get("exercise", "").split(",")]
     exercises = []
@@ -323,7 +327,8 @@ def parameters_assignment(
         exercises.append({"exercise": name, "points": points or _points(catalogue[name])})
     try:
         dates = {name: message.custom[name] for name in DATES if message.custom.get(name)}
-        fields = {"id": wanted, "title": title, "exercises": exercises, **dates}
+        varied = message.custom.get("variants", "").lower() == "true"
+        fields = {"id": wanted, "title": title, "exercises": exercises, "variants": varied, **dates}
         return NewAssignment.model_validate(fields)
     except ValidationError:
         return None

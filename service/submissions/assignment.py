@@ -7,12 +7,13 @@ from typing import Annotated, Any, Final
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
-from service.catalogue import FeedbackLevel, load_exercise
+from service.catalogue import Exercise, FeedbackLevel, load_exercise
 from service.catalogue.files.fields import Identifier, NotBool, StrictModel, Text
 from service.catalogue.files.toml_file import load_toml
 from service.catalogue.robots.formulas import FieldError
 from service.submissions.lookup import UnknownExerciseError, nearest
 from service.submissions.outline import ExerciseOutline, SetExercise
+from service.variants.variant import hidden_variant
 
 PASS_MARK: Final = 0.8
 MAX_EXERCISES: Final = 100
@@ -71,6 +72,8 @@ class AssignmentSpec(StrictModel):
     feedback: FeedbackLevel | None = None
     """The highest feedback level for students: "full", "hints", "verdicts" or "score". Default:
     that of each exercise."""
+    variants: Annotated[bool, Field(strict=True)] = False
+    """True if each learner gets a variant of their own of each exercise with ``[vary]``."""
     exercises: Annotated[list[AssignedExerciseSpec], Field(min_length=1, max_length=MAX_EXERCISES)]
     """The exercises, one ``[[exercises]]`` for each."""
 
@@ -107,13 +110,15 @@ class AssignedExercise:
 class Assignment:
     """Assigned exercises in order; it may be a single one.
 
-    ``feedback`` is the highest feedback level for students; None means that of each exercise.
+    ``feedback`` is the highest feedback level for students; None means that of each exercise. With
+    ``variants``, each learner gets variants of their own.
     """
 
     exercises: tuple[AssignedExercise, ...]
     title: str = ""
     pass_mark: float = PASS_MARK
     feedback: FeedbackLevel | None = None
+    variants: bool = False
 
     def ceiling(self, assigned: AssignedExercise) -> FeedbackLevel:
         """The highest feedback level for students in this exercise."""
@@ -195,9 +200,28 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
         if faults:
             raise ExceptionGroup("exercises that cannot be set", faults)
         _check_distinct(exercises)
-        return Assignment(tuple(exercises), spec.title, spec.pass_mark, spec.feedback)
+        return Assignment(
+            tuple(exercises), spec.title, spec.pass_mark, spec.feedback, spec.variants
+        )
 
     return load_toml(file, build, _table_at)
+
+
+def with_seeds(assignment: Assignment, seeds: Mapping[str, str]) -> Assignment:
+    """Return the assignment with the variants of these seeds, by the id of the exercise.
+
+    The variants have the ids of the plain exercises. Raises NoVariantError.
+    """
+    exercises = []
+    for each in assignment.exercises:
+        exercise = each.exercise
+        if exercise.id in seeds and isinstance(exercise, Exercise):
+            variant = hidden_variant(exercise, seeds[exercise.id])
+            kept = frozenset(part.id for part in exercise.parts)
+            exercises.append(replace(each, exercise=_restricted(variant, kept)))
+        else:
+            exercises.append(each)
+    return replace(assignment, exercises=tuple(exercises))
 
 
 def _assigned(

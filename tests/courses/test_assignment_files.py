@@ -46,3 +46,20 @@ def test_an_assignment_file_is_taken_whole_or_refused(
         assert "feedback verdicts" in told.output
     listed = CliRunner().invoke(program, ["courses", "assignments", "list", "robots"]).output
     assert ("homework-5" in listed) is (said == "")
+
+
+def test_an_assignment_file_may_set_variants(
+    class_: Class, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    file = tmp_path / "homework.toml"
+    varied = '[[exercises]]\nid = "planar-rr-numbers"\n'
+    file.write_text(f'title = "Numbers"\nvariants = true\n{varied}', encoding="utf-8")
+    add = ["courses", "assignments", "add", "robots"]
+    done = CliRunner().invoke(program, [*add, "one", "--file", str(file)])
+    assert "each learner has variants of their own" in done.output
+    done = CliRunner().invoke(program, [*add, "two", "--file", str(file), "--no-variants"])
+    assert "Numbers" in done.output
+    assert "variants" not in done.output
+    checked = CliRunner().invoke(program, ["assignments", "check", str(file)])
+    assert "each learner has variants of their own" in checked.output

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 
 from service.api.application import application
 from service.attempts.attempt import AttemptFilter, GradesFormat
@@ -16,14 +16,16 @@ from service.attempts.learner_data import everything_of
 from service.attempts.regrades.outdated import Regrading
 from service.attempts.results.grades import graded_attempts, written
 from service.attempts.results.statistics import exercise_statistics
-from service.attempts.storage.tables import attempts, deals
+from service.attempts.storage.tables import assignments, attempts, deals
 from service.attempts.tutoring import forget
 from service.catalogue import Exercise, FeedbackLevel
-from service.contract.courses import AssignmentChange, NewAssignment
+from service.contract.courses import AssignmentChange, NewAssignment, NewLearner
+from service.courses import roll
 from service.courses.assignments import add_assignment, change_assignment
-from service.courses.dealing import deal_again, learner_variants, seed_of
+from service.courses.dealing import assigned, deal_again, learner_variants, pin_choices
 from service.courses.errors import CourseError
 from service.courses.terms import terms_of
+from service.variants.seeds import seed_of
 from service.variants.variant import built
 from tests.courses.conftest import Class
 from tests.variants.varied_files import VARY, varied
@@ -220,6 +222,40 @@ def test_a_change_of_an_assignment_keeps_the_variants(
     assert variants_of(class_, "ada", catalogue) == before
 
 
+LONGER = VARY.replace("[0.3, 0.4, 0.5]", "[0.3, 0.4, 0.5, 0.55, 0.6]")
+
+
+def test_a_corrected_file_changes_no_variant_until_a_tutor_renews_them(class_: Class) -> None:
+    old, new = {"arm": varied()}, {"arm": varied(LONGER)}
+    learners = [f"learner {i}" for i in range(12)]
+
+    def statement(learner: str, exercise: Exercise) -> str:
+        _, own = class_.do(lambda it: assigned(it, "robots", "homework", learner, exercise))
+        return str(own.statement)
+
+    def seen(catalogue: Mapping[str, Exercise]) -> list[str]:
+        return [statement(learner, catalogue["arm"]) for learner in learners]
+
+    people = [NewLearner(learner=each, name=each) for each in learners]
+    class_.do(lambda it: roll.add_learners(it, "robots", people))
+    assign(class_)
+    before, without = seen(old), seen(new)
+    assert before != without, "the new choices give other numbers"
+    class_.do(lambda it: pin_choices(it, "robots", "homework", old))
+    assert seen(new) == before
+    # A later change of the assignment keeps them.
+    class_.do(lambda it: pin_choices(it, "robots", "homework", new))
+    assert seen(new) == before
+    [told] = variants_of(class_, learners[0], new)
+    [plain] = variants_of(class_, learners[0], old)
+    numbers = re.findall(r"(\d\.\d+) m", before[0])
+    assert told.values is not None
+    assert [told.values["a1"], told.values["a2"]] == numbers[:2]
+    assert plain.values is None
+    class_.do(lambda it: pin_choices(it, "robots", "homework", new, renew=True))
+    assert seen(new) == without
+
+
 def test_a_tutor_deals_another_variant(class_: Class, catalogue: Mapping[str, Exercise]) -> None:
     assign(class_)
     arm = varied(VARY + f"deployed = {DEPLOYED[:2]}")
@@ -275,14 +311,23 @@ def test_a_regrade_grades_each_attempt_by_its_variant(
     regrading = Regrading(catalogue["arm"], FeedbackLevel.FULL)
     with class_.store.engine.connect() as connection:
         assert regrading.outdated(connection) == []
-    # With one more name, the learners have other variants now: their attempts stay as they are.
-    changed = Regrading(varied(VARY + "extra = [1, 2]"), FeedbackLevel.FULL)
+    # The file has other choices now, but the assignment keeps the earlier ones.
+    other = varied(
+        VARY.replace("a1 = [0.3, 0.4, 0.5]", "a1 = [0.8, 0.9]").replace("<= 0.8", "<= 2")
+    )
+    changed = Regrading(other, FeedbackLevel.FULL)
     with class_.store.engine.connect() as connection:
         numbers = changed.outdated(connection)
         assert len(numbers) == 2
+        assert [each.after for each in changed.preview(connection, numbers)] == [8, 8]
+    # If the variants are renewed, the attempts at the earlier ones stay as they are.
+    kept = class_.do(lambda it: it.scalar(select(assignments.c.choices)))
+    class_.do(lambda it: pin_choices(it, "robots", "homework", {"arm": other}, renew=True))
+    with class_.store.engine.connect() as connection:
         assert changed.preview(connection, numbers) == []
     class_.do(changed.enqueue)
     assert changed.next_batch(class_.store.engine) == []
+    class_.do(lambda it: it.execute(update(assignments).values(choices=kept)))
     # The last twist is corrected; the values of the variants are the same.
     corrected = varied(more="10deg + ")
     assert corrected.vary is not None

@@ -1,5 +1,6 @@
 """Deep linking, from the platform's question over the picker to the launches of the new links."""
 
+import json
 import re
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -9,7 +10,9 @@ from typing import Any
 import httpx
 import jwt
 import pytest
+from sqlalchemy import select
 
+from service.attempts.storage.tables import assignments
 from service.lti.registrations import Registration
 from tests.lti.conftest import Tool, hidden, token_of
 from tests.lti.platform import CLIENT, DEPLOYMENT, DL, LTI, Platform, deep_linking
@@ -117,6 +120,25 @@ def test_several_exercises_become_one_assignment_and_can_be_linked_again(tool: T
     assert again["custom"] == {"assignment": made["id"]}
     assert list(launched(tool, again, "link-2")) == ["Arms"]
     assert len(launched(tool, again, "link-3")) == 1
+
+
+def test_a_link_gives_each_learner_a_variant(tool: Tool) -> None:
+    page = picker(tool).text
+    chosen = {
+        "exercise": ["planar-rr-numbers"],
+        "points:planar-rr-numbers": "8",
+        "variants": "yes",
+        "as": "several",
+    }
+    # A complaint keeps what was checked.
+    refused = submitted(tool, page, action="add", **chosen, due="tomorrow").text
+    assert 'name="variants" value="yes" checked' in refused
+    [item] = answer(tool, submitted(tool, page, action="add", **chosen))[f"{DL}content_items"]
+    assert item["custom"] == {"exercise": "planar-rr-numbers=8", "variants": "true"}
+    launched(tool, item, "link-1")
+    [row] = tool.do(lambda it: it.execute(select(assignments)).all())
+    assert row.variants is not None
+    assert list(json.loads(row.choices)) == ["planar-rr-numbers"]
 
 
 def test_what_the_platform_does_not_take_is_not_sent(tool: Tool) -> None:

@@ -29,6 +29,8 @@ from service.contract.courses import (
 )
 
 if TYPE_CHECKING:  # it loads the drivers of databases
+    from sqlalchemy import Connection
+
     from service.attempts.store import AttemptStore
 
 
@@ -62,11 +64,16 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
     async def create_assignment(request: Request, course_id: CourseId) -> Response:
         """Add an assignment; for tutors of the course."""
         from service.courses.assignments import add_assignment
+        from service.courses.dealing import pin_choices
 
         body = await read_body(NewAssignment, request)
-        created = private(
-            await write(store, lambda it: add_assignment(it, course_id, body, catalogue.keys()))
-        )
+
+        def add(connection: "Connection") -> CourseAssignment:
+            added = add_assignment(connection, course_id, body, catalogue.keys())
+            pin_choices(connection, course_id, body.id, catalogue)
+            return added
+
+        created = private(await write(store, add))
         created.status_code = HTTPStatus.CREATED
         return created
 
@@ -99,15 +106,19 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         earlier due date makes no recorded attempt late.
         """
         from service.courses import assignments
+        from service.courses.dealing import pin_choices
 
         body = await read_body(AssignmentChange, request)
-        changed = await write(
-            store,
-            lambda it: assignments.change_assignment(
-                it, course_id, assignment_id, body, catalogue.keys()
-            ),
-        )
-        return private(changed)
+
+        def change(connection: "Connection") -> CourseAssignment:
+            known = catalogue.keys()
+            changed = assignments.change_assignment(
+                connection, course_id, assignment_id, body, known
+            )
+            pin_choices(connection, course_id, assignment_id, catalogue)
+            return changed
+
+        return private(await write(store, change))
 
     @router.post(
         "/assignments/{assignment_id}/extensions",

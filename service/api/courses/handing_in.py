@@ -108,8 +108,8 @@ def routes(
         found = await write(store, begun)
         if isinstance(found, CourseError):
             raise course_problem(found)
-        terms, seed, before = found
-        exercise = named if seed is None else hidden_variant(named, seed)
+        terms, own, seed, before = found
+        exercise = own if seed is None else hidden_variant(own, seed)
         # Its fields have been validated.
         attempt = AttemptRequest.model_construct(
             (body.model_fields_set - {"exercise"}) | {"learner"},
@@ -170,23 +170,25 @@ def _begun(
     owner: str,
     idempotency_key: str,
     connection: "Connection",
-) -> "tuple[LearnerTerms, str | None, Standing] | CourseError":
-    """Return the terms of a hand-in, the seed of the learner's variant, and what counts so far.
+) -> "tuple[LearnerTerms, Exercise, str | None, Standing] | CourseError":
+    """Return the terms of a hand-in, the exercise, the learner's seed, and what counts so far.
 
     ``place`` is a course, an assignment and an exercise. An error is returned: if it were raised,
     other jobs of the transaction would run again.
     """
     from service.attempts.recording import standing
-    from service.courses.dealing import assigned_seed
+    from service.courses.dealing import assigned_seed, needs_choices, pin_choices
 
     course, assignment, exercise = place
     try:
-        terms, seed = assigned_seed(connection, course, assignment, learner, exercise)
+        terms, own, seed = assigned_seed(connection, course, assignment, learner, exercise)
+        if needs_choices(terms, exercise):
+            pin_choices(connection, course, assignment, {exercise.id: exercise})
     except CourseError as error:
         return error
     number = terms.number
     counted = standing(connection, exercise.id, learner, owner, idempotency_key, number)
-    return terms, seed, counted
+    return terms, own, seed, counted
 
 
 def _learner(caller: Caller, named: str | None) -> str:

@@ -38,9 +38,10 @@ from service.attempts.regrades.memoized_reports import MemoizedReports, PartResu
 from service.attempts.results.listing import BY_TIME, TimePlace, condition, later_than
 from service.attempts.storage.database import in_transaction, without_time_limit
 from service.attempts.storage.score_queue import Priority, queue_scores
-from service.attempts.storage.tables import attempts, earlier_reports, regrade_queue
+from service.attempts.storage.tables import assignments, attempts, earlier_reports, regrade_queue
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.submissions.body import GradeRequest
+from service.variants.pinned import pinned
 from service.variants.variant import NoVariantError, hidden_variant, values_of, variant_of
 from service.version import VERSION
 
@@ -208,13 +209,14 @@ class Regrading:
             return self._exercise
         make = variant_of if row.assignment is None else hidden_variant
         try:
-            variant = make(self._exercise, row.variant)
+            variant = make(pinned(self._exercise, row.choices), row.variant)
         except NoVariantError:
             return None
         return variant if values_of(variant.version) == values_of(row.version) else None
 
     def _rows(self, connection: Connection, numbers: Sequence[int]) -> Sequence[Row[Any]]:
-        chosen = select(attempts).where(attempts.c.number.in_(numbers))
+        chosen = select(attempts, assignments.c.choices).join(assignments, isouter=True)
+        chosen = chosen.where(attempts.c.number.in_(numbers))
         return connection.execute(chosen.order_by(attempts.c.number)).all()
 
     def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, WrittenReport]:

@@ -88,7 +88,8 @@ course_learners = Table(
 
 # ``exercises`` is a JSON list of exercises with their points; ``feedback`` a list of levels, one
 # for each attempt, or NULL for that of each exercise. ``variants`` is the secret from which the
-# seeds of the learners follow, or NULL if all learners get the same exercise.
+# seeds of the learners follow, or NULL if all learners get the same exercise. ``choices`` has the
+# table ``[vary]`` of each exercise, as JSON, as it was when the assignment got its variants.
 assignments = Table(
     "assignments",
     metadata,
@@ -106,6 +107,7 @@ assignments = Table(
     Column("practice", String(10), nullable=False),
     Column("solution", String(10), nullable=False),
     Column("variants", String(64)),
+    Column("choices", Text),
     UniqueConstraint("course", "id"),
 )
 

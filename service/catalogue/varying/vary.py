@@ -44,8 +44,9 @@ _NOT_GRADING: Final = frozenset({
 class Vary:
     """The varied content of an exercise file.
 
-    ``deployed`` are the seeds that assignments use; if there are none, they use any seed.
-    ``base_version`` changes with every field that affects grading, in any variant.
+    ``table`` is ``[vary]`` as it is written. ``deployed`` are the seeds that assignments use; if
+    there are none, they use any seed. ``base_version`` changes with every field that affects
+    grading, in any variant.
     """
 
     def __init__(self, exercise_id: str, content: Mapping[str, Any]) -> None:
@@ -53,6 +54,7 @@ class Vary:
         written = content["vary"]
         if not isinstance(written, dict):
             raise FieldError("vary", "must be a table; write [vary]")
+        self.table: Mapping[str, Any] = written
         self._id = exercise_id
         self._content = {key: value for key, value in content.items() if key != "vary"}
         self._choices = choices_of(written)
@@ -75,6 +77,23 @@ class Vary:
         kept = {key: value for key, value in written.items() if key != DEPLOYED}
         self.base_version = _digest({**graded, "vary": kept}, 6)
 
+    def with_choices(self, table: Mapping[str, Any]) -> "Vary":
+        """Return this content with an earlier table of choices, and the version of this file.
+
+        If the texts need names that the table lacks, these have the choices of the file. Raises
+        FieldError if the texts do not fit even so.
+        """
+        try:
+            earlier = Vary(self._id, {**self._content, "vary": table})
+            earlier.content(earlier.values(""))
+        except FieldError:
+            rules = (CONDITIONS, DEPLOYED)
+            present = {name: each for name, each in self.table.items() if name not in rules}
+            earlier = Vary(self._id, {**self._content, "vary": {**present, **table}})
+            earlier.content(earlier.values(""))
+        earlier.base_version = self.base_version
+        return earlier
+
     @property
     def count(self) -> int:
         """The number of combinations of choices, whether they meet the conditions or not."""
@@ -90,6 +109,16 @@ class Vary:
         """
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}
+
+    def written(self, seed: str) -> Mapping[str, str]:
+        """Return the values of a seed as text; that of a group's field is under ``name.field``."""
+        written: dict[str, str] = {}
+        for name, value in self.values(seed).items():
+            if isinstance(value, Mapping):
+                written |= {f"{name}.{key}": _text(each) for key, each in value.items()}
+            else:
+                written[name] = _text(value)
+        return written
 
     def version(self, values: Mapping[str, VaryValue]) -> str:
         """Return the version of the variant with these values: that of the file, and theirs."""

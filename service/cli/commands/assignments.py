@@ -56,6 +56,8 @@ def _lines(assignment: Assignment) -> Iterator[Text]:
     yield Text.assemble(
         (visible(assignment.title), "bold"), f": {many}, {total} points, pass mark {mark}"
     )
+    if assignment.variants:
+        yield Text("  each learner has variants of their own")
     for each in exercises:
         parts = ", ".join(part.id for part in each.exercise.parts)
         level = assignment.ceiling(each)

@@ -48,7 +48,8 @@ ExercisesOption = Annotated[
     typer.Option("--exercise", help="An exercise and its points: scara=10. Repeatable."),
 ]
 FileOption = Annotated[
-    Path | None, typer.Option(help="An assignment file: its title, exercises and feedback.")
+    Path | None,
+    typer.Option(help="An assignment file: its title, exercises, feedback and variants."),
 ]
 OpensOption = Annotated[str | None, typer.Option(help="From when on attempts are accepted.")]
 DueOption = Annotated[
@@ -145,9 +146,14 @@ def add(
         fields["variants"] = variants
     fields.setdefault("title", assignment)
     body = checked(NewAssignment, id=assignment, **fields)
-    known = installed().keys()
-    added = changed(lambda it: assignments.add_assignment(it, course, body, known))
-    _print(added)
+    catalogue = installed()
+
+    def added(connection: Connection) -> CourseAssignment:
+        made = assignments.add_assignment(connection, course, body, catalogue.keys())
+        dealing.pin_choices(connection, course, assignment, catalogue)
+        return made
+
+    _print(changed(added))
 
 
 @commands.command("change")
@@ -177,8 +183,15 @@ def change(
     body = checked(AssignmentChange, **(fields | removed))
     # A field that is None on purpose removes what was set.
     body = body.model_copy(update=removed)
-    known = installed().keys()
-    _print(changed(lambda it: assignments.change_assignment(it, course, assignment, body, known)))
+    catalogue = installed()
+
+    def done(connection: Connection) -> CourseAssignment:
+        known = catalogue.keys()
+        made = assignments.change_assignment(connection, course, assignment, body, known)
+        dealing.pin_choices(connection, course, assignment, catalogue)
+        return made
+
+    _print(changed(done))
 
 
 @commands.command("list")
@@ -237,7 +250,20 @@ def variants_of_learner(
     found = changed(lambda it: dealing.learner_variants(it, course, assignment, learner, catalogue))
     for each in found:
         dealt = "" if each.deals == 1 else f", deal {each.deals}"
-        stdout().print(f"{visible(learner)}: {each.variant}{dealt}", soft_wrap=True)
+        if each.values is not None:
+            values = ", ".join(f"{name} = {value}" for name, value in each.values.items())
+            dealt += f", by earlier choices: {values}"
+        stdout().print(f"{visible(learner)}: {each.variant}{visible(dealt)}", soft_wrap=True)
+
+
+@commands.command("renew")
+def renew_variants(course: CourseOption, assignment: AssignmentName) -> None:
+    """Deal the variants by the choices that `[vary]` has now in the exercise files.
+
+    Learners may get other numbers. Their attempts stay as they are.
+    """
+    catalogue = installed()
+    changed(lambda it: dealing.pin_choices(it, course, assignment, catalogue, renew=True))
 
 
 def _fields(
@@ -284,6 +310,8 @@ def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
     yield "exercises", exercises
     if assignment.feedback is not None:
         yield "feedback", [assignment.feedback]
+    if assignment.variants:
+        yield "variants", True
 
 
 def _points(option: str) -> Mapping[str, Any]:

@@ -38,9 +38,11 @@ from service.submissions.assignment import (
     UnknownPartNameError,
     load_assignment,
     of_one,
+    with_seeds,
 )
 from service.submissions.handed_in import HandedIn, all_handed_in
 from service.submissions.outline import SetExercise
+from service.variants.variant import NoVariantError
 
 if TYPE_CHECKING:
     from service.client import GraderClient
@@ -169,6 +171,8 @@ def command(
             show_default=False,
         ),
     ] = None,
+    platform_data: Annotated[Path | None, typer.Option(hidden=True)] = None,
+    variants: Annotated[Path | None, typer.Option(hidden=True)] = None,
     quiet: Annotated[
         bool,
         typer.Option(
@@ -194,6 +198,7 @@ def command(
     chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
     if grader is not None:
         require_no_own_files(chosen)
+    chosen = _variants_of_student(chosen, platform_data, variants)
     taken = _format(output_format, paths, shard)
     folders = [path for path in paths if path.is_dir()]
     if output is not None:
@@ -259,6 +264,30 @@ def chosen_assignment(
     try:
         return of_one(find(exercise or ""), part)
     except UnknownPartNameError as error:
+        give_up(str(error))
+
+
+def _variants_of_student(
+    assignment: Assignment, platform_data: Path | None, variants: Path | None
+) -> Assignment:
+    """Return the assignment with the variants of the student whom a platform's file describes.
+
+    The scripts of bundles name this file, and that with the secret. An assignment without variants
+    stays as it is.
+    """
+    if not assignment.variants:
+        return assignment
+    # Few runs need it.
+    from service.bundles.variants import UnknownStudentError, platform_seeds
+
+    if platform_data is None:
+        give_up(
+            "Each student has variants of their own in this assignment. Grade it in a course or by "
+            "a bundle, or name a single variant: --exercise ID~SEED."
+        )
+    try:
+        return with_seeds(assignment, platform_seeds(platform_data, variants))
+    except (UnknownStudentError, NoVariantError) as error:
         give_up(str(error))
 
 

@@ -3,6 +3,7 @@
 Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "Output format".
 """
 
+from collections.abc import Iterator
 from typing import Any, Final
 
 from service.formats.shared.graded import GradedSubmission
@@ -16,7 +17,7 @@ from service.formats.shared.report_format import ReportFormat, Setting, single
 def _document(submission: GradedSubmission, setting: Setting) -> bytes:
     content = {
         "score": submission.points,
-        "output": _total(submission),
+        "output": "\n\n".join([_total(submission), *_tasks(submission)]),
         "output_format": "text",
         "test_name_format": "text",
         "test_output_format": "md",
@@ -32,6 +33,12 @@ def _total(submission: GradedSubmission) -> str:
         return visible(f"Nothing could be graded: {'; '.join(submission.problems)}")
     total = f"{points(submission.points, submission.max_points)} points"
     return f"{total}, {percent(submission.score)}.{_unread(submission)}"
+
+
+def _tasks(submission: GradedSubmission) -> Iterator[str]:
+    """Yield the texts of the student's variants: the platform has no page with them."""
+    for file in submission.files:
+        yield from map(visible, file.exercise.task)
 
 
 def _unread(submission: GradedSubmission) -> str:

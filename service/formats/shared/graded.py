@@ -26,7 +26,8 @@ class AnsweredExercise:
     """An assigned exercise, with the facts that formats need.
 
     ``worth`` is its points in a submission: the points of its parts, unless an assignment gives it
-    another weight. ``symbols`` are the names that it declares, if they are known.
+    another weight. ``symbols`` are the names that it declares, if they are known. ``task`` has the
+    paragraphs of its texts if it is a variant, which the student may have nowhere else.
     """
 
     id: str
@@ -35,6 +36,7 @@ class AnsweredExercise:
     parts: tuple[AnsweredPart, ...]
     worth: float
     symbols: frozenset[str] = frozenset()
+    task: tuple[str, ...] = ()
 
     @property
     def points(self) -> float:
@@ -47,7 +49,17 @@ def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExerc
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
     symbols = exercise.symbols if isinstance(exercise, Exercise) else frozenset()
-    return AnsweredExercise(exercise.id, exercise.title, exercise.source, parts, worth, symbols)
+    task = _task(exercise) if isinstance(exercise, Exercise) and exercise.seed else ()
+    return AnsweredExercise(
+        exercise.id, exercise.title, exercise.source, parts, worth, symbols, task
+    )
+
+
+def _task(exercise: Exercise) -> tuple[str, ...]:
+    """Return the title, the paragraphs of the statement, and the prompts."""
+    prompts = (f"{part.id}: {part.title}. {part.prompt}" for part in exercise.parts)
+    paragraphs = (exercise.title, *exercise.statement.split("\n\n"), *prompts)
+    return tuple(" ".join(each.split()) for each in paragraphs)
 
 
 def is_answered(report: Report) -> bool:

@@ -29,6 +29,7 @@ class NewLink:
     assignment: str = ""
     opens: datetime | None = None
     due: datetime | None = None
+    variants: bool = False
 
     @property
     def parameters(self) -> dict[str, str]:
@@ -37,7 +38,9 @@ class NewLink:
             return {"assignment": self.assignment}
         listed = ",".join(f"{name}={points:.10g}" for name, points in self.points.items())
         dates = {"opens": self.opens, "due": self.due}
-        return {"exercise": listed} | {k: _moment(v) for k, v in dates.items() if v is not None}
+        varied = {"variants": "true"} if self.variants else {}
+        given = {name: _moment(date) for name, date in dates.items() if date is not None}
+        return {"exercise": listed} | given | varied
 
 
 def signed_response(

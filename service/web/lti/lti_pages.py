@@ -41,6 +41,7 @@ class Choice:
     search: str = ""
     chosen: Mapping[str, str] | None = None
     message: str = ""
+    variants: bool = False
 
 
 def login_page(login: "NewLogin", name: str, assets: Assets) -> bytes:

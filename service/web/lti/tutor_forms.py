@@ -5,6 +5,7 @@ The course opens in a window of its own, in which a cookie of ours is not a thir
 """
 
 from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Any, Final
@@ -64,10 +65,10 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
                 if fields.get("action") != ["save"]:
                     raise _NotYetError("")
                 new = _new_assignment(choice, link.number)
-                names = landings.catalogue.keys()
-                made = await write(store, lambda it: _assigned(it, link.number, new, names))
+                known_ones = landings.catalogue
+                made = await write(store, lambda it: _assigned(it, link.number, new, known_ones))
             except _NotYetError as error:
-                shown = Choice(choice.title, choice.search, choice.chosen, str(error))
+                shown = replace(choice, message=str(error))
                 content = choosing_page(
                     shown, course.title, text, landings.catalogue, landings.assets
                 )
@@ -137,7 +138,7 @@ def _choice(fields: Mapping[str, list[str]]) -> Choice:
         for name in fields.get("exercise", [])
     }
     title, search = (fields.get(name, [""])[0].strip()[:200] for name in ("title", "search"))
-    return Choice(title, search, chosen)
+    return Choice(title, search, chosen, variants=fields.get("variants") == ["yes"])
 
 
 def _new_assignment(choice: Choice, link: int) -> NewAssignment:
@@ -147,15 +148,20 @@ def _new_assignment(choice: Choice, link: int) -> NewAssignment:
     if not choice.title:
         raise _NotYetError("Enter a title.")
     listed = [{"exercise": each, "points": points} for each, points in choice.chosen.items()]
-    fields = {"id": new_assignment_id(link), "title": choice.title, "exercises": listed}
+    fields = {
+        "id": new_assignment_id(link),
+        "title": choice.title,
+        "exercises": listed,
+        "variants": choice.variants,
+    }
     try:
         return NewAssignment.model_validate(fields)
     except ValidationError as error:
         raise _NotYetError("Points are numbers above 0, at most 10000.") from error
 
 
-def _assigned(connection: Connection, link: int, new: NewAssignment, known: Any) -> Any:
+def _assigned(connection: Connection, link: int, new: NewAssignment, catalogue: Any) -> Any:
     try:
-        return assign(connection, link, new, known)
+        return assign(connection, link, new, catalogue)
     except CourseError as error:
         raise _NotYetError(str(error)) from error

@@ -288,7 +288,7 @@ declare namespace Api {
   type IdenticalAnswers = { learners: number; attempts: number; wrong: string[]; among: string[]; };
   type JointKind = "R" | "P";
   type LearnerList = { learners: CourseLearner[]; };
-  type LearnerVariant = { exercise: string; variant: string; seed: string; deals: number; };
+  type LearnerVariant = { exercise: string; variant: string; seed: string; deals: number; values?: Record<string, string>; };
   type LearnerVariants = { learner: string; variants: LearnerVariant[]; };
   type LearnersRequest = { learners?: NewLearner[]; csv?: string; };
   type LinkList = { links: PersonalLink[]; };

@@ -47,6 +47,7 @@ class Picked:
     opens: str = ""
     due: str = ""
     is_one: bool = True
+    variants: bool = False
     message: str = ""
 
     def with_message(self, message: str) -> "Picked":
@@ -81,6 +82,7 @@ def picked_in(fields: Mapping[str, list[str]]) -> Picked:
         opens=line("opens"),
         due=line("due"),
         is_one=line("as") != "several",
+        variants=line("variants") == "yes",
     )
 
 
@@ -115,9 +117,11 @@ def _of_exercises(
         raise NotYetError("The due date is before the date from which on attempts are accepted.")
     given = {each.exercise: each.points for each in new.exercises}
     if picked.is_one:
-        return [NewLink(new.title, given, opens=opens, due=due)]
+        return [NewLink(new.title, given, opens=opens, due=due, variants=picked.variants)]
     return [
-        NewLink(catalogue[name].title, {name: worth}, opens=opens, due=due)
+        NewLink(
+            catalogue[name].title, {name: worth}, opens=opens, due=due, variants=picked.variants
+        )
         for name, worth in given.items()
     ]
 
