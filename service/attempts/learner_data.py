@@ -11,6 +11,7 @@ from sqlalchemy import (
     Row,
     Table,
     and_,
+    bindparam,
     delete,
     exists,
     func,
@@ -18,6 +19,7 @@ from sqlalchemy import (
     select,
 )
 
+from service.attempts.storage import lti_tables as lti
 from service.attempts.storage.tables import (
     assignments,
     attempts,
@@ -35,9 +37,28 @@ from service.attempts.storage.tables import (
 _INNER: Final = {"number", "attempt", "assignment", "outcome", "digest", "variant"}
 _JSON: Final = {"submission", "report", "exercises"}
 
+# The learner's id at learning platforms, and the points that these got or wait for.
+_AT_PLATFORMS: Final = (
+    select(lti.registrations.c.name, lti.registrations.c.issuer)
+    .add_columns(lti.learners.c.sub, lti.learners.c.launched_at)
+    .join_from(lti.learners, lti.registrations)
+    .where(lti.learners.c.learner == bindparam("learner"))
+)
+_SCORES: Final = (
+    select(assignments.c.course, assignments.c.id.label("in_assignment"))
+    .add_columns(
+        *(lti.scores.c[name] for name in ("sub", "points", "max_points", "submitted_at", "state")),
+        *(lti.scores.c[name] for name in ("sent_at", "sent_points", "refusal")),
+    )
+    .join_from(lti.scores, lti.line_items)
+    .join(assignments, assignments.c.number == lti.line_items.c.assignment)
+    .where(lti.scores.c.learner == bindparam("learner"))
+)
+
 
 def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
     """Return all records of a learner, for JSON."""
+    which = {"learner": learner}
 
     def rows(table: Table, condition: ColumnElement[bool]) -> list[dict[str, Any]]:
         found = connection.execute(select(table).where(condition)).all()
@@ -71,6 +92,8 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
         "deals": assigned(deals),
         "links": rows(keys, keys.c.learner == learner),
         "attempts": [attempt(row) for row in recorded],
+        "platforms": [_known(row) for row in connection.execute(_AT_PLATFORMS, which)],
+        "scores": [_known(row) for row in connection.execute(_SCORES, which)],
     }
 
 

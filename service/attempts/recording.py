@@ -4,36 +4,55 @@ import secrets
 from collections.abc import Callable, Iterable
 from typing import Any, Final
 
-from sqlalchemy import Connection, Table, and_, bindparam, func, select
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Select,
+    Table,
+    and_,
+    bindparam,
+    exists,
+    func,
+    select,
+)
 from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.outcome import Outcome
+from service.attempts.storage.lti_tables import line_items
 from service.attempts.storage.score_queue import Priority, queue_score
 from service.attempts.storage.tables import attempts, outcomes
 
 # Build the statements once: building one takes longer than running it.
 _WRITTEN: Final = tuple(NewAttempt.__dataclass_fields__)
-_EARLIER: Final = select(
-    *(attempts.c[name] for name in RecordedAttempt.__dataclass_fields__)
-).where(
-    attempts.c.owner == bindparam("owner"),
-    attempts.c.idempotency_key == bindparam("idempotency_key"),
+_RECORDED: Final = tuple(RecordedAttempt.__dataclass_fields__)
+_EARLIER: Final = select(*(attempts.c[name] for name in _RECORDED)).where(
+    attempts.c.number == bindparam("number")
 )
 _OF_LEARNER: Final = and_(
     attempts.c.exercise == bindparam("exercise"), attempts.c.learner == bindparam("learner")
 )
-_LAST: Final = select(
-    func.max(attempts.c.ordinal).label("last"), func.count(attempts.c.ordinal).label("number")
-).where(_OF_LEARNER)
-_ASSIGNED: Final = (
-    select(attempts.c.assignment, func.count(attempts.c.ordinal).label("tried"))
-    .where(_OF_LEARNER, attempts.c.assignment.is_not(None))
-    .group_by(attempts.c.assignment)
-)
-_OUTCOME: Final = select(outcomes.c.id).where(
-    outcomes.c.exercise == bindparam("exercise"), outcomes.c.digest == bindparam("digest")
-)
+_ALL: Final = func.count(attempts.c.ordinal)
+
+
+def _standing(counted: ColumnElement[int]) -> Select[Any]:
+    """Return the statement that reads a standing at once: each statement costs more than a row."""
+    earlier = select(attempts.c.number).where(
+        attempts.c.owner == bindparam("owner"),
+        attempts.c.idempotency_key == bindparam("idempotency_key"),
+    )
+    # Deleted attempts leave gaps in the ordinals.
+    last = func.coalesce(func.max(attempts.c.ordinal), 0)
+    columns = (last.label("last"), counted.label("counted"), earlier.label("earlier"))
+    return select(*columns).where(_OF_LEARNER)
+
+
+def _counted(assigned: ColumnElement[bool]) -> ColumnElement[int]:
+    return select(_ALL).where(_OF_LEARNER, assigned).scalar_subquery()
+
+
+_IN_ASSIGNMENT: Final = _standing(_counted(attempts.c.assignment == bindparam("assignment")))
+_OUTSIDE: Final = _standing(_ALL - _counted(attempts.c.assignment.is_not(None)))
 _OUTCOMES: Final = select(outcomes.c.id, outcomes.c.exercise, outcomes.c.digest).where(
     outcomes.c.exercise.in_(bindparam("exercises", expanding=True)),
     outcomes.c.digest.in_(bindparam("digests", expanding=True)),
@@ -48,9 +67,23 @@ def insert_or_ignore(table: Table) -> dict[str, postgresql.Insert | sqlite.Inser
     }
 
 
+def _as_written(name: str) -> ColumnElement[Any]:
+    return bindparam(name, type_=attempts.c[name].type)
+
+
+# An attempt gets the row of its outcome; if there is none, nothing is written. ``is_sent`` is true
+# if a platform has a line item for the score.
+_OF_OUTCOME: Final = select(
+    *(_as_written(name) for name in (*_WRITTEN, "id")), outcomes.c.id.label("outcome")
+).where(
+    outcomes.c.exercise == bindparam("exercise"), outcomes.c.digest == bindparam("outcome_digest")
+)
 _NEW_OUTCOME: Final = insert_or_ignore(outcomes)
 _NEW_ATTEMPT: Final = {
-    kind: statement.returning(attempts.c.number)
+    kind: statement.from_select((*_WRITTEN, "id", "outcome"), _OF_OUTCOME).returning(
+        attempts.c.number,
+        exists().where(line_items.c.assignment == bindparam("assignment")).label("is_sent"),
+    )
     for kind, statement in insert_or_ignore(attempts).items()
 }
 
@@ -67,33 +100,35 @@ def standing(
 
     Attempts count in the assignment, or, without one, outside of all assignments.
     """
-    earlier = None
-    if idempotency_key is not None:
-        key = {"owner": owner, "idempotency_key": idempotency_key}
-        found = connection.execute(_EARLIER, key).one_or_none()
-        earlier = RecordedAttempt(**found._mapping) if found else None
-    which = {"exercise": exercise, "learner": learner}
-    # Deleted attempts leave gaps in the ordinals.
-    all_ = connection.execute(_LAST, which).one()
-    assigned = {row.assignment: row.tried for row in connection.execute(_ASSIGNED, which)}
-    outside = all_.number - sum(assigned.values())
-    counted = outside if assignment is None else assigned.get(assignment, 0)
-    return Standing(counted, earlier, all_.last or 0)
+    which = {
+        "exercise": exercise,
+        "learner": learner,
+        "owner": owner,
+        "idempotency_key": idempotency_key,
+    }
+    if assignment is None:
+        row = connection.execute(_OUTSIDE, which).one()
+    else:
+        row = connection.execute(_IN_ASSIGNMENT, which | {"assignment": assignment}).one()
+    found = row.earlier and connection.execute(_EARLIER, {"number": row.earlier}).one_or_none()
+    earlier = RecordedAttempt(**found._mapping) if found else None
+    return Standing(row.counted, earlier, row.last)
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
     """Write the attempt; return None if its ordinal or its key has been taken in the meantime."""
     values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
     values["id"] = secrets.token_hex(16)
-    number = connection.scalar(
-        _NEW_ATTEMPT[connection.dialect.name],
-        values | {"outcome": _outcome_id(connection, outcome)},
-    )
-    if number is None:
+    statement = _NEW_ATTEMPT[connection.dialect.name]
+    row = values | {"outcome_digest": outcome.digest}
+    written = connection.execute(statement, row).one_or_none()
+    if written is None and _add_outcome(connection, outcome):
+        written = connection.execute(statement, row).one_or_none()
+    if written is None:
         return None
-    if new.ordinal is not None:
+    if new.ordinal is not None and written.is_sent:
         queue_score(connection, new.assignment, new.learner, Priority.HAND_IN)
-    return RecordedAttempt(**values, number=number)
+    return RecordedAttempt(**values, number=written.number)
 
 
 # Returns the next attempt after a standing, or None if none is allowed or prepared.
@@ -145,12 +180,8 @@ def _key(outcome: Outcome) -> dict[str, str]:
     return {"exercise": outcome.exercise, "digest": outcome.digest}
 
 
-def _outcome_id(connection: Connection, outcome: Outcome) -> int:
-    key = _key(outcome)
-    found = connection.scalar(_OUTCOME, key)
-    if found is None:
-        new = key | {"content": outcome.content}
-        connection.execute(_NEW_OUTCOME[connection.dialect.name], new)
-        found = connection.scalar(_OUTCOME, key)
-    assert found is not None
-    return int(found)
+def _add_outcome(connection: Connection, outcome: Outcome) -> bool:
+    """Insert the outcome; return False if it is there already."""
+    new = _key(outcome) | {"content": outcome.content}
+    statement = _NEW_OUTCOME[connection.dialect.name].returning(outcomes.c.id)
+    return connection.scalar(statement, new) is not None

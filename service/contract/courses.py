@@ -315,6 +315,9 @@ class MissingLearner(BaseModel):
     email: str | None = Field(None, description="The e-mail address, if it is known.")
     exercises: list[str]
     due: datetime | None = Field(None, description="The due date of this learner.")
+    closes: datetime | None = Field(
+        None, description="Until when late attempts of this learner are accepted."
+    )
 
 
 class MissingList(BaseModel):

@@ -22,6 +22,7 @@ from service.courses import roll
 from service.courses.errors import CourseError
 from service.courses.terms import extended
 from service.courses.times import local, moment
+from service.submissions.lookup import nearest
 
 
 def add_assignment(
@@ -185,7 +186,9 @@ def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) ->
 def _check_exercises(chosen: list[str], known: Collection[str]) -> None:
     for i, exercise in enumerate(chosen):
         if exercise not in known:
-            raise CourseError("unusable", f"There is no exercise {exercise}.")
+            meant = nearest(exercise, known)
+            hint = f" Did you mean {meant}?" if meant else ""
+            raise CourseError("unusable", f"There is no exercise {exercise}.{hint}")
         if exercise in chosen[:i]:
             raise CourseError("unusable", f"The exercise {exercise} is there twice.")
 

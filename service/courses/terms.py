@@ -155,15 +155,8 @@ def extended(
     closes: datetime | None = None,
     limit: int | None = None,
 ) -> AttemptsSpec:
-    """Return the rules of an assignment with these dates and this limit of an extension.
-
-    Late attempts are accepted until the latest of the dates.
-    """
-    new_due = due or row.due
-    if new_due is not None and row.opens is not None:
-        new_due = max(new_due, row.opens)
-    ends = [each for each in (row.closes, closes, new_due) if each is not None]
-    new_closes = max(ends) if (row.closes or closes) and new_due is not None else None
+    """Return the rules of an assignment with these dates and this limit of an extension."""
+    new_due, new_closes = own_dates(row, due, closes)
     return AttemptsSpec(
         limit=limit or row.max_attempts,
         opens=local(row.opens, zone),
@@ -171,3 +164,19 @@ def extended(
         closes=local(new_closes, zone),
         late_worth=row.late_worth,
     )
+
+
+def own_dates(
+    assignment: Any, due: datetime | None, closes: datetime | None
+) -> tuple[datetime | None, datetime | None]:
+    """Return until when a learner with this extension hands in, in time and late.
+
+    Late attempts are accepted until the latest of the dates.
+    """
+    new_due = due or assignment.due
+    if new_due is not None and assignment.opens is not None:
+        new_due = max(new_due, assignment.opens)
+    ends = [each for each in (assignment.closes, closes, new_due) if each is not None]
+    if new_due is None or not (assignment.closes or closes):
+        return new_due, None
+    return new_due, max(ends)

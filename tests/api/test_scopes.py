@@ -142,7 +142,8 @@ class Guarded:
     def filled(self, route: str) -> str:
         """Return a route with real names in place of its parameters."""
         for place, name in self.names.items():
-            route = name if place == route else route.replace(f"{{{place}}}", name)
+            for written in (f"{{{place}}}", f"{{{place}:path}}"):
+                route = name if place == route else route.replace(written, name)
         return route
 
     @asynccontextmanager
@@ -418,7 +419,7 @@ def test_nothing_of_another_course_or_learner_is_told_or_changed(guarded: Guarde
         "GET /v1/attempts/{attempt_id}",
         "GET /v1/courses/{course_id}/gradebook",
         "GET /v1/courses/{course_id}/learners",
-        "GET /v1/courses/{course_id}/learners/{learner}/view",
+        "GET /v1/courses/{course_id}/learners/{learner:path}/view",
         "GET /tutor/courses/{course_id}/learner",
     } <= set(asyncio.run(_told(asked, tutor, mark)))
 

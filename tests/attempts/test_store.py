@@ -106,7 +106,7 @@ def test_concurrent_attempts_get_consecutive_ordinals(database_url: str) -> None
 
 
 def test_a_failing_job_does_not_affect_others(store: AttemptStore) -> None:
-    broken = replace(NEW, learner="x" * 10, exercise=None)  # type: ignore[arg-type]
+    broken = replace(NEW, learner="x" * 10, submission=None)  # type: ignore[arg-type]
 
     async def together() -> list[object]:
         jobs = [

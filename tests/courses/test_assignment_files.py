@@ -1,4 +1,4 @@
-"""An assignment file becomes an assignment of a course, or is refused with the reason."""
+"""An assignment file or options become an assignment, or are refused with the reason."""
 
 from pathlib import Path
 
@@ -63,3 +63,23 @@ def test_an_assignment_file_may_set_variants(
     assert "variants" not in done.output
     checked = CliRunner().invoke(program, ["assignments", "check", str(file)])
     assert "each learner has variants of their own" in checked.output
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (
+            ["--exercise", "scara=10", "--due", "2026-10-15"],
+            'time, too, such as "2026-10-15 23:59"',
+        ),
+        (["--exercise", "skara=10"], "There is no exercise skara. Did you mean scara?"),
+    ],
+)
+def test_a_mistyped_assignment_is_refused_with_advice(
+    class_: Class, monkeypatch: pytest.MonkeyPatch, options: list[str], said: str
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    words = ["courses", "assignments", "add", "robots", "hw", "--title", "Homework", *options]
+    told = CliRunner().invoke(program, words)
+    assert told.exit_code == 2
+    assert said in " ".join(told.output.split())

@@ -4,7 +4,7 @@ import asyncio
 import json
 import tomllib
 from dataclasses import replace
-from datetime import timedelta
+from datetime import datetime, timedelta
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -189,6 +189,21 @@ def test_the_gradebook_and_who_is_missing(class_: Class) -> None:
     assert points(class_) == [[share], [None]]
     absent = class_.do(lambda it: missing(it, "robots", "homework"))
     assert [(each.learner, each.exercises) for each in absent] == [("grace", ["scara"])]
+    # What counts is the learner's own dates.
+    dates = {"due": days(1), "closes": days(3)}
+    change = AssignmentChange.model_validate(dates)
+    class_.do(lambda it: change_assignment(it, "robots", "homework", change, ()))
+    for own, told in (
+        ({}, dates),
+        ({"closes": days(5)}, {**dates, "closes": days(5)}),
+        ({"due": days(4)}, {"due": days(4), "closes": days(4)}),
+    ):
+        extension = Extension.model_validate({"learner": "grace", **own})
+        class_.do(partial(extend, course="robots", assignment="homework", extension=extension))
+        [grace] = class_.do(lambda it: missing(it, "robots", "homework"))
+        assert {"due": grace.due, "closes": grace.closes} == {
+            name: datetime.fromisoformat(date) for name, date in told.items()
+        }
     book = class_.do(lambda it: gradebook(it, "robots"))
     moodle = b"".join(written_gradebook(book, "moodle")).decode().splitlines()
     assert moodle[0] == "ID number,Full name,Email address,homework scara"

@@ -80,7 +80,8 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         return Response(content, HTTPStatus.OK, _file(course_id, "csv"), "text/csv; charset=utf-8")
 
     @router.get(
-        "/learners/{learner}/view",
+        # An id may have a slash.
+        "/learners/{learner:path}/view",
         operation_id="getLearnerView",
         summary="Show what a learner sees",
         response_description="The course as the learner sees it.",

@@ -139,7 +139,7 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "GET /v1/courses/{course_id}/assignments/{assignment_id}/solutions/{exercise_id}": Right(
         Scope.RECORD, WithoutKeys.NOBODY, Reach.COURSE, tokens=True, in_course=True
     ),
-    "GET /v1/courses/{course_id}/learners/{learner}/view": _read_course(),
+    "GET /v1/courses/{course_id}/learners/{learner:path}/view": _read_course(),
     "GET /v1/me": Right(Scope.RECORD, WithoutKeys.NOBODY, Reach.OWN, tokens=True, in_course=True),
     "GET /v1/exercises/{exercise_id}/solution": _solutions(Reach.PATH, in_course=True),
     "GET /tutor/sign-in": _EVERYBODY,

@@ -1,7 +1,7 @@
 """`dh-grader courses assignments`: the assignments of a course, and extensions."""
 
 from collections.abc import Callable, Iterator, Mapping
-from datetime import datetime
+from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -327,6 +327,10 @@ def _date(option: str | None) -> datetime | str | None:
     if option in (None, _NONE):
         return option
     try:
+        if len(option) == len("2026-10-15"):
+            # Midnight, at which this day begins, is seldom meant.
+            date.fromisoformat(option)
+            give_up(f'{option}: write the time, too, such as "{option} 23:59".')
         return datetime.fromisoformat(option)
     except ValueError:
         give_up(f'{option}: write a date such as "2026-10-15 23:59".')

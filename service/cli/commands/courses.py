@@ -220,7 +220,11 @@ def show_missing(
     found = changed(lambda it: missing(it, course, assignment))
     screen = stdout()
     for each in found:
-        due = f", due {each.due:%Y-%m-%d %H:%M %Z}" if each.due else ""
-        absent = ", ".join(each.exercises)
-        screen.print(f"{visible(each.name)}: {absent}{due}", soft_wrap=True)
+        dates = [
+            f"{name} {when:%Y-%m-%d %H:%M %Z}"
+            for name, when in (("due", each.due), ("closes", each.closes))
+            if when is not None
+        ]
+        told = ", ".join((*each.exercises, *dates))
+        screen.print(f"{visible(each.name)}: {told}", soft_wrap=True)
     screen.print(f"Not complete: {number(len(found))} learners.")

@@ -31,7 +31,7 @@ def export(
     """Write everything that is known of a learner, as JSON."""
     with database() as engine, engine.connect() as connection:
         found = everything_of(connection, learner)
-    if not any(found[name] for name in ("courses", "extensions", "links", "attempts")):
+    if not any(rows for name, rows in found.items() if name != "learner"):
         give_up("Nothing is recorded of this learner.")
     text = json.dumps(found, indent=2, ensure_ascii=False)
     write([f"{text}\n".encode()], output, at_once=True)

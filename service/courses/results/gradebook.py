@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 from typing import Final
 
-from sqlalchemy import JSON, Connection, func, or_, select, true, type_coerce
+from sqlalchemy import JSON, Connection, func, or_, select, text, true, type_coerce
 
 from service.attempts.storage.tables import assignments, attempts
 from service.contract.courses import (
     CourseAssignment,
+    Extension,
     Gradebook,
     GradebookColumn,
     GradebookFormat,
@@ -16,6 +17,7 @@ from service.contract.courses import (
 )
 from service.courses.assignments import assignment_of, assignments_of
 from service.courses.links import people
+from service.courses.terms import own_dates
 from service.formats.shared import spreadsheet
 
 # The points of an attempt that count, as a share of 1.
@@ -26,6 +28,11 @@ GradebookPlace = tuple[str, str, str]
 
 # The aggregate that makes a JSON object, by the name of the SQL dialect.
 _TOGETHER: Final = {"postgresql": func.json_object_agg, "sqlite": func.json_group_object}
+# The index of a gradebook has the order of its groups. Without statistics, as in a database that
+# was filled a moment ago, PostgreSQL would hash and sort all rows instead, on the disk.
+_IN_ORDER: Final = text(
+    "SELECT set_config('enable_hashagg', 'off', true), set_config('enable_sort', 'off', true)"
+)
 
 
 def gradebook(connection: Connection, course: str, assignment: str | None = None) -> Gradebook:
@@ -59,7 +66,7 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
     """Return who has not handed in which exercises of an assignment. Raises CourseError."""
     [chosen] = _chosen(connection, course, assignment)
     present = {learner: shares for learner, _, shares in _shares(connection, course, assignment)}
-    dues = {each.learner: each.due for each in chosen.extensions}
+    extension_of = {each.learner: each for each in chosen.extensions}
     found = []
     for person in people(connection, course):
         absent = [
@@ -68,8 +75,11 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
             if each.exercise not in present.get(person.learner, {})
         ]
         if absent:
-            due = dues.get(person.learner) or chosen.due
-            found.append(MissingLearner(**person._mapping, exercises=absent, due=due))
+            own = extension_of.get(person.learner) or Extension(learner=person.learner)
+            due, closes = own_dates(chosen, own.due, own.closes)
+            found.append(
+                MissingLearner(**person._mapping, exercises=absent, due=due, closes=closes)
+            )
     return found
 
 
@@ -141,6 +151,8 @@ def _shares(
         .group_by(of.assignment, of.learner, of.exercise)
         .subquery()
     ).c
+    if connection.dialect.name == "postgresql":
+        connection.execute(_IN_ORDER)
     # One row for each learner and assignment: a row for each exercise takes twice as long.
     together = _TOGETHER[connection.dialect.name](best.exercise, best.share)
     rows = connection.execute(

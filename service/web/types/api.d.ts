@@ -311,7 +311,7 @@ declare namespace Api {
   type Marking = "content" | "cells" | "rows" | "whole";
   type MatrixShape = { form: "matrix"; columns: string[]; rows: string[]; };
   type MisconceptionFigures = { part: string; code: string; sentence?: string; attempts: number; by_day: Record<string, number>; };
-  type MissingLearner = { learner: string; name: string; email?: string; exercises: string[]; due?: string; };
+  type MissingLearner = { learner: string; name: string; email?: string; exercises: string[]; due?: string; closes?: string; };
   type MissingList = { missing: MissingLearner[]; };
   type ModelSolution = {
     exercise: string;

@@ -30,7 +30,9 @@ def _row(route: str, right: Right) -> str:
     tokens = "yes" if right.tokens else "no"
     in_course = "yes" if right.in_course else "no"
     without = right.without_keys.value
-    cells = (f"`{route}`", f"`{right.scope}`", right.reach.value, tokens, in_course, without)
+    # A path parameter that may have slashes is written like the others.
+    shown = route.replace(":path", "")
+    cells = (f"`{shown}`", f"`{right.scope}`", right.reach.value, tokens, in_course, without)
     return f"| {' | '.join(cells)} |\n"
 
 

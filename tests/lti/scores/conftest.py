@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from sqlalchemy import Row, select
 
+from service.attempts.learner_data import everything_of
 from service.attempts.storage import lti_tables as tables
 from service.lti.linking import pseudonym
 from service.lti.own_keys import published_keys
@@ -91,6 +92,11 @@ class Journey:
     def learner(self, user: str = "ada") -> str:
         """Return the pseudonym of a user."""
         return pseudonym("moodle", f"user {user}", SECRET)
+
+    def known(self, user: str = "ada") -> dict[str, Any]:
+        """Return what is stored of a user's learner."""
+        with self.tool.store.engine.connect() as connection:
+            return everything_of(connection, self.learner(user))
 
     def post(self, path: str, **body: Any) -> dict[str, Any]:
         """Send a tutor's request."""

@@ -32,7 +32,13 @@ def test_a_hand_in_an_override_and_a_forgotten_learner_arrive(journey: Journey) 
     journey.post(f"attempts/{attempt['id']}/override", points=attempt["max_points"], **override)
     assert journey.send() == 1
     assert journey.gradebook.grades() == {"ada": 100}
+    known = journey.known()
+    [platform], [score] = known["platforms"], known["scores"]
+    assert (platform["name"], platform["sub"]) == ("Moodle of the university", "user ada")
+    assert (score["sub"], score["state"], score["sent_points"]) == ("user ada", "sent", 10)
+    assert journey.place() == (score["course"], score["in_assignment"])
     journey.post("learners/forget", learner=attempt["learner"], apply=True)
+    assert "user ada" not in json.dumps(journey.known())
     journey.clock.go_on(seconds=3)
     [row] = journey.rows()
     assert "lti-" not in row.learner

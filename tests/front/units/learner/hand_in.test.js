@@ -9,6 +9,7 @@ import {
   datesInWords,
   ownState,
   pointsInWords,
+  refusalInWords,
   whyClosed,
 } from "../../../../service/web/static/student/handin/own_state.js";
 import { newKey, pauseAfter } from "../../../../service/web/static/student/handin/pending.js";
@@ -86,4 +87,9 @@ test("tries come less often, and keys are new", () => {
   assert.deepEqual([0, 1, 4, 5, 50].map(pauseAfter), [1, 2, 16, 30, 30]);
   assert.match(newKey(), /^[0-9a-f]{32}$/);
   assert.notEqual(newKey(), newKey());
+});
+
+test("a hand-in whose answer may have been lost is not called absent", () => {
+  assert.equal(refusalInWords("It is closed.", false), "Not handed in: It is closed.");
+  assert.equal(refusalInWords("A key is needed.", true), "Not confirmed: A key is needed.");
 });

@@ -9,6 +9,7 @@ import {
   datesInWords,
   ownState,
   pointsInWords,
+  refusalInWords,
   STATES,
   whyClosed,
 } from "./own_state.js";
@@ -16,7 +17,7 @@ import { offer } from "./notice.js";
 import { newKey, pauseAfter, PendingHandIn } from "./pending.js";
 import { DraftStore } from "./draft_store.js";
 
-const TRYING = "Not handed in yet, trying again. Your answers are saved in this browser.";
+const TRYING = "Not confirmed yet, trying again. Your answers are saved in this browser.";
 const TOKEN_NEEDED = "Please open this exercise from your course page.";
 // Milliseconds: the time that a site has to set a token, and until it is asked for another one.
 const PATIENCE = 10_000;
@@ -91,7 +92,7 @@ export class HandIn {
   /** Send again what the service has not confirmed. */
   resume() {
     const waiting = this.pending.get();
-    if (waiting) this.#send(waiting);
+    if (waiting) this.#send(waiting, true);
     else this.refresh();
   }
 
@@ -158,8 +159,13 @@ export class HandIn {
     return this.#send(pending);
   }
 
-  /** @param {Front.Pending} pending */
-  async #send(pending) {
+  /**
+   * Send it until the service answers. `mayBeRecorded` is true if an answer to it may have been lost.
+   *
+   * @param {Front.Pending} pending
+   * @param {boolean} mayBeRecorded
+   */
+  async #send(pending, mayBeRecorded = false) {
     if (this.#isSending) return;
     this.#setSending(true);
     for (let tries = 0; !this.#isClosed; tries += 1) {
@@ -168,7 +174,7 @@ export class HandIn {
         answer = await this.host.service.handIn(this.path, pending.key, pending.body);
       } catch (error) {
         if (error.kind === "refused" || error.kind === undefined) {
-          await this.#refused(error, pending.key);
+          await this.#refused(error, pending.key, mayBeRecorded || tries > 0);
           break;
         }
         this.#tell(TRYING);
@@ -202,9 +208,9 @@ export class HandIn {
     });
   }
 
-  /** @param {Error & { status?: number }} error @param {string} key */
-  async #refused(error, key) {
-    this.#tell(`Not handed in: ${error.message}`);
+  /** @param {Error & { status?: number }} error @param {string} key @param {boolean} mayBeRecorded */
+  async #refused(error, key, mayBeRecorded) {
+    this.#tell(refusalInWords(error.message, mayBeRecorded));
     if (error.status === 401) {
       // With a new token, `resume` sends it again; a site whose tokens are all refused is not asked without end.
       if (Date.now() - this.#askedAt > ASKED_AGAIN) this.#dispatch("token-needed", null);

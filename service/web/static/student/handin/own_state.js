@@ -104,3 +104,13 @@ export function attemptPoints({ points, max_points: most, is_late: isLate }, { p
 
 /** @param {number} share */
 const percent = (share) => `${number(100 * share)} %`;
+
+/**
+ * Return what is told of a hand-in that the service refuses. If an answer was lost before, it may have been recorded.
+ *
+ * @param {string} reason
+ * @param {boolean} mayBeRecorded
+ */
+export function refusalInWords(reason, mayBeRecorded) {
+  return `${mayBeRecorded ? "Not confirmed" : "Not handed in"}: ${reason}`;
+}
