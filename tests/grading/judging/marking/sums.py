@@ -91,11 +91,12 @@ def faults(part: PartReport) -> Iterator[str]:
         yield f"points are not in steps of 1/{steps}"
     if any(each <= 0 for each in lost):
         yield "nothing was lost at a place"
-    cells = {
-        row.label: {cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT}
+    # Two fixed rows before the last joint have the same label.
+    wrong = [
+        (row.label, tuple(cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT))
         for row in rows
-    }
-    if any(each.row is not None and set(each.cells or ()) != cells[each.row] for each in part.lost):
+    ]
+    if any(each.row is not None and (each.row, each.cells) not in wrong for each in part.lost):
         yield "points were lost in other cells than those that are not right"
     if (part.points == part.max_points) is not (part.verdict is Verdict.CORRECT):
         yield "full points for a wrong answer, or less for a right one"
