@@ -1,49 +1,107 @@
 """Exercises that are still being written, for the preview in the editor."""
 
+import os
+import re
 import secrets
+import shutil
 import time
-from collections import OrderedDict
+import weakref
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from threading import Lock
 from typing import Final
 
 from service.catalogue.exercise import Exercise
+from service.catalogue.files.temporary import temporary_place
 from service.catalogue.load import read_exercise
 
 MOST_DRAFTS: Final = 32
 # Seconds since a draft was last written.
 KEPT: Final = 3600.0
-_PREFIX: Final = "draft-"
+_ID: Final = re.compile(r"draft-[0-9a-f]{32}")
+
+
+def drafts_folder() -> Path:
+    """Return the path of a new folder for drafts. The first draft creates the folder."""
+    return temporary_place() / f"dh-grader-drafts-{secrets.token_hex(16)}"
 
 
 class Drafts:
-    """The drafts of this process. Only the author of a draft knows its id."""
+    """The drafts in a folder, which several processes may share. Only a draft's author has its id.
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    Without ``folder``, they get one of their own, which the end of the process removes.
+    """
+
+    def __init__(self, folder: Path | None = None, clock: Callable[[], float] = time.time) -> None:
+        self._folder = folder or drafts_folder()
+        if folder is None:
+            weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
         self._clock = clock
-        self._drafts: OrderedDict[str, tuple[float, Exercise]] = OrderedDict()
-        self._lock = Lock()
+        # The exercises that this process has read, each with the time at which it was written.
+        self._read: dict[str, tuple[int, Exercise]] = {}
 
     def put(self, text: str, draft_id: str = "") -> str:
         """Keep an exercise and return its id. ``draft_id`` is the draft that it replaces.
 
-        Raises CatalogueError.
+        Raises CatalogueError if the text is no exercise, OSError if it cannot be written.
         """
-        if draft_id not in self._drafts:
-            draft_id = f"{_PREFIX}{secrets.token_hex(16)}"
-        exercise = read_exercise(Path(f"{draft_id}.toml"), text)
-        with self._lock:
-            self._drafts[draft_id] = self._clock(), exercise
-            self._drafts.move_to_end(draft_id)
-            while len(self._drafts) > MOST_DRAFTS:
-                self._drafts.popitem(last=False)
+        if self._written(draft_id) is None:
+            draft_id = f"draft-{secrets.token_hex(16)}"
+        file = self._file(draft_id)
+        read_exercise(file, text)
+        self._folder.mkdir(mode=0o700, exist_ok=True)
+        # Another process never finds half a file.
+        new = file.with_suffix(f".{secrets.token_hex(8)}")
+        new.write_bytes(text.encode())
+        now = self._clock()
+        os.utime(new, (now, now))
+        new.replace(file)
+        self._drop_oldest()
         return draft_id
 
     def get(self, draft_id: str) -> Exercise | None:
         """Return a draft, or None if it is unknown or too old."""
-        written, exercise = self._drafts.get(draft_id, (0.0, None))
-        return exercise if self._clock() < written + KEPT else None
+        written = self._written(draft_id)
+        if written is None:
+            self._read.pop(draft_id, None)
+            return None
+        known = self._read.get(draft_id)
+        if known is not None and known[0] == written:
+            return known[1]
+        file = self._file(draft_id)
+        try:
+            exercise = read_exercise(file, file.read_bytes().decode())
+        except OSError:
+            # Another process has dropped it just now.
+            return None
+        while len(self._read) >= MOST_DRAFTS:
+            self._read.pop(next(iter(self._read)))
+        self._read[draft_id] = written, exercise
+        return exercise
+
+    def _written(self, draft_id: str) -> int | None:
+        """Return when a draft was written (ns), or None if it is unknown or too old."""
+        if not _ID.fullmatch(draft_id):
+            return None
+        try:
+            written = self._file(draft_id).stat().st_mtime_ns
+        except OSError:
+            return None
+        return written if self._clock() < written / 1e9 + KEPT else None
+
+    def _file(self, draft_id: str) -> Path:
+        return self._folder / f"{draft_id}.toml"
+
+    def _drop_oldest(self) -> None:
+        files = sorted(self._folder.glob("*.toml"), key=_age)
+        for file in files[:-MOST_DRAFTS]:
+            file.unlink(missing_ok=True)
+
+
+def _age(file: Path) -> int:
+    try:
+        return file.stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 class CatalogueWithDrafts(Mapping[str, Exercise]):

@@ -2,6 +2,7 @@
 
 import logging
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
@@ -12,6 +13,7 @@ from service.api.permissions.access import Access, is_loopback
 from service.api.permissions.authentication import RequestRates
 from service.attempts.errors import UnusableDatabaseError
 from service.catalogue import open_catalogue
+from service.catalogue.drafts import Drafts
 from service.server.turns.admission import FairAdmission
 from service.server.watching.access_log import set_up_access_log
 from service.settings import Settings, SettingsError
@@ -23,10 +25,13 @@ if TYPE_CHECKING:  # it imports the database drivers
 _log = logging.getLogger(__name__)
 
 
-def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
+def installed_app(
+    settings: Settings, host: str | None = None, drafts: Path | None = None
+) -> FastAPI:
     """Return the application, with fair admission.
 
     ``host`` is the address on which it listens, or None if the caller has checked it already.
+    ``drafts`` is the folder in which several processes share the drafts of the editor.
     Raises CatalogueError, SettingsError.
     """
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
@@ -56,7 +61,12 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         keys=_keys(settings, store, host),
     )
     tutoring = Tutoring(
-        access, settings.exercises_dir, settings.editor_dir, store is not None, store
+        access,
+        settings.exercises_dir,
+        settings.editor_dir,
+        store is not None,
+        store,
+        drafts=Drafts(drafts),
     )
     app = application(
         catalogue,

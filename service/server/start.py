@@ -2,17 +2,20 @@
 
 import gc
 import logging
+import shutil
 import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from pathlib import Path
 
 import uvicorn
 from fastapi import FastAPI
 
 from service.catalogue import CatalogueError
+from service.catalogue.drafts import drafts_folder
 from service.server.connections.protocol import GuardedProtocol
 from service.server.installed import installed_app
 from service.server.processes.process import Server
@@ -44,9 +47,12 @@ def serve(settings: Settings) -> bool:
                 listener = config.bind_socket()
         except SystemExit:
             return False
-        return Supervisor(
-            partial(_work, settings), listener, settings.workers, announcement, forget
-        ).run()
+        drafts = drafts_folder()
+        work = partial(_work, settings, drafts)
+        try:
+            return Supervisor(work, listener, settings.workers, announcement, forget).run()
+        finally:
+            shutil.rmtree(drafts, ignore_errors=True)
 
 
 @contextmanager
@@ -91,13 +97,13 @@ def _config(settings: Settings, app: object) -> uvicorn.Config:
     )
 
 
-def _work(settings: Settings, port: SharedPort) -> None:
-    """Serve on a shared port, as one of several worker processes."""
+def _work(settings: Settings, drafts: Path, port: SharedPort) -> None:
+    """Serve on a shared port, as one of several worker processes with a common drafts folder."""
     # Ctrl+C reaches all processes of the terminal. Until the server has its own handlers, only the
     # supervisor reacts.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        app = installed_app(settings)
+        app = installed_app(settings, drafts=drafts)
     except CatalogueError as error:
         print(error, file=sys.stderr)  # noqa: T201 - the reason why this process ends
         raise SystemExit(1) from error

@@ -19,6 +19,7 @@ from service.typeset.names import in_one_line, unbound
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
+    from markdown_it.rules_core import StateCore
     from markdown_it.token import Token
 
 _MATHML: Final = "http://www.w3.org/1998/Math/MathML"
@@ -82,6 +83,7 @@ def _markdown() -> "MarkdownIt":
     # A paragraph must not contain a block.
     markdown.add_render_rule("math_inline_double", _displayed)
     markdown.add_render_rule("text", _text)
+    markdown.core.ruler.push("joined_lines", _join_lines)
     markdown.add_render_rule("fence", _fence)
     return markdown
 
@@ -89,6 +91,22 @@ def _markdown() -> "MarkdownIt":
 def _displayed(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object) -> str:
     formula = _formula(tokens[i].content.strip(), {"display_mode": True})
     return f'<span class="math display">{formula}</span>'
+
+
+def _join_lines(state: "StateCore") -> None:
+    """Join the lines of a text: a name may depend on the next word, which is in the next line."""
+    for block in state.tokens:
+        if block.type != "inline":
+            continue
+        joined: list[Token] = []
+        for token in block.children or ():
+            if token.type == "softbreak":
+                token.type, token.content = "text", "\n"
+            if joined and token.type == joined[-1].type == "text":
+                joined[-1].content += token.content
+            else:
+                joined.append(token)
+        block.children = joined
 
 
 def _text(_renderer: object, tokens: "Sequence[Token]", i: int, _: object, env: Any) -> str:

@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.test_pages import violations
 from tests.browser.test_robot_view import picture
 
@@ -78,6 +79,7 @@ def test_a_seven_joint_arm_can_be_moved(
     picture(page)
     assert entries(page) == pose
     assert violations(page, "") == []
+    assert typed_names(page) == []
     page.set_viewport_size({"width": 320, "height": 700})
     assert page.evaluate("document.documentElement.scrollWidth") <= 320
 

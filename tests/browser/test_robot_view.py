@@ -136,6 +136,17 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     expect(page.locator(".stage")).to_have_count(0)
 
 
+# The tool frame is at the right of one robot, and above the other.
+@pytest.mark.parametrize("robot", ["planar-rr", "stanford-arm"])
+def test_a_phone_shows_the_given_frames_with_their_names(
+    robot: str, visit: Opening, service: str
+) -> None:
+    page = visit(bypass_csp=True, viewport={"width": 390, "height": 844}).page
+    open_exercise(page, service, robot)
+    open_view(page)
+    assert not is_cut(page)
+
+
 def test_a_browser_without_webgl_shows_the_drawing(
     browser: Browser, chromium: Chromium, service: str
 ) -> None:

@@ -1,6 +1,11 @@
-"""Drafts: a few, for a limited time."""
+"""Drafts: a few, for a limited time, in a folder that processes share."""
 
-from service.catalogue import shipped_folder
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from service.catalogue import CatalogueError, shipped_folder
 from service.catalogue.drafts import KEPT, MOST_DRAFTS, Drafts
 
 TEXT = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
@@ -8,7 +13,7 @@ TEXT = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
 
 def test_a_draft_is_kept_for_a_limited_time() -> None:
     now = 5.0
-    drafts = Drafts(lambda: now)
+    drafts = Drafts(clock=lambda: now)
     name = drafts.put(TEXT)
     now += KEPT - 1
     assert drafts.get(name) is not None
@@ -20,8 +25,34 @@ def test_a_draft_is_kept_for_a_limited_time() -> None:
 
 
 def test_the_oldest_drafts_are_dropped() -> None:
-    drafts = Drafts()
+    seconds = count()
+    drafts = Drafts(clock=lambda: next(seconds))
     names = [drafts.put(TEXT) for _ in range(MOST_DRAFTS + 2)]
     assert [drafts.get(name) is None for name in names[:3]] == [True, True, False]
     # The author cannot choose an id.
     assert drafts.put(TEXT, "scara").startswith("draft-")
+
+
+def test_processes_share_the_drafts_of_a_folder(tmp_path: Path) -> None:
+    now = 5.0
+    one, other = (Drafts(tmp_path, lambda: now) for _ in range(2))
+    name = one.put(TEXT)
+    assert other.get(name) is not None
+    now += 1
+    assert other.put(TEXT.replace("Planar", "Flat"), name) == name
+    for drafts in (one, other):
+        found = drafts.get(name)
+        assert found is not None
+        assert found.title.startswith("Flat")
+    with pytest.raises(CatalogueError):
+        one.put("title = 1", name)
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_an_id_reaches_no_other_file(tmp_path: Path) -> None:
+    (tmp_path / "arm.toml").write_text(TEXT, encoding="utf-8")
+    (tmp_path / "drafts").mkdir()
+    drafts = Drafts(tmp_path / "drafts")
+    drafts.put(TEXT)
+    for hostile in ("../arm", "draft-../arm", "arm", "", "draft-" + "0" * 32, "draft-\0"):
+        assert drafts.get(hostile) is None

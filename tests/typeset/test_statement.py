@@ -52,6 +52,11 @@ def test_names_are_typeset_but_not_in_code() -> None:
     )
 
 
+def test_a_name_may_stand_at_the_end_of_a_line() -> None:
+    html = statement_html("its z\naxis, and *its*\nx\n\nline")
+    assert html == "<p>its <math><mi>z</mi></math>\naxis, and <em>its</em>\nx</p>\n<p>line</p>\n"
+
+
 def test_a_block_is_a_matrix_of_formulas() -> None:
     html = statement_html("```matrix T_1\ncos phi, -pi/2\n0, atan2(x, 2e-3)\n```")
     assert html.startswith('<div class="display"><math><msub><mi>T</mi><mn>1</mn></msub></math> = ')

@@ -4,15 +4,13 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Final
 
+from service.catalogue.files.temporary import temporary_place
 from service.settings import Settings, SettingsError
 
 # The environment variable in which prometheus_client looks for the folder.
 FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
-# A folder in memory, which is writable even in a container with a read-only file system.
-_MEMORY: Final = Path("/dev/shm")
 
 
 @contextmanager
@@ -26,7 +24,7 @@ def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]
         yield lambda _: None
         return
     try:
-        place = _MEMORY if os.access(_MEMORY, os.W_OK) else None
+        place = temporary_place()
         folder = tempfile.TemporaryDirectory(prefix="dh-grader-metrics-", dir=place)
     except OSError as error:
         raise SettingsError(

@@ -112,3 +112,8 @@ def _put(drafts: Drafts, body: DraftRequest) -> str:
             "unusable-exercise",
             "There is nothing to preview",
         ) from error
+    except OSError as error:
+        raise ProblemError(
+            HTTPStatus.SERVICE_UNAVAILABLE,
+            "The service has no writable folder for temporary files. Set TMPDIR to one.",
+        ) from error

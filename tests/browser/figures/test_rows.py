@@ -7,6 +7,7 @@ from playwright.sync_api import Page, expect
 
 from service.web.assets import FOLDER
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells, open_exercise
 from tests.browser.test_pages import violations
 from tests.browser.test_robot_view import open_view, picture
@@ -76,6 +77,7 @@ def test_a_row_is_played_by_keyboard(visit: Opening, service: str, axe: str) -> 
         expect(caption).to_contain_text(move)
         expect(live.filter(has_text=move)).to_have_count(1)
     expect(live.filter(has_text="The ghost frame is at (0.5, 0, 0).")).to_have_count(1)
+    assert typed_names(page) == []
     # The cell of the move is marked.
     marked = page.locator("td.moving input")
     expect(marked).to_have_value("0.5")

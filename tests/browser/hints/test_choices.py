@@ -5,6 +5,7 @@ from collections.abc import Callable
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells, open_exercise
 from tests.browser.test_pages import violations
 
@@ -31,6 +32,7 @@ def test_other_choices_after_full_marks(visit: Opening, service: str, axe: str) 
     page.keyboard.press("Enter")
     expect(choices.first.locator("canvas, svg").first).to_be_visible()
     expect(show).to_have_attribute("aria-expanded", "true")
+    assert typed_names(page) == []
     # One view at a time.
     choices.nth(1).get_by_role("button", name="Show it in 3D").click()
     expect(choices.nth(1).locator("canvas, svg").first).to_be_visible()

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from playwright.sync_api import Page, expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells, open_exercise
 from tests.browser.student.steps import PHONE
 from tests.browser.test_pages import violations
@@ -54,6 +55,7 @@ def test_three_hints_with_a_try_in_between(visit: Opening, service: str, axe: st
     button.click()
     expect(steps).to_have_count(3)
     expect(steps.last).to_contain_text("point your right thumb along")
+    assert typed_names(page) == []
     expect(button).to_be_hidden()
     check(page, "0")
     expect(page.locator(".hints")).to_have_count(0)

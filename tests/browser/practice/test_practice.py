@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells
 from tests.browser.test_pages import violations
 
@@ -45,6 +46,7 @@ def test_a_student_solves_a_robot_and_takes_another(
         cells(page).nth(i).fill(text)
     page.get_by_role("button", name="Check").click()
     expect(page.locator(".practice-done")).to_have_text("✓ Done · 1 robot of this level solved")
+    assert typed_names(page) == []
     assert violations(page, "") == []
     page.wait_for_function(
         "document.querySelector('dh-exercise').shadowRoot.querySelector('.about img').naturalWidth"

@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells, open_exercise
 from tests.browser.test_pages import violations
 
@@ -33,6 +34,7 @@ def test_a_slip_is_marked_and_mended_by_keyboard(visit: Opening, service: str, a
     page.keyboard.press("Control+Enter")
     expect(page.locator(".part .points").first).to_have_text("8 / 8 points")
     expect(page.locator(".messages")).to_contain_text("This was the slip")
+    assert typed_names(page) == []
     assert violations(page, "") == []
     # The answer is still there after a reload.
     page.reload()

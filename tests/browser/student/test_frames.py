@@ -5,6 +5,7 @@ from collections.abc import Callable
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells, open_exercise
 from tests.browser.student.steps import PHONE, check, part
 from tests.browser.test_pages import violations
@@ -37,6 +38,7 @@ def test_frames_are_placed_by_keyboard_and_a_broken_rule_is_shown(
     x = page.get_by_label("direction of x, row frame 3")
     expect(x).to_have_attribute("aria-invalid", "true")
     expect(part(page, 0)).to_contain_text("x must be perpendicular to z of its own frame.")
+    assert typed_names(page) == []
     assert violations(page, "") == []
     x.fill("-x")
     check(page)
@@ -87,6 +89,7 @@ def test_placed_frames_are_in_the_view_and_lead_to_full_marks_on_a_phone(
     expect(told).to_contain_text("Your frame {3}: origin (1.2, 0, 0), x opposite to the base's x")
     expect(page.locator(".told")).to_be_hidden()
     expect(page.get_by_role("checkbox", name="Your frames")).to_be_checked()
+    assert typed_names(page) == []
     assert violations(page, "") == []
     check(page, tap=True)
     expect(page.locator(".total")).to_contain_text("16 / 16 points")

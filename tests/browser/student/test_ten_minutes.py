@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.fixtures import Visit
+from tests.browser.maths.reading import typed_names
 from tests.browser.steps import open_exercise
 from tests.browser.test_pages import violations
 
@@ -65,6 +66,7 @@ def test_six_screens_are_solved_by_keyboard(
         page.keyboard.insert_text(WRONG[screen][0])
         page.keyboard.press("Enter")
         expect(told(page)).to_contain_text(WRONG[screen][1])
+        assert typed_names(page) == []
         page.locator(f"#{screen} input").fill(right)
         page.keyboard.press("Enter")
         expect(told(page)).to_contain_text("Right.")

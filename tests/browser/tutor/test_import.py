@@ -25,7 +25,7 @@ def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
     folder = tmp_path / "written"
     folder.mkdir()
     with served(tmp_path, DH_GRADER_EDITOR_DIR=str(folder)) as server:
-        opened = visit(bypass_csp=True, viewport=NARROW)
+        opened = visit(bypass_csp=True, viewport=NARROW, color_scheme="dark")
         page = opened.page
         page.add_init_script(axe)
         began = monotonic()
@@ -34,6 +34,9 @@ def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
         page.get_by_label("File", exact=True).set_input_files(upload)
         expect(page.get_by_label("Exercise id")).to_have_value("our-ur5e")
         page.get_by_label("Title").fill("The UR5e")
+        colour = "each => getComputedStyle(each).backgroundColor"
+        box = page.get_by_label("or paste it").evaluate(colour)
+        assert page.get_by_label("Title").evaluate(colour) == box
         make = page.get_by_role("button", name="Make the exercise")
         make.click()
         told = page.locator("#imported")

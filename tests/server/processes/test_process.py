@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from service.catalogue import shipped_folder
 from service.server.limits import MAX_CONNECTIONS
 from tests.attack.floods import many_costly
 from tests.guards import ANSWER
@@ -166,7 +167,37 @@ def check_shares(running: Service, staff: set[int]) -> None:
     assert min(more) >= 10
 
 
-def test_workers_balance_connections_and_a_killed_one_is_replaced(
+def request(method: str, path: str, body: object = None) -> bytes:
+    content = b"" if body is None else json.dumps(body).encode()
+    head = f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: {len(content)}\r\n"
+    return head.encode() + b"Connection: close\r\n\r\n" + content
+
+
+def written_draft(running: Service) -> str:
+    """Preview a text in the editor, change its title, and return the id of the draft."""
+    text = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
+    draft = ""
+    for title in ("Planar", "Flat"):
+        changed = {"id": "arm", "text": text.replace("Planar", title), "draft": draft}
+        [answer] = running.ask(request("POST", "/tutor/drafts", changed))
+        assert draft in ("", answer.json()["draft"])
+        draft = answer.json()["draft"]
+    return draft
+
+
+def check_draft(running: Service, draft: str) -> None:
+    """Check that each of some connections, which the workers share, shows the changed draft."""
+    with ExitStack() as lines:
+        opened = [lines.enter_context(running.connect()) for _ in range(6)]
+        for line in opened:
+            line.sendall(request("GET", f"/v1/exercises/{draft}"))
+        found = [answer for line in opened for answer in answers(line)]
+    assert [(answer.status, answer.json().get("title")) for answer in found] == [
+        (200, "Flat RR arm")
+    ] * 6
+
+
+def test_workers_share_connections_and_drafts_and_a_killed_one_is_replaced(
     tmp_path: Path,
 ) -> None:
     with service(tmp_path, "--workers", "2") as running:
@@ -177,11 +208,14 @@ def test_workers_balance_connections_and_a_killed_one_is_replaced(
         before = workers(running)
         assert len(before) == 2
         check_shares(running, before)
+        draft = written_draft(running)
+        check_draft(running, draft)
         os.kill(min(before), signal.SIGKILL)
         until(lambda: running.log.count("startup complete") == 3)
         after = workers(running)
         assert len(after) == 2
         assert len(after & before) == 1
+        check_draft(running, draft)
         check_end(running)
 
 

@@ -1,6 +1,6 @@
 // <dh-play>: a DH table of any robot, with its 3D view, its pose, and the table in the other convention.
 
-import { h, visible } from "../shared/dom.js";
+import { h, message, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
 import { PlayTable } from "./play_table.js";
 import { card, quietButton, Results } from "./results.js";
@@ -119,7 +119,9 @@ export class DhPlay extends HTMLElement {
           h(
             "p",
             { class: "reading" },
-            "Joint i turns by theta_i or slides by d_i. Other letters (a1, alpha1, d1, theta1, l1 …) stand for numbers that you choose below the view. Paste a whole table into one cell, or a block of cells.",
+            ...message(
+              "Joint i turns by `theta_i` or slides by `d_i`. For other letters, such as `a1`, `alpha1`, `d1` or `l1`, you choose numbers below the view. Paste a whole table into one cell, or a block of cells.",
+            ),
           ),
           h("div", { class: "tools" }, this.add),
         ),

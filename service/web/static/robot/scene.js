@@ -17,10 +17,14 @@ import { GapShape, GhostFrames } from "./frames/given_shapes.js";
 import { column } from "./motion.js";
 import { paletteOf } from "./palette.js";
 import { ChainShape, FramesShape, MechanismShape } from "./robot_shapes.js";
-import { Shapes, vector } from "./shapes.js";
+import { NAMES, Shapes, vector } from "./shapes.js";
 
 const FIELD_OF_VIEW = 28;
 const STEEPEST = 1.55;
+// The length of the axes of given frames, as a share of the size.
+const GHOST = 0.26;
+// Half the width of the name of an axis (pixels), which also has some space around it.
+const LETTERS = 14;
 // Half the length at which a click is on a joint axis, as a share of the size.
 const AXIS = 0.3;
 // Without a graphics card, the scene is drawn coarsely while something moves, and finely after this many
@@ -49,7 +53,8 @@ export class RobotScene {
    */
   constructor(stage, inSoftware = false) {
     this.stage = stage;
-    this.size = new Vector2(1, 1);
+    // Until the size of the stage is known.
+    this.size = new Vector2(400, 400);
     this.inSoftware = inSoftware;
     this.renderer = new WebGLRenderer({ antialias: !inSoftware, alpha: true });
     this.renderer.outputColorSpace = SRGBColorSpace;
@@ -119,7 +124,7 @@ export class RobotScene {
     this.placed = placed.length ? new FramesShape(above, placed, 0.2 * size) : null;
     if (this.placed) this.over.add(this.placed.group);
     // The labels of later parts give way to those of earlier ones.
-    this.ghosts = mechanism && new GhostFrames(above, labels, 0.26 * size);
+    this.ghosts = mechanism && new GhostFrames(above, labels, GHOST * size);
     this.gap = mechanism && new GapShape(above, size, this.stage);
     if (this.ghosts && this.gap) this.over.add(this.ghosts.group, this.gap.group);
     this.row = row(above, size, this.stage);
@@ -227,11 +232,14 @@ export class RobotScene {
     const high = points.reduce((most, point) => most.max(point), low.clone());
     const middle = low.clone().add(high).multiplyScalar(0.5);
     const up = new Vector3().crossVectors(towards, across);
-    const room = 0.29 * this.#subject.size;
+    // The names of the given frames lie farthest from their points. They have a fixed size in pixels.
+    const room = NAMES * GHOST * this.#subject.size;
+    const [width, height] = [this.size.x, this.size.y].map((pixels) => Math.max(1 - (2 * LETTERS) / pixels, 0.5));
     const half = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180);
     const needed = points.map((point) => {
       const from = point.clone().sub(middle);
-      const sides = [Math.abs(from.dot(up)) + room, (Math.abs(from.dot(across)) + room) / this.camera.aspect];
+      const [over, beside] = [up, across].map((direction) => Math.abs(from.dot(direction)) + room);
+      const sides = [over / height, beside / (width * this.camera.aspect)];
       return from.dot(towards) + Math.max(...sides) / half;
     });
     this.distance = Math.max(...needed, this.#subject.size);

@@ -19,6 +19,8 @@ import { Labels } from "./labels.js";
 const UP = new Vector3(0, 1, 0);
 /** @type {["x" | "y" | "z", number[]][]} */
 const AXES = [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]];
+/** Where the names of a frame's axes are, as a share of the length of the axes. */
+export const NAMES = 1.16;
 const SHAPES = {
   cylinder: new CylinderGeometry(1, 1, 1, 28),
   thin: new CylinderGeometry(1, 1, 1, 8),
@@ -177,7 +179,7 @@ export class Shapes {
       group.add(shaft, head);
       if (isGhost && name === "y") continue;
       const letter = this.label(name + (index ?? ""), isGhost ? "quiet" : name, 17);
-      letter.position.copy(direction).multiplyScalar(1.16 * length);
+      letter.position.copy(direction).multiplyScalar(NAMES * length);
       group.add(letter);
     }
     group.matrixAutoUpdate = false;

@@ -1,7 +1,8 @@
 // A question of "DH in ten minutes": the service grades the answer, and says what is wrong with it.
 
-import { h, message } from "../shared/dom.js";
+import { h } from "../shared/dom.js";
 import { ARM, ROWS } from "./tour_robot.js";
+import { typesetMessage } from "../typeset/names.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
 
@@ -111,6 +112,6 @@ export class Question {
   /** @param {string} verdict @param {string} text */
   #tell(verdict, text) {
     this.told.dataset.verdict = verdict;
-    this.told.replaceChildren(...message(text));
+    this.told.replaceChildren(...typesetMessage(text));
   }
 }

@@ -7,6 +7,7 @@ import { keepProgress, keptProgress } from "./progress_kept.js";
 import { Question } from "./question.js";
 import { SpaceView } from "./space_view.js";
 import { ARM } from "./tour_robot.js";
+import { typeset } from "../typeset/names.js";
 
 const HOME = new URL("../", import.meta.url).href;
 const LAST = "table";
@@ -46,11 +47,15 @@ function writeTable() {
         spellcheck: "false",
         "aria-label": `${name}, row ${label}`,
       });
-      return h("td", {}, isOwn ? input : texts[i][j] + (j === 1 && texts[i][j] !== "0" ? "°" : ""));
+      return h("td", {}, isOwn ? input : [...typeset(texts[i][j]), j === 1 && texts[i][j] !== "0" ? "°" : ""]);
     });
     return h("tr", {}, h("th", { scope: "row" }, label), ...cells);
   });
-  const caption = h("caption", {}, `Write row ${labels.at(-1)}: from frame {${labels.length - 1}} to the tip.`);
+  const caption = h(
+    "caption",
+    {},
+    ...typeset(`Write row ${labels.at(-1)}: from frame {${labels.length - 1}} to the tip.`),
+  );
   const table = h(
     "table",
     { class: "worked-table" },

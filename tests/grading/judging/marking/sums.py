@@ -1,7 +1,8 @@
 """``python -m tests.grading.judging.marking.sums --answers 1000``: points add up in every report.
 
-Hand in random wrong answers to every part of every shipped exercise. The rows sum to the part, the
-lost points to what is missing, and all of them are whole quarters or hundredths.
+Hand in random wrong answers to every part of every shipped exercise, or with ``--tables`` only to
+the tables. The rows sum to the part, the lost points to what is missing, and all of them are whole
+quarters or hundredths.
 """
 
 import argparse
@@ -42,7 +43,24 @@ def wrong_answers(exercise: Exercise, count: int, seed: int) -> Iterator[dict[st
                 rows.pop(int(rng.integers(len(rows))))
             elif rows and rng.random() < 0.2:
                 rows.insert(int(rng.integers(len(rows))), dict(rows[0]))
+            elif rows and rng.random() < 0.2:
+                slip_throughout(rows, rng)
         yield answers
+
+
+def slip_throughout(rows: list[dict[str, str]], rng: np.random.Generator) -> None:
+    """Change a whole column, exchange two columns, or shift the rows."""
+    column, other = rng.permutation(list(rows[0]))[:2]
+    form = (*WRONG, None, None, None)[int(rng.integers(len(WRONG) + 3))]
+    shifted = rows[1:] + rows[:1]
+    by = int(rng.integers(2))
+    for row, neighbour in zip(rows, [dict(row) for row in shifted], strict=True):
+        if form is not None:
+            row[column] = form.format(row[column])
+        elif by:
+            row[column], row[other] = row[other], row[column]
+        else:
+            row[column] = neighbour[column]
 
 
 def entries(answer: Any) -> Iterator[tuple[Any, Any]]:
@@ -73,6 +91,13 @@ def faults(part: PartReport) -> Iterator[str]:
         yield f"points are not in steps of 1/{steps}"
     if any(each <= 0 for each in lost):
         yield "nothing was lost at a place"
+    # Two fixed rows before the last joint have the same label.
+    wrong = [
+        (row.label, tuple(cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT))
+        for row in rows
+    ]
+    if any(each.row is not None and (each.row, each.cells) not in wrong for each in part.lost):
+        yield "points were lost in other cells than those that are not right"
     if (part.points == part.max_points) is not (part.verdict is Verdict.CORRECT):
         yield "full points for a wrong answer, or less for a right one"
 
@@ -82,12 +107,24 @@ def in_steps(start: float, end: float, *between: float) -> bool:
     return abs(start + sum(between) - end) < 1e-6
 
 
-def run(catalogue: Mapping[str, Exercise], count: int, seed: int) -> tuple[int, list[str]]:
-    """Return the number of parts that were graded, and what was wrong in them."""
+def run(
+    catalogue: Mapping[str, Exercise], count: int, seed: int, kinds: frozenset[str] = frozenset()
+) -> tuple[int, list[str]]:
+    """Return the number of parts that were graded, and what was wrong in them.
+
+    Only parts of these ``kinds`` are answered; without any, all are.
+    """
     graded, found = 0, []
     for exercise in catalogue.values():
-        for answers in wrong_answers(exercise, count, seed):
-            for part in grade(exercise, Submission(answers)).parts:
+        chosen = {part.id for part in exercise.parts if not kinds or part.kind in kinds}
+        for every in wrong_answers(exercise, count if chosen else 0, seed):
+            answers = {part: answer for part, answer in every.items() if part in chosen}
+            report = grade(exercise, Submission(answers))
+            if not in_steps(0, report.points, *(part.points for part in report.parts)):
+                found.append(f"the parts' points are not those of the report: {answers}")
+            for part in report.parts:
+                if part.part not in chosen:
+                    continue
                 graded += 1
                 told = f"{exercise.id} {part.part} {answers[part.part]} {part.lost}"
                 found += [f"{fault}: {told}" for fault in faults(part)]
@@ -100,10 +137,12 @@ def main() -> int:
     parser.add_argument("--answers", type=int, default=1000, help="for each exercise")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--exercise", default="")
+    parser.add_argument("--tables", action="store_true", help="answer only the tables")
     options = parser.parse_args()
     catalogue = load_catalogue(shipped_folder())
     chosen = {name: each for name, each in catalogue.items() if options.exercise in name}
-    graded, found = run(chosen, options.answers, options.seed)
+    kinds = frozenset({QUARTERS} if options.tables else ())
+    graded, found = run(chosen, options.answers, options.seed, kinds)
     shown = "\n".join([*found[:10], f"{len(found)} wrong sums in {graded} parts"])
     sys.stdout.write(f"{shown}\n")
     return int(bool(found))

@@ -6,12 +6,15 @@ import { typeset, typesetMessage } from "../../typeset/names.js";
 
 // The reading of a longer text may be cut off in its cell.
 const LONG = 40;
-const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a block of cells can be pasted into one.";
+const help = () => [
+  h("span", { class: "with-keyboard" }, "Arrow keys and Enter move between cells. "),
+  "A table, a matrix or a block of cells can be pasted into one.",
+];
 
 export class ReadingLine {
   /** @type {Front.PartCell | null} */
   #current = null;
-  element = h("p", { class: "reading" }, HELP);
+  element = h("p", { class: "reading" }, ...help());
 
   /**
    * @param {string} title of the part
@@ -41,7 +44,7 @@ export class ReadingLine {
     const isTold = cell.messages.length > 0;
     this.element.classList.toggle("unread", Boolean(reading?.error) && !isTold);
     // The report below the row says why the cell is not read.
-    if (!reading || (reading.error && isTold)) return this.element.replaceChildren(HELP);
+    if (!reading || (reading.error && isTold)) return this.element.replaceChildren(...help());
     const name = h("strong", {}, ...typeset(visible(`${cell.place.spoken || this.title}: `)));
     if (reading.error) {
       const { suggestion, message: why } = reading.error;
@@ -60,7 +63,7 @@ export class ReadingLine {
       [];
     // The cell itself shows how it is read.
     const isLong = cell.text.length > LONG;
-    if (!isLong && !notes.length) return this.element.replaceChildren(HELP);
+    if (!isLong && !notes.length) return this.element.replaceChildren(...help());
     const whole = isLong ? mathml(reading.mathml) ?? visible(reading.text) : "";
     return this.element.replaceChildren(name, whole, ...notes);
   }

@@ -1,0 +1,19 @@
+"""The place for temporary folders that several processes share."""
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Final
+
+# A folder in memory, which is writable even in a container with a read-only file system.
+_MEMORY: Final = Path("/dev/shm")
+
+
+def temporary_place() -> Path:
+    """Return the folder in memory, or else the folder for temporary files; none may be writable."""
+    if os.access(_MEMORY, os.W_OK):
+        return _MEMORY
+    try:
+        return Path(tempfile.gettempdir())
+    except OSError:
+        return Path.cwd()
