@@ -82,6 +82,43 @@ def free_play(page: Page, service: str) -> None:
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
 
 
+def practice(page: Page, service: str) -> None:
+    """Open a generated robot."""
+    page.goto(f"{service}/practice#practice-1-standard~g9z1")
+    expect(cells(page)).not_to_have_count(0)
+    drawing = page.get_by_role("img", name="Drawing of the robot")
+    drawing.evaluate("image => image.decode()")
+
+
+def ten_minutes(page: Page, service: str) -> None:
+    """Answer a screen of DH in ten minutes with a mistake."""
+    page.goto(f"{service}/learn-dh#alpha")
+    page.locator("#alpha input").fill("-90")
+    page.locator("#alpha").get_by_role("button", name="Check").click()
+    expect(page.locator("#alpha .told")).to_contain_text("The sign of α is wrong")
+    page.evaluate("scrollTo(0, 0)")
+
+
+def frames(page: Page, service: str) -> None:
+    """Place frames, of which one breaks a rule."""
+    open_exercise(page, service, "planar-rrr-frames")
+    placed = ("1,+z,0,0,0,+x", "2,-z,l1,0,0,+x", "3,+z,l1+l2,0,0,+z")
+    for i, text in enumerate(",".join(placed).split(",")):
+        cells(page).nth(i).fill(text)
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator(".part").first).to_contain_text("x must be perpendicular")
+    page.locator(".part").first.evaluate("part => part.scrollIntoView()")
+
+
+def slip(page: Page, service: str) -> None:
+    """Mark a cell in which there is no slip."""
+    open_exercise(page, service, "find-the-slip-scara")
+    page.get_by_role("button", name="mark row 3").click()
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator(".messages")).to_contain_text("The slip is not here")
+    page.locator(".part").first.evaluate("part => part.scrollIntoView()")
+
+
 def solution(page: Page, service: str) -> None:
     """Open a model solution."""
     page.goto(f"{service}/tutor/solutions/scara")
@@ -124,6 +161,10 @@ VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
     "report": report,
     "robot-view": robot_view,
     "free-play": free_play,
+    "practice": practice,
+    "learn-dh": ten_minutes,
+    "frames": frames,
+    "find-the-slip": slip,
     "solution": solution,
     "editor": editor,
     "attempts": attempts,
