@@ -102,28 +102,8 @@ def ten_minutes(page: Page, service: str) -> None:
 def frames(page: Page, service: str) -> None:
     """Place frames, of which one breaks a rule."""
     open_exercise(page, service, "planar-rrr-frames")
-    for i, text in enumerate(
-        [
-            "1",
-            "+z",
-            "0",
-            "0",
-            "0",
-            "+x",
-            "2",
-            "-z",
-            "l1",
-            "0",
-            "0",
-            "+x",
-            "3",
-            "+z",
-            "l1+l2",
-            "0",
-            "0",
-            "+z",
-        ]
-    ):
+    placed = ("1,+z,0,0,0,+x", "2,-z,l1,0,0,+x", "3,+z,l1+l2,0,0,+z")
+    for i, text in enumerate(",".join(placed).split(",")):
         cells(page).nth(i).fill(text)
     page.get_by_role("button", name="Check").click()
     expect(page.locator(".part").first).to_contain_text("x must be perpendicular")

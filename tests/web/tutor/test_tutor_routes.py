@@ -18,6 +18,7 @@ from service.api.application import application
 from service.api.http.bounded_work import WAITING
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, shipped_folder
+from service.catalogue.drafts import Drafts
 from service.cli.commands.grade import commands
 from service.web import Tutoring, web_routes
 from service.web.tutor.class_report import MAX_UPLOAD
@@ -46,9 +47,14 @@ RIGHT = "a\talpha\td\ttheta\na1\t0\t0\ttheta1\na2\t0\t0\ttheta2\n"
 class Tutor:
     """Sends requests to an application in this process, by default from the same machine."""
 
-    def __init__(self, catalogue: Mapping[str, Exercise], editor_dir: Path | None = None) -> None:
+    def __init__(
+        self,
+        catalogue: Mapping[str, Exercise],
+        editor_dir: Path | None = None,
+        drafts: Drafts | None = None,
+    ) -> None:
         access = Access(solutions=None)
-        tutoring = Tutoring(access, (shipped_folder(),), editor_dir)
+        tutoring = Tutoring(access, (shipped_folder(),), editor_dir, drafts=drafts or Drafts())
         self.app = application(catalogue, access=access, pages=web_routes(catalogue, tutoring))
 
     def ask(
@@ -230,6 +236,17 @@ def test_a_draft_is_shown_and_graded_but_not_listed(tutor: Tutor) -> None:
     assert graded.json()["exercise"] == draft
     assert draft not in tutor.ask("GET", "/v1/exercises", host).text
     assert tutor.ask("GET", f"/exercises/{draft}").status_code == 404
+
+
+def test_without_a_writable_folder_the_preview_says_so(
+    catalogue: Mapping[str, Exercise], tmp_path: Path
+) -> None:
+    drafts = Drafts(tmp_path / "missing" / "drafts")
+    answer = Tutor(catalogue, drafts=drafts).ask(
+        "POST", "/tutor/drafts", json={"id": "x", "text": SCARA}
+    )
+    assert answer.status_code == 503
+    assert "TMPDIR" in answer.json()["detail"]
 
 
 def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) -> None:
