@@ -36,6 +36,8 @@ from service.lti.scores.line_items import ensure_line_item, try_refused_again
 # The lifetime of the key of a course, and how long before its end the next one is made.
 _KEY_LIFETIME: Final = timedelta(days=400)
 _KEY_RENEWAL: Final = timedelta(days=30)
+# The last launch of a platform is noted once in this time.
+_MINUTE: Final = timedelta(minutes=1)
 # The custom parameters that are dates of an assignment.
 DATES: Final = ("opens", "due")
 
@@ -77,6 +79,11 @@ def enter(
     if message.role in (LtiRole.PREVIEW, LtiRole.GUEST):
         return _visit(connection, message)
     launched = update(tables.registrations).where(tables.registrations.c.id == mine)
+    # Launches of a class must not wait for each other: they change the rows that they share only if
+    # something is new. Otherwise this row is a lock, so that nothing is made twice.
+    if _is_set_up(connection, message):
+        last = tables.registrations.c.launched_at
+        launched = launched.where(last.is_(None) | (last < now - _MINUTE))
     connection.execute(launched.values(launched_at=now))
     context = context_of(connection, message, now)
     link = _link(connection, message, context, catalogue, now)
@@ -129,6 +136,13 @@ def enrolled(
     return learner
 
 
+def _is_set_up(connection: Connection, message: LaunchMessage) -> bool:
+    """True if a message's resource link is an assignment already."""
+    context = known_context(connection, message)
+    link = None if context is None else _known_link(connection, context.number, message.link)
+    return link is not None and link.assignment is not None
+
+
 def context_of(connection: Connection, message: LaunchMessage, now: datetime) -> Row[Any]:
     """Return the row of a message's context; make it, and its course, if it is new."""
     found = known_context(connection, message)
@@ -153,7 +167,8 @@ def context_of(connection: Connection, message: LaunchMessage, now: datetime) ->
     if message.memberships_url:
         changes["memberships_url"] = message.memberships_url
     mine = tables.contexts.c.number == found.number
-    connection.execute(update(tables.contexts).where(mine).values(changes))
+    if any(found._mapping[name] != value for name, value in changes.items()):
+        connection.execute(update(tables.contexts).where(mine).values(changes))
     return connection.execute(select(tables.contexts).where(mine)).one()
 
 
@@ -275,7 +290,9 @@ def _link(
         connection.execute(insert(tables.resource_links).values(where | values))
         found = _known_link(connection, context.number, message.link)
         assert found is not None
-    else:
+    elif any(
+        found._mapping[name] != each for name, each in values.items() if name != "launched_at"
+    ):
         mine = tables.resource_links.c.number == found.number
         connection.execute(update(tables.resource_links).where(mine).values(values))
     if found.assignment is None:

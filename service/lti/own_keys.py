@@ -5,7 +5,6 @@ A new key is published for a day before it signs: platforms memoize the keys tha
 
 import json
 import secrets
-from collections.abc import Sequence
 from datetime import datetime, timedelta
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
@@ -43,10 +42,10 @@ def published_keys(connection: Connection) -> dict[str, list[dict[str, Any]]]:
     return {"keys": [json.loads(row.public_key) for row in rows]}
 
 
-def own_key_list(connection: Connection) -> Sequence[Row[Any]]:
+def own_key_list(connection: Connection) -> list[Row[Any]]:
     """Return the id of each key, when it was created, and when it begins to sign."""
     chosen = select(own_keys.c.id, own_keys.c.created_at, own_keys.c.signs_from)
-    return connection.execute(chosen.order_by(own_keys.c.created_at)).all()
+    return list(connection.execute(chosen.order_by(own_keys.c.created_at)))
 
 
 def signing_key(connection: Connection, secret: Secret, now: datetime) -> SigningKey:

@@ -4,7 +4,9 @@ import re
 from typing import Any
 
 import pytest
+from sqlalchemy import event, select
 
+from service.attempts.storage.lti_tables import contexts, resource_links
 from tests.lti.conftest import Tool, hidden, token_of
 from tests.lti.platform import LTI, MEMBER, ROLES
 
@@ -132,10 +134,6 @@ def test_only_the_platform_may_frame_the_pages(tool: Tool) -> None:
 
 
 def test_the_services_of_the_platform_are_kept(tool: Tool) -> None:
-    from sqlalchemy import select
-
-    from service.attempts.storage.lti_tables import contexts, resource_links
-
     tool.launch("ada")
     [link] = tool.do(lambda it: it.execute(select(resource_links)).all())
     [context] = tool.do(lambda it: it.execute(select(contexts)).all())
@@ -165,3 +163,24 @@ def test_a_tutor_reviews_the_attempts_of_a_learner(tool: Tool) -> None:
     # A message without the user is refused.
     tool.platform.habits.append(lambda claims: claims.pop(f"{LTI}for_user"))
     assert tool.launch("turing").status_code == 403
+
+
+@KINDS
+def test_launches_of_a_class_share_no_row_that_changes(tool: Tool) -> None:
+    """Otherwise, they would wait for each other in PostgreSQL."""
+    tool.launch("ada")
+    changed = []
+
+    def note(*given: Any) -> None:
+        cursor, statement = given[1], given[2]
+        if statement.startswith("UPDATE") and cursor.rowcount:
+            changed.append(statement.split()[1])
+
+    event.listen(tool.store.engine, "after_cursor_execute", note)
+    tool.launch("grace")
+    event.remove(tool.store.engine, "after_cursor_execute", note)
+    assert changed == ["lti_launches", "lti_learners"]
+    # What is new is noted.
+    tool.platform.habits.append(lambda claims: claims[f"{LTI}resource_link"].update(title="New"))
+    tool.launch("grace")
+    assert tool.do(lambda it: it.scalar(select(resource_links.c.title))) == "New"

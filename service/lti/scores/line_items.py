@@ -44,7 +44,8 @@ def ensure_line_item(connection: Connection, link: int) -> None:
         queue_scores(connection, of_assignment)
     elif row.lineitem_url is not None:
         mine = (line_items.c.resource_link == link) & (line_items.c.assignment == row.assignment)
-        connection.execute(update(line_items).where(mine).values(url=row.lineitem_url))
+        is_new = line_items.c.url.is_distinct_from(row.lineitem_url)
+        connection.execute(update(line_items).where(mine, is_new).values(url=row.lineitem_url))
 
 
 def try_refused_again(connection: Connection, learner: str, now: datetime) -> None:

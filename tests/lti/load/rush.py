@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from html import unescape
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import httpx
 from rich.console import Console
@@ -88,7 +88,7 @@ class Browser:
             assert len(files) > 20, files
             await asyncio.gather(*(self._ask("GET", f"/{each}") for each in files))
         [token] = re.findall(r'data-key="([^"]+)"', text)
-        bearer = {"headers": {"authorization": f"Bearer {token}"}}
+        bearer: dict[str, Any] = {"headers": {"authorization": f"Bearer {token}"}}
         [course] = (await self._ask("GET", "/v1/me", **bearer)).json()["courses"]
         place = {"course": course["id"], "assignment": course["assignments"][0]["id"]}
         for path in ("planar-rr", "planar-rr/figure.svg"):
@@ -97,11 +97,9 @@ class Browser:
         for _ in range(2):
             await self._ask("GET", "/v1/me", **bearer)
 
-    async def _ask(
-        self, method: str, path: str, status: int = 200, **more: object
-    ) -> httpx.Response:
+    async def _ask(self, method: str, path: str, status: int = 200, **more: Any) -> httpx.Response:
         self._rush.requests += 1
-        answer = await self._client.request(method, self._platform.tool + path, **more)  # type: ignore[arg-type]
+        answer = await self._client.request(method, self._platform.tool + path, **more)
         told = re.sub(r"<[^>]*>|\s+", " ", answer.text)[-300:]
         assert answer.status_code == status, f"{method} {path}: {answer.status_code} {told}"
         return answer
