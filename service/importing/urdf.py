@@ -20,6 +20,7 @@ _MOST_JOINTS: Final = 10
 _NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,2})?")
 _TURNING: Final = ("revolute", "continuous")
 _SHOWN: Final = 60
+_ENDS: Final = 5
 
 
 class UnusableUrdfError(ValueError):
@@ -173,7 +174,9 @@ def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]
     collected = _collected(data)
     for name in (tip, base):
         if name is not None and name not in collected.links:
-            raise UnusableUrdfError(f"the file has no link {name[:_SHOWN]!r}")
+            ends = ", ".join(each[:_SHOWN] for each in tips(data)[:_ENDS])
+            reason = f"the file has no link {name[:_SHOWN]!r}; its tree ends at: {ends}"
+            raise UnusableUrdfError(reason)
     path = _path(collected, tip, base)
     first = path[0].parent if path else tip
     return _arm(path, first, tip, snap=True), _arm(path, first, tip, snap=False)

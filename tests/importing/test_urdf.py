@@ -73,7 +73,7 @@ def test_an_undeclared_prefix_does_not_matter() -> None:
 
 
 def test_unknown_links_are_named() -> None:
-    with pytest.raises(UnusableUrdfError, match="no link 'tool9'"):
+    with pytest.raises(UnusableUrdfError, match="no link 'tool9'; its tree ends at: l1"):
         read_urdf(urdf([ONE]), "tool9")
     with pytest.raises(UnusableUrdfError, match="not on the way"):
         read_urdf(urdf([ONE, ONE]), "l1", "l2")

@@ -26,7 +26,7 @@ LEVELS = (1, 2, 3, 4)
 JOINTS = {1: {2, 3}, 2: {3, 4}, 3: {4, 5, 6}, 4: {5, 6, 7}}
 SAMPLE = 2
 # Links to robots are shared, so a robot must never change: the digests of the first ones.
-DIGEST = "a86c9670b8756cd0"
+DIGEST = "bb8280642a5d676c"
 
 
 def digest() -> str:

@@ -18,8 +18,9 @@ _AXES: Final[tuple[AxisDirection, ...]] = (
 )  # fmt: skip
 # A step through all numbers, which leads far from similar ones.
 _STEP: Final = 377
-# Seeds below this get different directions even if some directions make no robot.
-DIFFERENT: Final = 600
+# How far to go if some directions make no robot. It has no divisor in common with the number of
+# all directions of a level, and the first 500 seeds get different robots with it.
+DIFFERENT: Final = 711
 
 
 @dataclass(frozen=True, slots=True)
