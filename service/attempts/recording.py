@@ -8,6 +8,7 @@ from sqlalchemy import Connection, Table, and_, bindparam, func, select
 from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
+from service.attempts.hints import price_so_far
 from service.attempts.outcome import Outcome
 from service.attempts.storage.score_queue import Priority, queue_score
 from service.attempts.storage.tables import attempts, outcomes
@@ -78,7 +79,8 @@ def standing(
     assigned = {row.assignment: row.tried for row in connection.execute(_ASSIGNED, which)}
     outside = all_.number - sum(assigned.values())
     counted = outside if assignment is None else assigned.get(assignment, 0)
-    return Standing(counted, earlier, all_.last or 0)
+    price = price_so_far(connection, exercise, learner, assignment)
+    return Standing(counted, earlier, all_.last or 0, price)
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:

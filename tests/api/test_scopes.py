@@ -88,6 +88,8 @@ BODIES: Mapping[str, Any] = {
     "POST /v1/frames": {**example("frames-request"), "exercise": EXERCISE, "table": None},
     "POST /v1/tokens": {"learner": "ada", "exercises": [EXERCISE], "minutes": 480},
     "POST /v1/exercises/{exercise_id}/attempts": {"learner": "ada", **ANSWERS},
+    # The exercise has no prices of hints.
+    "POST /v1/attempts/{attempt_id}/hints": {"part": "table", "code": "sign", "step": 1},
     "POST /v1/attempts/{attempt_id}/override": {"points": 1, "reason": "A misprint."},
     "POST /v1/learners/forget": {"learner": "nobody", "apply": True},
     "POST /v1/exercises/{exercise_id}/regrade": {"apply": True},

@@ -106,6 +106,7 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "POST /v1/exercises/{exercise_id}/attempts": _record(Reach.PATH),
     "GET /v1/attempts": _attempts(Reach.QUERY, tokens=True, in_course=True),
     "GET /v1/attempts/{attempt_id}": _attempts(Reach.OWN, tokens=True, in_course=True),
+    "POST /v1/attempts/{attempt_id}/hints": _record(Reach.OWN, in_course=True),
     "GET /v1/attempts/export": _attempts(Reach.QUERY, in_course=True),
     "GET /v1/exercises/{exercise_id}/statistics": _attempts(Reach.PATH, in_course=True),
     "POST /v1/attempts/{attempt_id}/override": _change(Reach.OWN, in_course=True),

@@ -112,15 +112,19 @@ declare namespace Front {
     announce(text: string): void;
     edited(): void;
     save(): void;
-    showReport(report: Api.Report): void;
+    showReport(report: Api.Report, attempt?: string): void;
   };
 
   // A place of a message, and the message as it is shown.
   type Topic = { row?: string; cell?: string };
   type Told = { element: HTMLElement; feedback: Api.Feedback; place: Topic };
 
+  // What the hints at the report of an attempt cost: shares of the points of the exercise.
+  type HintPrices = { attempt: string; prices: number[]; taken: Api.TakenHint[]; points: number };
+
   // What hints need from the exercise.
   type HintHost = HTMLElement & {
+    handIn: import("../static/student/handin/hand_in.js").HandIn | null;
     service: import("../static/shared/service.js").Service;
     exercise: Api.Exercise;
     answers: Record<string, unknown>;

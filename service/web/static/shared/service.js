@@ -70,6 +70,11 @@ export class Service {
     return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/hints`), body);
   }
 
+  /** @param {string} attempt @param {Api.AttemptHintRequest} body @returns {Promise<Api.Hint>} */
+  takeHint(attempt, body) {
+    return this.#ask(`v1/attempts/${encodeURIComponent(attempt)}/hints`, body);
+  }
+
   /** @param {string} id @param {Api.ChoicesRequest} body @returns {Promise<Api.FrameChoices>} */
   choices(id, body) {
     return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/choices`), body);

@@ -1,14 +1,15 @@
 // Hints on demand: at each message on a mistake a button, which shows what to look at, then the rule with its picture,
-// then the rule on this row. Between two steps, the student changes the answer and checks it again.
+// then the rule on this row. Between two steps, the student changes the answer and checks it again. At a report on
+// handed-in answers, the service records each step, and it may have a price.
 
 import { h, visible } from "../../shared/dom.js";
+import { priceInWords, pricesOf, tryFirst } from "./prices.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { offerChoices } from "./choices.js";
 
 const STYLE = new URL("./hints.css", import.meta.url).href;
 const STEPS = 3;
 const UNREAD = ["unreadable", "missing"];
-const TRY_FIRST = "Change your answer and check it again. Then the next hint opens.";
 
 /** The steps that a message has had: `tried` are the answers for which the last one was given. */
 /** @typedef {{ steps: Api.Hint[], tried: string }} Had */
@@ -22,25 +23,29 @@ const ALL = new WeakMap();
  * @param {Front.HintHost} host
  * @param {Front.PartView[]} parts
  * @param {Api.Report} report
+ * @param {string} attempt the id of the recorded attempt with this report, if there is one
  */
-export function offerHints(host, parts, report) {
+export function offerHints(host, parts, report, attempt = "") {
   if (!host.shadowRoot?.querySelector(`link[href="${STYLE}"]`)) {
     host.shadowRoot?.append(h("link", { rel: "stylesheet", href: STYLE }));
   }
+  const prices = pricesOf(host.handIn, attempt);
+  const isFree = !host.handIn || (host.handIn.mayPractise && !host.handIn.own.exercise.hint_prices);
   const had = ALL.get(host.exercise) ?? new Map();
   ALL.set(host.exercise, had);
   const answered = { answers: host.answers, angle_unit: host.angleUnit };
   for (const view of parts) {
     const part = report.parts.find((each) => each.part === view.part.id);
     if (!part) continue;
-    offerChoices(host, view, part);
+    if (!host.handIn || host.handIn.mayPractise) offerChoices(host, view, part);
+    if (!isFree && !prices) continue;
     for (const { element, feedback, place } of view.told) {
       if (!hasHints(feedback, verdictAt(part, place))) continue;
       const topic = { part: part.part, code: feedback.code, ...place };
       const key = JSON.stringify(topic);
       const earlier = had.get(key) ?? { steps: [], tried: "" };
       had.set(key, earlier);
-      element.append(new HintBox(host, answered, topic, earlier).element);
+      element.append(new HintBox(host, answered, topic, earlier, prices).element);
     }
   }
 }
@@ -72,12 +77,14 @@ class HintBox {
    * @param {Pick<Api.HintRequest, "answers" | "angle_unit">} answered
    * @param {Front.Topic & { part: string, code: string }} topic
    * @param {Had} had
+   * @param {Front.HintPrices | null} prices null if hints are free
    */
-  constructor(host, answered, topic, had) {
+  constructor(host, answered, topic, had, prices) {
     this.host = host;
     this.answered = answered;
     this.topic = topic;
     this.had = had;
+    this.prices = prices;
     this.symbols = new Set(host.exercise.symbols.map(({ name }) => name));
     this.button = h("button", { type: "button", class: "quiet-button", onclick: () => this.#next() });
     this.note = h("p", { class: "quiet", role: "status" });
@@ -95,8 +102,11 @@ class HintBox {
     this.list.hidden = steps.length === 0;
     this.list.replaceChildren(...steps.map((step) => this.#step(step)));
     this.button.hidden = steps.length === STEPS || !this.#isTried;
-    this.button.textContent = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
-    this.note.textContent = steps.length > 0 && steps.length < STEPS && !this.#isTried ? TRY_FIRST : "";
+    const name = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
+    const price = this.prices ? priceInWords(this.prices, this.topic, steps.length + 1) : "";
+    this.button.textContent = [name, price].filter(Boolean).join(": ");
+    const isOpen = steps.length > 0 && steps.length < STEPS && !this.#isTried;
+    this.note.textContent = isOpen ? tryFirst(this.prices) : "";
   }
 
   /** @param {Api.Hint} hint */
@@ -120,8 +130,12 @@ class HintBox {
     if (this.button.getAttribute("aria-disabled") === "true") return;
     this.button.setAttribute("aria-disabled", "true");
     try {
-      const body = { ...this.answered, ...this.topic, step: this.had.steps.length + 1 };
-      const hint = await this.host.service.hint(this.host.exercise.id, body);
+      const asked = { ...this.topic, step: this.had.steps.length + 1 };
+      const { service, exercise, handIn } = this.host;
+      const hint = this.prices
+        ? await service.takeHint(this.prices.attempt, asked)
+        : await service.hint(exercise.id, { ...this.answered, ...asked });
+      if (this.prices) handIn?.refresh();
       this.had.steps.push(hint);
       this.had.tried = JSON.stringify(this.answered);
       this.#show();
