@@ -221,7 +221,7 @@ def application(
         figures.routes(seen, own),
         frames.routes(seen, access, own),
         health.routes(catalogue, store),
-        model_solutions.routes(practised),
+        model_solutions.routes(practised, access, gate, own),
         tokens.routes(catalogue, access),
         rolls.routes(store, access),
         links.routes(store, access),

@@ -127,6 +127,19 @@ def closed_practice(
     return None
 
 
+def hides_solution(
+    connection: Connection, learner: str, only: str | None, exercise: str, now: datetime
+) -> bool:
+    """True if an assignment of the learner does not show the solution of the exercise now."""
+    return any(
+        exercise in terms.exercises
+        and not terms.shows_solution(
+            now, is_full=has_full_marks(connection, learner, terms.number, exercise)
+        )
+        for _, terms in learner_terms(connection, learner, only)
+    )
+
+
 def has_priced_hints(
     connection: Connection, learner: str, only: str | None, exercise: Exercise, now: datetime
 ) -> bool:

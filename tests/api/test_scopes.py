@@ -81,6 +81,7 @@ BODIES: Mapping[str, Any] = {
         "cell": "a",
         "step": 1,
     },
+    "POST /v1/exercises/{exercise_id}/solution": ANSWERS,
     "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
     "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},

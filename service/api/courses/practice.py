@@ -49,6 +49,28 @@ class PracticeGate:
                 "There are no free hints",
             )
 
+    async def check_solution(self, caller: Caller, exercise: str) -> None:
+        """Raise ProblemError if an assignment of this learner does not show the solution now."""
+        learner = caller.learner
+        if self._store is None or learner is None:
+            return
+        from service.courses.learner_view import hides_solution
+
+        now = datetime.now(UTC)
+        hidden = await ask(
+            self._store,
+            lambda store: store.read(
+                lambda it: hides_solution(it, learner, caller.course, exercise, now)
+            ),
+        )
+        if hidden:
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN,
+                "An assignment does not show you this solution now.",
+                "solution-not-shown",
+                "The solution is not shown",
+            )
+
     async def refusal(self, caller: Caller, exercise: str) -> ProblemError | None:
         """Return why this learner may not practise the exercise now; None if the learner may."""
         learner = caller.learner

@@ -97,6 +97,7 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "POST /v1/exercises/{exercise_id}/grade": _grade(Reach.PATH),
     "POST /v1/exercises/{exercise_id}/hints": _grade(Reach.PATH),
     "POST /v1/exercises/{exercise_id}/choices": _grade(Reach.PATH),
+    "POST /v1/exercises/{exercise_id}/solution": _grade(Reach.PATH),
     "GET /v1/rules/{convention}/{rule}.svg": _EVERYBODY,
     "POST /v1/grade": _grade(Reach.OWN),
     "POST /v1/preview": _grade(Reach.OWN),

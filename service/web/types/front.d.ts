@@ -125,6 +125,7 @@ declare namespace Front {
   // What hints need from the exercise.
   type HintHost = HTMLElement & {
     handIn: import("../static/student/handin/hand_in.js").HandIn | null;
+    bar: import("../static/student/check_bar.js").CheckBar;
     service: import("../static/shared/service.js").Service;
     exercise: Api.Exercise;
     answers: Record<string, unknown>;

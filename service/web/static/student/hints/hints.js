@@ -6,6 +6,7 @@ import { h, visible } from "../../shared/dom.js";
 import { priceInWords, pricesOf, tryFirst } from "./prices.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { offerChoices } from "./choices.js";
+import { offerSolution } from "./solution.js";
 
 const STYLE = new URL("./hints.css", import.meta.url).href;
 const STEPS = 3;
@@ -33,6 +34,7 @@ export function offerHints(host, parts, report, attempt = "") {
   const isFree = !host.handIn || (host.handIn.mayPractise && !host.handIn.own.exercise.hint_prices);
   const had = ALL.get(host.exercise) ?? new Map();
   ALL.set(host.exercise, had);
+  offerSolution(host, parts, report);
   const answered = { answers: host.answers, angle_unit: host.angleUnit };
   for (const view of parts) {
     const part = report.parts.find((each) => each.part === view.part.id);
