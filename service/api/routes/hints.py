@@ -139,8 +139,14 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
             "There is no hint",
         )
     picture = step.rule and f"v1/rules/{step.convention}/{step.rule}.svg"
+    lesson = step.screen and f"learn-dh?convention={step.convention}#{step.screen}"
     return Hint(
-        step=body.step, steps=STEPS, title=step.title, text=step.text, picture=picture or None
+        step=body.step,
+        steps=STEPS,
+        title=step.title,
+        text=step.text,
+        picture=picture or None,
+        lesson=lesson or None,
     )
 
 

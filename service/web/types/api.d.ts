@@ -281,7 +281,7 @@ declare namespace Api {
     exercise: string;
     learner?: string;
   };
-  type Hint = { step: number; steps: number; title: string; text: string; picture?: string; };
+  type Hint = { step: number; steps: number; title: string; text: string; picture?: string; lesson?: string; };
   type HintFigures = { part: string; code: string; taken: number[]; };
   type HintRequest = {
     answers: Record<string, unknown>;

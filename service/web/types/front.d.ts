@@ -57,6 +57,7 @@ declare namespace Front {
   type PreviewService = {
     preview(body: Api.PreviewRequest): Promise<Api.Preview>;
     previews(body: Api.PreviewManyRequest): Promise<Api.PreviewManyResponse>;
+    frames(body: Api.FramesRequest): Promise<Api.Frames>;
   };
   // What the bar of generated robots needs from its host.
   type PracticeHost = HTMLElement & {

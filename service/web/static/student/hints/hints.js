@@ -112,7 +112,7 @@ class HintBox {
   }
 
   /** @param {Api.Hint} hint */
-  #step({ step, title, text, picture }) {
+  #step({ step, title, text, picture, lesson }) {
     return h(
       "li",
       { tabindex: -1 },
@@ -124,6 +124,18 @@ class HintBox {
           src: this.host.colours.figure(this.host.service.address(picture)),
           alt: visible(`${title}: the picture of this rule`),
         })
+        : null,
+      lesson
+        ? h(
+          "p",
+          {},
+          h(
+            "a",
+            { href: this.host.service.address(lesson), target: "_blank", rel: "noopener" },
+            "See it move in DH in ten minutes",
+            h("span", { class: "aloud" }, " (in a new tab)"),
+          ),
+        )
         : null,
     );
   }
