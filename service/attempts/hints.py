@@ -77,8 +77,8 @@ def take(
 ) -> HintRefusedError | None:
     """Record that the learner took a step of a hint; a step that was taken costs nothing again.
 
-    Return why it is refused, or None. The error is not raised: other jobs of the transaction would
-    run again.
+    The steps at a place go on if another wrong answer gets another message there. Return why it is
+    refused, or None. The error is not raised: other jobs of the transaction would run again.
     """
     # Two requests for the same step wait for each other.
     attempt = connection.execute(
@@ -89,7 +89,7 @@ def take(
         .join_from(hints, attempts)
         .where(
             _same_place(attempt),
-            *(hints.c[name] == getattr(wanted, name) for name in ("part", "code", "row", "cell")),
+            *(hints.c[name] == getattr(wanted, name) for name in ("part", "row", "cell")),
         )
         .order_by(hints.c.step)
     ).all()

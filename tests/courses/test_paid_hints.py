@@ -100,6 +100,19 @@ def test_between_two_steps_another_answer_is_handed_in(class_: Class) -> None:
     assert handed_in(class_, "four", RIGHT)["hint_points"] == pytest.approx(1.2)
 
 
+def test_the_steps_at_a_cell_go_on_after_another_mistake(class_: Class) -> None:
+    class_.assign(hint_prices=[0.1, 0.2, 0.3])
+    take(class_, handed_in(class_, "one"), 1)
+    answer = class_.hand_in(
+        "two", {"table": "a1 0 0 θ1\na2 90deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
+    ).json()
+    [told] = answer["report"]["parts"][0]["rows"][1]["cells"][1]["feedback"]
+    assert told["code"] != "half_turn"
+    second = take(class_, answer["attempt"], 2, code=told["code"])
+    assert second.json()["step"] == 2
+    assert [each["step"] for each in class_.own()["hints"]] == [1, 2]
+
+
 def test_a_hint_of_another_learner_has_no_price_for_this_one(class_: Class) -> None:
     class_.assign(hint_prices=[0.2, 0.2, 0.2])
     attempt = handed_in(class_, "one")

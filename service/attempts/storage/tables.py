@@ -208,7 +208,7 @@ hints = Table(
     Column("step", Integer, nullable=False),
     Column("price", Float, nullable=False),
     Column("at", UtcTime, nullable=False),
-    UniqueConstraint("attempt", "part", "code", "row", "cell", "step"),
+    UniqueConstraint("attempt", "part", "row", "cell", "step"),
 )
 
 # Points awarded by a tutor instead of a report's, or NULL to withdraw them; the newest row counts.

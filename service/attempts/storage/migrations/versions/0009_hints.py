@@ -24,5 +24,5 @@ def upgrade() -> None:
         sa.Column("step", sa.Integer, nullable=False),
         sa.Column("price", sa.Float, nullable=False),
         sa.Column("at", UtcTime, nullable=False),
-        sa.UniqueConstraint("attempt", "part", "code", "row", "cell", "step"),
+        sa.UniqueConstraint("attempt", "part", "row", "cell", "step"),
     )

@@ -12,7 +12,7 @@ const STYLE = new URL("./hints.css", import.meta.url).href;
 const STEPS = 3;
 const UNREAD = ["unreadable", "missing"];
 
-/** The steps that a message has had: `tried` are the answers for which the last one was given. */
+/** The steps of the hints at a place: `tried` are the answers for which the last one was given. */
 /** @typedef {{ steps: Api.Hint[], tried: string }} Had */
 
 /** @type {WeakMap<Api.Exercise, Map<string, Had>>} */
@@ -41,10 +41,13 @@ export function offerHints(host, parts, report, attempt = "") {
     if (!part) continue;
     if (!host.handIn || host.handIn.mayPractise) offerChoices(host, view, part);
     if (!isFree && !prices) continue;
+    const offered = new Set();
     for (const { element, feedback, place } of view.told) {
-      if (!hasHints(feedback, verdictAt(part, place))) continue;
+      // After another wrong answer to a cell, its message may be another one: the hints go on.
+      const key = JSON.stringify([part.part, place.row, place.cell]);
+      if (!hasHints(feedback, verdictAt(part, place)) || offered.has(key)) continue;
+      offered.add(key);
       const topic = { part: part.part, code: feedback.code, ...place };
-      const key = JSON.stringify(topic);
       const earlier = had.get(key) ?? { steps: [], tried: "" };
       had.set(key, earlier);
       element.append(new HintBox(host, answered, topic, earlier, prices).element);
@@ -102,7 +105,7 @@ class HintBox {
   #show() {
     const { steps } = this.had;
     this.list.hidden = steps.length === 0;
-    this.list.replaceChildren(...steps.map((step) => this.#step(step)));
+    this.list.replaceChildren(...steps.map((step, i) => this.#step(step, step.title !== steps[i - 1]?.title)));
     this.button.hidden = steps.length === STEPS || !this.#isTried;
     const name = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
     const price = this.prices ? priceInWords(this.prices, this.topic, steps.length + 1) : "";
@@ -111,12 +114,12 @@ class HintBox {
     this.note.textContent = isOpen ? tryFirst(this.prices) : "";
   }
 
-  /** @param {Api.Hint} hint */
-  #step({ step, title, text, picture, lesson }) {
+  /** @param {Api.Hint} hint @param {boolean} isNew the rule is not that of the step before */
+  #step({ title, text, picture, lesson }, isNew) {
     return h(
       "li",
       { tabindex: -1 },
-      step === 1 ? h("strong", {}, ...typesetMessage(visible(title), this.symbols), ". ") : null,
+      isNew ? h("strong", {}, ...typesetMessage(visible(title), this.symbols), ". ") : null,
       ...typesetMessage(visible(text), this.symbols),
       picture
         ? h("img", {

@@ -19,13 +19,12 @@ export function pricesOf(handIn, attempt) {
  * Return the price of a step in words; an empty text if it costs nothing.
  *
  * @param {Front.HintPrices} offer
- * @param {Front.Topic & { part: string, code: string }} topic
+ * @param {Front.Topic & { part: string }} topic
  * @param {number} step
  */
 export function priceInWords({ prices, taken, points }, topic, step) {
   const isTaken = taken.some((each) =>
-    each.step === step && each.part === topic.part && each.code === topic.code && each.row === topic.row &&
-    each.cell === topic.cell
+    each.step === step && each.part === topic.part && each.row === topic.row && each.cell === topic.cell
   );
   if (isTaken) return "you have taken it";
   const price = prices[step - 1];
