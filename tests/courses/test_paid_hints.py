@@ -1,15 +1,21 @@
 """Hints at handed-in answers: their price, the try in between, and what a thief gains by them."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import httpx
 import pytest
+from sqlalchemy import func, select
 
 from service.attempts.attempt import AttemptFilter
+from service.attempts.learner_data import everything_of
+from service.attempts.regrades.outdated import Regrading
 from service.attempts.results.statistics import exercise_statistics
-from service.catalogue import Exercise
+from service.attempts.storage.tables import hints
+from service.attempts.tutoring import forget
+from service.catalogue import Exercise, FeedbackLevel
 from service.contract.courses import AssignmentChange, Extension
 from service.courses.assignments import assignment_of, change_assignment, extend
 from tests.courses.conftest import NO_TWIST, RIGHT, Class, days
@@ -266,3 +272,25 @@ def test_the_solution_for_right_answers_waits_for_the_assignment(
     assert class_.ask("POST", path, answers=answers).status_code == 403
     handed_in(class_, "one", answers)
     assert class_.ask("POST", path, answers=answers).status_code == 200
+
+
+def test_a_learner_s_hints_are_exported_and_forgotten(class_: Class) -> None:
+    class_.assign(hint_prices=PRICES)
+    take(class_, handed_in(class_, "one"), 1)
+    [attempt] = class_.do(lambda it: everything_of(it, "ada"))["attempts"]
+    assert [(each["cell"], each["step"]) for each in attempt["hints"]] == [("alpha", 1)]
+    class_.do(lambda it: forget(it, "ada"))
+    assert class_.do(lambda it: it.scalar(select(func.count()).select_from(hints))) == 0
+
+
+def test_a_regrade_keeps_the_price_of_hints(
+    class_: Class, catalogue: Mapping[str, Exercise]
+) -> None:
+    class_.assign(hint_prices=[0.1, 0, 0])
+    take(class_, handed_in(class_, "one"), 1)
+    handed_in(class_, "two", RIGHT)
+    corrected = replace(catalogue["scara"], version="corrected")
+    regrading = Regrading(corrected, FeedbackLevel.HINTS)
+    with class_.store.engine.connect() as connection:
+        done = regrading.preview(connection, regrading.outdated(connection))
+    assert [(each.before, each.after) for each in done] == [(6.25, 6.25), (5.6, 5.6)]
