@@ -5,7 +5,7 @@ import { number } from "../../shared/dom.js";
 /**
  * Return what the hints at the report of an attempt cost, or null if it has none.
  *
- * @param {import("../handin/hand_in.js").HandIn | null} handIn
+ * @param {Front.HintHost["handIn"]} handIn
  * @param {string} attempt
  * @returns {Front.HintPrices | null}
  */

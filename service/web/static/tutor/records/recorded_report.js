@@ -7,7 +7,7 @@ import { item } from "../../student/messages.js";
 import { PartView } from "../../student/part_view.js";
 import { Previewer } from "../../student/previewer.js";
 import { send } from "../tutor_service.js";
-import { playedTable } from "./played_table.js";
+import { playedTable } from "../../student/report/played_table.js";
 
 const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) =>
   new URL(name, import.meta.url).href

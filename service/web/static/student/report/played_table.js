@@ -1,7 +1,7 @@
 // The 3D view of a recorded table, in which its rows can be played.
 
 import { h } from "../../shared/dom.js";
-import { answersToDraw, tableWords } from "../../student/robot_figure.js";
+import { answersToDraw, tableWords } from "../robot_figure.js";
 
 /**
  * Return a button that opens the 3D view of the table in a part, and the place of the view.
