@@ -10,7 +10,16 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api.courses import assignments, deletion, gradebook, handing_in, links, rolls, scores
+from service.api.courses import (
+    assignments,
+    deletion,
+    gradebook,
+    handing_in,
+    links,
+    paid_hints,
+    rolls,
+    scores,
+)
 from service.api.courses.own_variant import OwnVariants
 from service.api.courses.practice import PracticeGate
 from service.api.document.openapi import HEADING, OTHER_FAILURES, completed, fill_body_schemas
@@ -212,7 +221,7 @@ def application(
         figures.routes(seen, own),
         frames.routes(seen, access, own),
         health.routes(catalogue, store),
-        model_solutions.routes(practised),
+        model_solutions.routes(practised, access, gate, own),
         tokens.routes(catalogue, access),
         rolls.routes(store, access),
         links.routes(store, access),
@@ -221,6 +230,7 @@ def application(
         gradebook.routes(catalogue, store),
         scores.routes(store),
         handing_in.routes(catalogue, feedback, store, access, monitor, cors_origins),
+        paid_hints.routes(catalogue, feedback, store, access, cors_origins),
     ):
         app.include_router(router, responses=OTHER_FAILURES, dependencies=permitted)
         app.interface += (route for route in router.routes if isinstance(route, APIRoute))

@@ -11,6 +11,11 @@ from typing import Final
 MOST_ON_A_PAGE: Final = 100
 
 
+def hint_points(price: float, max_points: float) -> float:
+    """Return the points that hints cost, at most all of them; ``price`` is their share."""
+    return round(min(price, 1.0) * max_points, 6)
+
+
 class GradesFormat(StrEnum):
     """The formats of exported attempts: all attempts, or a gradebook of those that count."""
 
@@ -31,7 +36,8 @@ class NewAttempt:
 
     ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent it;
     idempotency keys are unique for each owner. ``assignment`` is the number of an assignment of a
-    course, or None. ``variant`` is the seed of a variant of the exercise, or None.
+    course, or None. ``variant`` is the seed of a variant of the exercise, or None. ``hint_price``
+    is what the hints before the attempt cost, as a share of its points.
     """
 
     exercise: str
@@ -52,6 +58,7 @@ class NewAttempt:
     request_digest: str
     assignment: int | None = field(default=None, kw_only=True)
     variant: str | None = field(default=None, kw_only=True)
+    hint_price: float = field(default=0.0, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +68,11 @@ class RecordedAttempt(NewAttempt):
     number: int
     id: str
 
+    @property
+    def hint_points(self) -> float | None:
+        """The points that the hints before the attempt cost; None if they cost nothing."""
+        return hint_points(self.hint_price, self.max_points) or None
+
 
 @dataclass(frozen=True, slots=True)
 class Standing:
@@ -68,12 +80,14 @@ class Standing:
 
     ``counted`` is the number of counted attempts in the assignment, or outside of assignments;
     ``earlier`` is the attempt that was already recorded under the same idempotency key, if any.
-    ``last`` is the ordinal of the last attempt in all assignments and none.
+    ``last`` is the ordinal of the last attempt in all assignments and none. ``hint_price`` is what
+    the hints cost that were taken so far, as a share of the points.
     """
 
     counted: int
     earlier: RecordedAttempt | None
     last: int = 0
+    hint_price: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +124,12 @@ class ListedAttempt:
     version: str
     grader: str
     variant: str | None = None
+    hint_price: float = 0.0
+
+    @property
+    def hint_points(self) -> float | None:
+        """The points that the hints before the attempt cost; None if they cost nothing."""
+        return hint_points(self.hint_price, self.max_points) or None
 
     @property
     def earned(self) -> float:

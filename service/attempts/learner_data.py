@@ -27,6 +27,7 @@ from service.attempts.storage.tables import (
     deals,
     earlier_reports,
     extensions,
+    hints,
     keys,
     overrides,
     regrade_queue,
@@ -68,6 +69,7 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
         return _known(row) | {
             "overrides": rows(overrides, overrides.c.attempt == row.number),
             "earlier_reports": rows(earlier_reports, earlier_reports.c.attempt == row.number),
+            "hints": rows(hints, hints.c.attempt == row.number),
         }
 
     mine = select(attempts, assignments.c.course, assignments.c.id.label("in_assignment"))
@@ -121,7 +123,7 @@ def delete_older(connection: Connection, before: datetime) -> int:
 def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
     """Delete attempts with all that is recorded about them; return their number."""
     numbers = select(attempts.c.number).where(chosen)
-    for table in (regrade_queue, earlier_reports, overrides):
+    for table in (regrade_queue, earlier_reports, overrides, hints):
         connection.execute(delete(table).where(table.c.attempt.in_(numbers)))
     return connection.execute(delete(attempts).where(chosen)).rowcount
 

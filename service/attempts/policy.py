@@ -1,8 +1,9 @@
-"""The rules for attempts: opening and closing times, the limit, and points of late attempts."""
+"""The rules for attempts: times, the limit, and points of late attempts and after hints."""
 
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.attempts.attempt import hint_points
 from service.catalogue.attempts import AttemptsSpec
 
 
@@ -44,6 +45,11 @@ def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
             "no-attempts-left", f"No attempt is left: the {attempts} used up."
         )
     return Ruling(counted + 1, is_late, rules.late_worth if is_late else 1.0)
+
+
+def points_after(points: float, max_points: float, hint_price: float, worth: float) -> float:
+    """Return the points of a report without the price of hints, as a late attempt earns them."""
+    return round(max(0.0, points - hint_points(hint_price, max_points)) * worth, 6)
 
 
 def _formatted(moment: datetime) -> str:

@@ -18,6 +18,7 @@ from sqlalchemy import (
 from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
+from service.attempts.hints import PRICE
 from service.attempts.outcome import Outcome
 from service.attempts.storage.lti_tables import line_items
 from service.attempts.storage.score_queue import Priority, queue_score
@@ -43,7 +44,12 @@ def _standing(counted: ColumnElement[int]) -> Select[Any]:
     )
     # Deleted attempts leave gaps in the ordinals.
     last = func.coalesce(func.max(attempts.c.ordinal), 0)
-    columns = (last.label("last"), counted.label("counted"), earlier.label("earlier"))
+    columns = (
+        last.label("last"),
+        counted.label("counted"),
+        earlier.label("earlier"),
+        PRICE.label("hint_price"),
+    )
     return select(*columns).where(_OF_LEARNER)
 
 
@@ -106,13 +112,12 @@ def standing(
         "owner": owner,
         "idempotency_key": idempotency_key,
     }
-    if assignment is None:
-        row = connection.execute(_OUTSIDE, which).one()
-    else:
-        row = connection.execute(_IN_ASSIGNMENT, which | {"assignment": assignment}).one()
+    which |= {"assignment": assignment}
+    statement = _OUTSIDE if assignment is None else _IN_ASSIGNMENT
+    row = connection.execute(statement, which).one()
     found = row.earlier and connection.execute(_EARLIER, {"number": row.earlier}).one_or_none()
     earlier = RecordedAttempt(**found._mapping) if found else None
-    return Standing(row.counted, earlier, row.last)
+    return Standing(row.counted, earlier, row.last, float(row.hint_price))
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:

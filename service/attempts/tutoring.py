@@ -16,6 +16,7 @@ from service.attempts.storage.tables import (
     deals,
     earlier_reports,
     extensions,
+    hints,
     keys,
     overrides,
     regrade_queue,
@@ -93,7 +94,7 @@ def forget(connection: Connection, learner: str) -> LearnerData:
 def _forget(connection: Connection, learner: str) -> LearnerData:
     data = data_of(connection, learner)
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
-    for table in (regrade_queue, earlier_reports, overrides):
+    for table in (regrade_queue, earlier_reports, overrides, hints):
         connection.execute(delete(table).where(table.c.attempt.in_(mine)))
     forget_scores(connection, learner)
     for table in (attempts, extensions, deals, course_learners, keys, lti_tables.learners):

@@ -7,6 +7,8 @@ from pydantic import AwareDatetime, Field, model_validator
 from service.catalogue.files.fields import StrictModel
 
 Worth = Annotated[float, Field(ge=0, le=1)]
+# The price of each step of a hint, as a share of the points of the exercise.
+HintPrices = Annotated[list[Worth], Field(min_length=3, max_length=3)]
 
 
 class AttemptsSpec(StrictModel):
@@ -25,6 +27,11 @@ class AttemptsSpec(StrictModel):
     """The share of its points that a late attempt earns."""
     counts: Literal["best", "last"] = "best"
     """The attempt of a learner that counts: the one with the most points, or the last one."""
+
+    hint_prices: HintPrices | None = None
+    """The price of the three steps of a hint, as shares of the points of the exercise:
+    [0, 0.05, 0.1]. The hints that a learner takes reduce the points of the later attempts. Default:
+    recorded attempts have no hints."""
 
     @model_validator(mode="after")
     def _in_order(self) -> "AttemptsSpec":

@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated, Any, Final
 
-from pydantic import BaseModel, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from service.grading import Report
 from service.submissions.body import GradeRequest
@@ -30,6 +30,9 @@ Learner = Annotated[
 ]
 
 
+HintLabel = Annotated[str, StringConstraints(max_length=40, pattern=r"^[^\x00]+$")]
+
+
 class AttemptRequest(GradeRequest):
     """Answers to an exercise, to be recorded."""
 
@@ -49,8 +52,15 @@ class Attempt(BaseModel):
     )
     at: datetime
     is_late: bool
-    points: float = Field(description="The report's points, reduced for a late attempt.")
+    points: float = Field(
+        description="The report's points, reduced by the price of hints and for a late attempt."
+    )
     max_points: float
+    hint_points: float | None = Field(
+        None,
+        description="The points that the hints cost that the learner took before this attempt; "
+        "absent if they cost nothing.",
+    )
 
 
 class AttemptResponse(BaseModel):
@@ -104,6 +114,33 @@ class EarlierReport(BaseModel):
     report: Report
 
 
+class AttemptHintRequest(BaseModel):
+    """A message of the report on a recorded attempt, and the step of its hint."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    part: HintLabel = Field(description="The id of the part that the message is on.")
+    code: HintLabel = Field(description="The code of the message.")
+    row: HintLabel | None = Field(None, description="The row of the message or of its place.")
+    cell: HintLabel | None = Field(None, description="The cell of the message or of its place.")
+    step: Annotated[int, Field(strict=True, ge=1, le=3)] = Field(
+        description="The next step, or one that the learner has taken: it costs nothing again."
+    )
+
+
+class TakenHint(BaseModel):
+    """A step of a hint that a learner took at a recorded attempt."""
+
+    attempt: str = Field(description="The id of the attempt with the message.")
+    part: str
+    code: str
+    row: str | None = Field(None, description="The row of the message, if it has one.")
+    cell: str | None = Field(None, description="The cell of the message, if it has one.")
+    step: int
+    price: float = Field(description="The share of the points of the exercise that it costs.")
+    at: datetime
+
+
 class AttemptDetail(BaseModel):
     """A recorded attempt with its answers and all its reports."""
 
@@ -112,3 +149,6 @@ class AttemptDetail(BaseModel):
     report: Report
     overrides: list[AttemptOverride] = Field(description="The overrides, oldest first.")
     earlier_reports: list[EarlierReport] = Field(description="The old reports, oldest first.")
+    hints: list[TakenHint] = Field(
+        [], description="The hints that the learner took before this attempt, oldest first."
+    )

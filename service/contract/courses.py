@@ -6,6 +6,7 @@ from typing import Annotated, Final, Literal
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StringConstraints
 
 from service.catalogue import FeedbackLevel
+from service.catalogue.attempts import HintPrices
 from service.contract.attempts import Learner
 
 MOST_LEARNERS: Final = 5000
@@ -170,7 +171,10 @@ _Feedback = Annotated[list[FeedbackLevel], Field(min_length=1, max_length=100)]
 
 
 class AssignmentChange(_Request):
-    """The fields of an assignment that change; null removes a date, the limit or the feedback."""
+    """The fields of an assignment that change.
+
+    Null removes a date, the limit, the feedback or the prices of hints.
+    """
 
     title: _Line | None = Field(None, description="The title.")
     exercises: _Exercises | None = Field(None, description="The exercises and their points.")
@@ -208,6 +212,11 @@ class AssignmentChange(_Request):
         description="Whether each learner gets a variant of their own of each exercise that has "
         "variants. Default: false. If it becomes false, all learners get the same exercise.",
     )
+    hint_prices: HintPrices | None = Field(
+        None,
+        description="The price of the three steps of a hint, as shares of the points of the "
+        "exercise. Default: that of each exercise; without any, attempts have no hints.",
+    )
 
 
 class NewAssignment(AssignmentChange):
@@ -244,6 +253,9 @@ class CourseAssignment(BaseModel):
     practice: Practice
     solution: ShowSolution
     variants: bool = Field(description="True if each learner gets a variant of their own.")
+    hint_prices: list[float] | None = Field(
+        None, description="The price of each step of a hint; absent for that of each exercise."
+    )
     extensions: list[Extension] = Field(description="The learners with other dates or limits.")
 
 

@@ -40,6 +40,11 @@ class Hint(BaseModel):
         description="The path of the picture of the rule, an SVG, from the address of the service. "
         "`text` says the same in words. Absent in other steps, and if the rule has no picture.",
     )
+    lesson: str | None = Field(
+        None,
+        description="The path of the page that explains the rule, from the address of the service. "
+        "Absent in other steps, and if no page does.",
+    )
 
 
 _Formula = Annotated[str, Field(max_length=200)]

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field, StringConstraints
 
-from service.contract.attempts import Attempt, Learner
+from service.contract.attempts import Attempt, Learner, TakenHint
 from service.contract.courses import AssignmentState
 from service.submissions.body import GradeRequest
 
@@ -40,6 +40,12 @@ class OwnExercise(BaseModel):
     attempts_left: int | None = Field(None, description="Absent if attempts are not limited.")
     may_practise: bool = Field(description="True if answers may be graded without being recorded.")
     shows_solution: bool = Field(description="True if the learner may see the solution now.")
+    hint_prices: list[float] | None = Field(
+        None,
+        description="The price of each step of a hint, as a share of the points; absent if "
+        "attempts have no hints.",
+    )
+    hints: list[TakenHint] = Field([], description="The hints that the learner took.")
     attempts: list[OwnAttempt] = Field(description="The learner's attempts, oldest first.")
 
 

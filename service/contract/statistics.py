@@ -42,6 +42,19 @@ class MisconceptionFigures(BaseModel):
     )
     attempts: int = Field(description="The number of attempts with this code.")
     by_day: dict[str, int] = Field(description="The number of these attempts by day, in UTC.")
+    by_attempt: list[int] = Field(
+        [],
+        description="The number of learners with this code in their first attempt, in their "
+        "second one, and so on. `learners_by_attempt` has the numbers of all learners.",
+    )
+
+
+class HintFigures(BaseModel):
+    """How often learners took the hints for the messages of a code, at recorded attempts."""
+
+    part: str
+    code: str
+    taken: list[int] = Field(description="The number of times for each of the three steps.")
 
 
 class IdenticalAnswers(BaseModel):
@@ -61,4 +74,9 @@ class ExerciseStatistics(BaseModel):
     learners: int
     parts: list[PartFigures]
     misconceptions: list[MisconceptionFigures] = Field(description="The most common ones first.")
+    learners_by_attempt: list[int] = Field(
+        [],
+        description="The number of learners who made a first attempt, a second one, and so on.",
+    )
+    hints: list[HintFigures] = Field([], description="The hints most often taken first.")
     identical: list[IdenticalAnswers] = Field(description="The largest groups first.")

@@ -9,6 +9,7 @@ from zoneinfo import ZoneInfo
 
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
+from service.attempts.policy import points_after
 from service.attempts.recording import insert_or_ignore
 from service.attempts.storage.score_queue import Priority, queue_scores
 from service.attempts.storage.tables import assignments, attempts, course_learners, extensions
@@ -137,6 +138,7 @@ def assignments_of(connection: Connection, course: str) -> list[CourseAssignment
             practice=row.practice,
             solution=row.solution,
             variants=row.variants is not None,
+            hint_prices=None if row.hint_prices is None else json.loads(row.hint_prices),
             extensions=extensions_of.get(row.number, []),
         )
         for row in rows
@@ -170,7 +172,7 @@ def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) ->
                 values[name] = _moment(value, zone)
             case "limit":
                 values["max_attempts"] = value
-            case "feedback":
+            case "feedback" | "hint_prices":
                 values[name] = None if value is None else json.dumps(value)
             case "variants" if value is not None:
                 values[name] = secrets.token_hex(32) if value else None
@@ -206,7 +208,8 @@ def _checked(connection: Connection, course: str, assignment: str) -> CourseAssi
 
 def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
     """Give late attempts that are not late any more all points of their reports."""
-    late = select(attempts.c.number, attempts.c.learner, attempts.c.at, attempts.c.report).where(
+    named = ("number", "learner", "at", "report", "max_points", "hint_price")
+    late = select(*(attempts.c[name] for name in named)).where(
         attempts.c.assignment == row.number, attempts.c.is_late
     )
     given = select(extensions).where(extensions.c.assignment == row.number)
@@ -216,7 +219,8 @@ def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
         mine = own.get(attempt.learner)
         due = extended(row, zone, None if mine is None else mine.due).due
         if due is None or attempt.at <= due:
-            points = round(json.loads(attempt.report)["points"], 6)
+            points = json.loads(attempt.report)["points"]
+            points = points_after(points, attempt.max_points, attempt.hint_price, 1.0)
             connection.execute(
                 update(attempts)
                 .where(attempts.c.number == attempt.number)

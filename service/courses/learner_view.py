@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import Connection, case, select
+from sqlalchemy import Connection, case, or_, select
 
 from service.attempts.attempt import ListedAttempt
+from service.attempts.hints import hints_of
+from service.attempts.policy import points_after
 from service.attempts.results.listing import LISTED
 from service.attempts.storage.tables import attempts, course_learners, courses
 from service.catalogue import Exercise
@@ -29,10 +31,10 @@ _FULL = 1 - 1e-9
 
 @dataclass(frozen=True, slots=True)
 class _Done:
-    """An attempt, and its points before any deduction for lateness."""
+    """An attempt, and the points of its report."""
 
     attempt: ListedAttempt
-    whole_points: float
+    report_points: float
 
     @property
     def share(self) -> float:
@@ -42,7 +44,17 @@ class _Done:
     @property
     def whole_share(self) -> float:
         """The points before a deduction for lateness as a share of 1; a tutor's points if given."""
-        return self.share if self.attempt.awarded is not None else self._share(self.whole_points)
+        done = self.attempt
+        if done.awarded is not None:
+            return self.share
+        return self._share(
+            points_after(self.report_points, done.max_points, done.hint_price, worth=1.0)
+        )
+
+    @property
+    def report_share(self) -> float:
+        """The points of the report as a share of 1; a tutor's points if given."""
+        return self.share if self.attempt.awarded is not None else self._share(self.report_points)
 
     def _share(self, points: float) -> float:
         return points / self.attempt.max_points if self.attempt.max_points else 0.0
@@ -75,12 +87,18 @@ def own_view(
         for course, found in groupby(learner_terms(connection, learner, only), lambda it: it[0])
     }
 
-    def titles(terms: LearnerTerms) -> dict[str, str]:
-        known = {name: catalogue[name] for name in terms.exercises if name in catalogue}
-        return {
-            name: own_variant(connection, terms, learner, exercise).title
-            for name, exercise in known.items()
-        }
+    taken = hints_of(connection, learner)
+
+    def own(terms: LearnerTerms) -> list[OwnExercise]:
+        found = []
+        for name in terms.exercises:
+            exercise = catalogue.get(name)
+            if exercise is not None:
+                exercise = own_variant(connection, terms, learner, exercise)
+            place = (terms.number, name)
+            state = _exercise(name, exercise, terms, done.get(place, []), now)
+            found.append(state.model_copy(update={"hints": taken.get(place, [])}))
+        return found
 
     return OwnCourses(
         learner=learner,
@@ -88,9 +106,7 @@ def own_view(
         courses=[
             OwnCourse(
                 **row._mapping,
-                assignments=[
-                    _assignment(each, done, titles(each), now) for each in terms.get(row.id, ())
-                ],
+                assignments=[_assignment(each, own(each), now) for each in terms.get(row.id, ())],
             )
             for row in rows
         ],
@@ -111,15 +127,41 @@ def closed_practice(
     return None
 
 
+def hides_solution(
+    connection: Connection, learner: str, only: str | None, exercise: str, now: datetime
+) -> bool:
+    """True if an assignment of the learner does not show the solution of the exercise now."""
+    return any(
+        exercise in terms.exercises
+        and not terms.shows_solution(
+            now, is_full=has_full_marks(connection, learner, terms.number, exercise)
+        )
+        for _, terms in learner_terms(connection, learner, only)
+    )
+
+
+def has_priced_hints(
+    connection: Connection, learner: str, only: str | None, exercise: Exercise, now: datetime
+) -> bool:
+    """True if the learner can hand the exercise in, and hints have a price then."""
+    return any(
+        exercise.plain_id in terms.exercises
+        and terms.hint_prices(exercise) is not None
+        and terms.state(now) in ("open", "late")
+        for _, terms in learner_terms(connection, learner, only)
+    )
+
+
 def has_full_marks(connection: Connection, learner: str, number: int, exercise: str) -> bool:
-    """True if an attempt of the learner in this assignment has full marks, late or not."""
+    """True if an attempt of the learner has full marks here, if late or after hints, too."""
     return _is_full(_attempts(connection, learner).get((number, exercise), []))
 
 
 def _attempts(connection: Connection, learner: str) -> _Attempts:
     found: dict[tuple[int, str], list[_Done]] = {}
     # Dividing the points by the worth would lose them if it is 0, and digits if it is small.
-    reduced = case((attempts.c.worth != 1, attempts.c.report))
+    is_reduced = or_(attempts.c.worth != 1, attempts.c.hint_price != 0)
+    reduced = case((is_reduced, attempts.c.report))
     rows = connection.execute(
         select(*LISTED, attempts.c.assignment, reduced)
         .where(attempts.c.learner == learner, attempts.c.assignment.is_not(None))
@@ -132,9 +174,7 @@ def _attempts(connection: Connection, learner: str) -> _Attempts:
     return found
 
 
-def _assignment(
-    terms: LearnerTerms, done: _Attempts, titles: Mapping[str, str], now: datetime
-) -> OwnAssignment:
+def _assignment(terms: LearnerTerms, exercises: list[OwnExercise], now: datetime) -> OwnAssignment:
     rules = terms.rules
     return OwnAssignment(
         id=terms.id,
@@ -146,19 +186,12 @@ def _assignment(
         late_worth=rules.late_worth,
         limit=rules.limit,
         is_extended=terms.is_extended,
-        exercises=[
-            _exercise(name, terms, done.get((terms.number, name), []), titles.get(name, name), now)
-            for name in terms.exercises
-        ],
+        exercises=exercises,
     )
 
 
 def _exercise(
-    name: str,
-    terms: LearnerTerms,
-    done: list[_Done],
-    title: str,
-    now: datetime,
+    name: str, exercise: Exercise | None, terms: LearnerTerms, done: list[_Done], now: datetime
 ) -> OwnExercise:
     counted = [
         each
@@ -170,13 +203,14 @@ def _exercise(
     tried = sum(each.attempt.ordinal is not None for each in done)
     return OwnExercise(
         exercise=name,
-        title=title,
+        title=name if exercise is None else exercise.title,
         points=points,
         earned=None if best is None else round(best.share * points, 6),
         best=max((round(each.whole_share * points, 6) for each in counted), default=None),
         attempts_left=None if limit is None else max(0, limit - tried),
         may_practise=terms.may_practise(now, is_full=is_full),
         shows_solution=terms.shows_solution(now, is_full=is_full),
+        hint_prices=None if exercise is None else terms.hint_prices(exercise),
         attempts=[
             OwnAttempt(
                 **{field: getattr(each.attempt, field) for field in _SHOWN},
@@ -189,8 +223,8 @@ def _exercise(
     )
 
 
-_SHOWN = ("id", "exercise", "learner", "ordinal", "is_late", "max_points")
+_SHOWN = ("id", "exercise", "learner", "ordinal", "is_late", "max_points", "hint_points")
 
 
 def _is_full(done: list[_Done]) -> bool:
-    return any(each.whole_share >= _FULL for each in done)
+    return any(each.report_share >= _FULL for each in done)

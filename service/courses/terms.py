@@ -68,6 +68,12 @@ class LearnerTerms:
         most = min(exercise.feedback_by_attempt, key=list(FeedbackLevel).index)
         return least(self.feedback[min(ordinal, len(self.feedback)) - 1], most)
 
+    def hint_prices(self, exercise: Exercise) -> list[float] | None:
+        """The price of each step of a hint; None if attempts at the exercise have no hints."""
+        if self.rules.hint_prices is None:
+            return exercise.attempts.hint_prices
+        return self.rules.hint_prices
+
     def state(self, now: datetime) -> AssignmentState:
         """Whether the learner can hand in."""
         if self.rules.opens is not None and now < self.rules.opens:
@@ -163,6 +169,7 @@ def extended(
         due=local(new_due, zone),
         closes=local(new_closes, zone),
         late_worth=row.late_worth,
+        hint_prices=None if row.hint_prices is None else json.loads(row.hint_prices),
     )
 
 

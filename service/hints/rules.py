@@ -36,6 +36,20 @@ class Rule:
         return self.modified if is_modified and self.modified else self.statement
 
 
+# The screens of *DH in ten minutes* that explain a rule.
+SCREENS: Final[Mapping[RuleName, str]] = {
+    "link_length": "a",
+    "link_twist": "alpha",
+    "link_offset": "d",
+    "joint_angle": "theta",
+    "joint_variable": "theta",
+    "rows": "table",
+    "convention": "table",
+    "frame_z": "frames",
+    "frame_origin": "frames",
+    "frame_x": "frames",
+}
+
 RULES: Final[Mapping[RuleName, Rule]] = {
     "link_length": Rule(
         "Link length a",

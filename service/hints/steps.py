@@ -20,7 +20,7 @@ from service.grading.report import (
     Verdict,
     messages_of,
 )
-from service.hints.rules import OF_COLUMN, RULES
+from service.hints.rules import OF_COLUMN, RULES, SCREENS
 from service.kinematics.dh import Convention
 
 STEPS: Final = 3
@@ -48,12 +48,16 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class HintStep:
-    """A step of a hint. ``rule`` is the name of the rule if the step has its picture."""
+    """A step of a hint. ``rule`` is the name of the rule if the step has its picture.
+
+    ``screen`` is that of *DH in ten minutes* which explains the rule, or "" if there is none.
+    """
 
     title: str
     text: str
     convention: Convention
     rule: RuleName | None = None
+    screen: str = ""
 
 
 def has_hints(message: Feedback, verdict: Verdict) -> bool:
@@ -76,7 +80,8 @@ def hint_step(
     rule = RULES[name]
     if step == 2:
         pictured = name if rule.pictured else None
-        return HintStep(rule.title, rule.stated(convention), convention, pictured)
+        screen = SCREENS.get(name, "")
+        return HintStep(rule.title, rule.stated(convention), convention, pictured, screen)
     text = rule.look if step == 1 else rule.apply
     fields = _fields(topic, part, convention, told)
     return HintStep(rule.title, text.format_map(fields), convention)

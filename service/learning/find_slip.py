@@ -46,13 +46,16 @@ class DrawnSlip:
         return self.places[0]
 
 
-# The grader's judgement of a table; None if it is right.
-JudgeTable: TypeAlias = Callable[[TableTexts], TableBlame | None]
+# The grader's judgement of a table at the samples of a turn; None if it is right.
+JudgeTable: TypeAlias = Callable[[TableTexts, int], TableBlame | None]
 
 # The columns in which neighbours on parallel or equal axes share an offset.
 _SHARED: Final = (D, THETA)
 # Tables that are judged for one draw at most.
 MAX_TRIES: Final = 60
+# Further samples at which the grader must find the same slip: the explanation of a few tables
+# depends on the samples.
+CONFIRMATIONS: Final = 5
 
 
 class NoSlipError(ValueError):
@@ -74,8 +77,10 @@ def drawn_slip(
     for _, (name, change) in zip(range(MAX_TRIES), _tries(table, seed, wanted), strict=False):
         checkpoint()
         texts = table.changed(change)
-        blame = judge_table(texts)
-        if blame is not None and (places := _places(name, change, blame)):
+        blame = judge_table(texts, 0)
+        if blame is None or not (places := _places(name, change, blame)):
+            continue
+        if all(judge_table(texts, turn) == blame for turn in range(1, CONFIRMATIONS + 1)):
             return DrawnSlip(name, texts, table, places)
     named = "slip" if wanted is None else f"slip {wanted}"
     raise NoSlipError(f"the {convention.value} table of this robot has no {named} to find")

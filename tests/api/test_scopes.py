@@ -81,6 +81,7 @@ BODIES: Mapping[str, Any] = {
         "cell": "a",
         "step": 1,
     },
+    "POST /v1/exercises/{exercise_id}/solution": ANSWERS,
     "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
     "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},
@@ -88,6 +89,8 @@ BODIES: Mapping[str, Any] = {
     "POST /v1/frames": {**example("frames-request"), "exercise": EXERCISE, "table": None},
     "POST /v1/tokens": {"learner": "ada", "exercises": [EXERCISE], "minutes": 480},
     "POST /v1/exercises/{exercise_id}/attempts": {"learner": "ada", **ANSWERS},
+    # The exercise has no prices of hints.
+    "POST /v1/attempts/{attempt_id}/hints": {"part": "table", "code": "sign", "step": 1},
     "POST /v1/attempts/{attempt_id}/override": {"points": 1, "reason": "A misprint."},
     "POST /v1/learners/forget": {"learner": "nobody", "apply": True},
     "POST /v1/exercises/{exercise_id}/regrade": {"apply": True},

@@ -3,7 +3,7 @@ from datetime import UTC, datetime, timedelta, timezone
 import pytest
 from pydantic import ValidationError
 
-from service.attempts.policy import AttemptRefusedError, Ruling, ruling
+from service.attempts.policy import AttemptRefusedError, Ruling, points_after, ruling
 from service.catalogue.attempts import AttemptsSpec
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
@@ -40,6 +40,23 @@ def test_a_late_attempt_earns_its_share_until_the_exercise_closes() -> None:
     assert refusal(rules, 0, NOON + 2 * HOUR) == "closed"
 
 
+@pytest.mark.parametrize(
+    ("points", "price", "worth", "expected"),
+    [
+        (24, 0, 1, 24),
+        (24, 0.25, 1, 18),
+        # A late attempt earns its share of what is left.
+        (24, 0.25, 0.5, 9),
+        (4, 0.25, 1, 0),
+        (24, 1.5, 1, 0),
+    ],
+)
+def test_hints_reduce_the_points_before_lateness(
+    points: float, price: float, worth: float, expected: float
+) -> None:
+    assert points_after(points, 24, price, worth) == expected
+
+
 def test_moments_of_other_zones_are_compared_as_moments() -> None:
     in_berlin = NOON.astimezone(timezone(HOUR))
     assert refusal(AttemptsSpec(opens=in_berlin + HOUR), 0, NOON) == "not-open"
@@ -53,6 +70,9 @@ def test_moments_of_other_zones_are_compared_as_moments() -> None:
         {"due": NOON, "closes": NOON - HOUR},
         {"limit": 0},
         {"late_worth": 1.5},
+        {"hint_prices": [0, 0.1]},
+        {"hint_prices": [0, 0.1, 1.5]},
+        {"hint_prices": [0, -0.1, 0]},
     ],
 )
 def test_rules_that_make_no_sense_are_refused(wrong: dict[str, object]) -> None:

@@ -202,6 +202,8 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(page.locator(".groups")).to_contain_text(f"2 learners: {PICTURE}, grace")
     # The text alternative of the chart: two attempts today.
     expect(page.get_by_role("img", name=re.compile(r"^\d+ \w+ 20\d\d: 2$")).first).to_be_visible()
+    # Nobody has made a second attempt, so there is no learning curve yet.
+    expect(page.locator(".curve")).to_have_count(0)
     assert wide(page) <= NARROW["width"]
     page.get_by_role("button", name="Preview regrade").click()
     expect(page.get_by_text("All attempts were graded by this version")).to_be_visible()
@@ -279,6 +281,12 @@ def test_the_pages_of_attempts_are_accessible(
         page.get_by_role("button", name="Preview regrade").click()
         expect(page.get_by_role("button", name="Stop")).to_be_hidden()
         page.wait_for_timeout(100)
+    check()
+    # The mistake is gone in the second attempt.
+    recording.record("grace", RIGHT)
+    page.reload()
+    curve = page.get_by_role("img", name="attempt 1: 67 % of 3, attempt 2: 0 % of 1")
+    expect(curve.first).to_be_visible()
     check()
     # A service without a database explains how to add one.
     page.goto(f"{service}/tutor/attempts")

@@ -24,7 +24,7 @@ TICK = timedelta(microseconds=1)
 def judged(now: datetime, closes: str | None, own: dict[str, str]) -> str:
     row: Any = SimpleNamespace(
         opens=at("2026-10-20T08:00"), due=at(DUE), closes=at(closes), max_attempts=3,
-        late_worth=0.5,
+        late_worth=0.5, hint_prices=None,
     )  # fmt: skip
     rules = extended(row, BERLIN, at(own.get("due")), at(own.get("closes")))
     try:

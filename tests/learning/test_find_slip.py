@@ -106,6 +106,8 @@ def is_one_slip(exercise: Exercise, given: Texts, drawn: DrawnSlip) -> bool:
     "seeds",
     [
         range(0, SEEDS, SEEDS // SAMPLE),
+        # With one set of samples, the grader took the first table of this seed for two slips.
+        range(4103, 4104),
         *(
             pytest.param(range(first, first + RUN), marks=pytest.mark.campaign)
             for first in range(0, SEEDS, RUN)

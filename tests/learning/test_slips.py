@@ -62,8 +62,8 @@ def test_a_slip_that_the_robot_cannot_show_is_refused(catalogue: Mapping[str, Ex
     exercise = catalogue["planar-rr"]
     part = spec("none", Convention.STANDARD, slip="joint_variable_absent")
 
-    def judge_table(texts: TableTexts) -> TableBlame | None:
-        return blame(part, exercise, texts)
+    def judge_table(texts: TableTexts, turn: int) -> TableBlame | None:
+        return blame(part, exercise, texts, turn)
 
     with pytest.raises(NoSlipError, match="joint_variable_absent"):
         drawn_slip(exercise, Convention.STANDARD, 0, judge_table, part.slip)

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from service.access.caller import Caller
 from service.api.http.problems import ProblemError, store_down
+from service.api.recording.store import ask
 from service.attempts.errors import StoreDownError
+from service.catalogue import Exercise
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -23,6 +25,51 @@ class PracticeGate:
         refused = await self.refusal(caller, exercise)
         if refused is not None:
             raise refused
+
+    async def check_hints(self, caller: Caller, exercise: Exercise) -> None:
+        """Raise ProblemError if hints at this exercise have a price for this learner now."""
+        await self.check(caller, exercise.plain_id)
+        learner = caller.learner
+        if self._store is None or learner is None:
+            return
+        from service.courses.learner_view import has_priced_hints
+
+        now = datetime.now(UTC)
+        priced = await ask(
+            self._store,
+            lambda store: store.read(
+                lambda it: has_priced_hints(it, learner, caller.course, exercise, now)
+            ),
+        )
+        if priced or (caller.course is None and exercise.attempts.hint_prices is not None):
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN,
+                "Hints have a price at this exercise: hand it in, and take them at its report.",
+                "hints-have-a-price",
+                "There are no free hints",
+            )
+
+    async def check_solution(self, caller: Caller, exercise: str) -> None:
+        """Raise ProblemError if an assignment of this learner does not show the solution now."""
+        learner = caller.learner
+        if self._store is None or learner is None:
+            return
+        from service.courses.learner_view import hides_solution
+
+        now = datetime.now(UTC)
+        hidden = await ask(
+            self._store,
+            lambda store: store.read(
+                lambda it: hides_solution(it, learner, caller.course, exercise, now)
+            ),
+        )
+        if hidden:
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN,
+                "An assignment does not show you this solution now.",
+                "solution-not-shown",
+                "The solution is not shown",
+            )
 
     async def refusal(self, caller: Caller, exercise: str) -> ProblemError | None:
         """Return why this learner may not practise the exercise now; None if the learner may."""

@@ -18,7 +18,7 @@ from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.errors import StoreDownError
 from service.attempts.graded import AttemptGrading, AttemptReport
 from service.attempts.outcome import Outcome
-from service.attempts.policy import AttemptRefusedError, Ruling, ruling
+from service.attempts.policy import AttemptRefusedError, Ruling, points_after, ruling
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
 from service.contract.attempts import Attempt, AttemptRequest
@@ -163,14 +163,14 @@ class _Attempting:
         if not self._grading.has(most):
             return None
         graded = self._grading.at(most)
-        return self._new(taken, graded, standing.last + 1), graded.outcome
+        return self._new(taken, graded, standing), graded.outcome
 
-    def _new(self, taken: Ruling, graded: AttemptReport, ordinal: int) -> NewAttempt:
-        report = graded.report
+    def _new(self, taken: Ruling, graded: AttemptReport, before: Standing) -> NewAttempt:
+        report, price = graded.report, before.hint_price
         return NewAttempt(
             exercise=self._exercise.plain_id,
             learner=self._body.learner,
-            ordinal=ordinal if report.gradable else None,
+            ordinal=before.last + 1 if report.gradable else None,
             at=self._now,
             is_late=taken.is_late,
             worth=taken.worth,
@@ -179,13 +179,14 @@ class _Attempting:
             report=graded.text,
             version=report.version,
             grader=report.grader,
-            points=round(report.points * taken.worth, 6),
+            points=points_after(report.points, report.max_points, price, taken.worth),
             max_points=report.max_points,
             owner=self._owner,
             idempotency_key=self._key,
             request_digest=self._request_digest,
             assignment=self._terms.assignment,
             variant=self._exercise.seed or None,
+            hint_price=price,
         )
 
 

@@ -225,6 +225,7 @@ def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
             if is_tutor
         ],
         "earlier_reports": [_earlier(row) for row in found.earlier if is_tutor],
+        "hints": [each.model_dump(mode="json", exclude_none=True) for each in found.hints],
     }
 
 

@@ -67,7 +67,7 @@ def routes(
         """
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
         body = await read_body(HintRequest, request)
-        await practice.check(access.caller(request), exercise.plain_id)
+        await practice.check_hints(access.caller(request), exercise)
         found = await run_in_turns(request, partial(hint_for, exercise, body, feedback))
         return Response(found.model_dump_json(exclude_none=True), media_type="application/json")
 
@@ -139,8 +139,14 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
             "There is no hint",
         )
     picture = step.rule and f"v1/rules/{step.convention}/{step.rule}.svg"
+    lesson = step.screen and f"learn-dh?convention={step.convention}#{step.screen}"
     return Hint(
-        step=body.step, steps=STEPS, title=step.title, text=step.text, picture=picture or None
+        step=body.step,
+        steps=STEPS,
+        title=step.title,
+        text=step.text,
+        picture=picture or None,
+        lesson=lesson or None,
     )
 
 

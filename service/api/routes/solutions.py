@@ -1,17 +1,26 @@
-"""The route that shows model solutions to tutors."""
+"""The routes that show model solutions: to tutors, and to students with full marks."""
 
 from functools import partial
 from http import HTTPStatus
 from typing import Final
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 from pydantic import TypeAdapter
 
-from service.api.document.openapi import MAY_NEED_KEY, answers
-from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.courses.own_variant import OwnVariants, of_assignment
+from service.api.courses.practice import PracticeGate
+from service.api.document.openapi import MAY_NEED_KEY, answers, posting
+from service.api.http.bodies import read_body
+from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.http.memoized import MemoizedResults
-from service.catalogue import Exercise
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import Access
+from service.api.turns import run_in_turns
+from service.catalogue import Exercise, FeedbackLevel
+from service.catalogue.attempts import AttemptsSpec
+from service.grading import Verdict, grade
 from service.solutions import ModelSolution, solve
+from service.submissions.body import GradeRequest
 
 _SOLUTION: Final = TypeAdapter(ModelSolution)
 
@@ -33,8 +42,18 @@ def _solved(exercise: Exercise) -> bytes:
     return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
 
 
-def routes(catalogue: Catalogue) -> APIRouter:
-    """Return the route that shows model solutions."""
+def has_full_marks(exercise: Exercise, body: GradeRequest) -> bool:
+    """True if the answers to all parts of the exercise are right."""
+    report = grade(exercise, body.submission(FeedbackLevel.SCORE))
+    return len(report.parts) == len(exercise.parts) and all(
+        part.verdict is Verdict.CORRECT for part in report.parts
+    )
+
+
+def routes(
+    catalogue: Catalogue, access: Access, practice: PracticeGate, own: OwnVariants
+) -> APIRouter:
+    """Return the routes that show model solutions."""
     router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
     solutions = SolvedExercises()
 
@@ -51,5 +70,35 @@ def routes(catalogue: Catalogue) -> APIRouter:
     async def show_solution(exercise_id: ExerciseId) -> Response:
         """Show the right answer to each part, each link transform and the pose, for tutors."""
         return await solutions.answer(exercise_or_404(catalogue, exercise_id))
+
+    @router.post(
+        "/{exercise_id}/solution",
+        operation_id="getSolutionForRightAnswers",
+        summary="Show the model solution for right answers",
+        response_description="The model solution.",
+        **of_assignment(
+            posting(GradeRequest, ModelSolution, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
+        ),
+    )
+    async def show_solution_for_right_answers(
+        exercise_id: ExerciseId, request: Request
+    ) -> Response:
+        """Show the model solution to a student whose answers have full marks in all parts.
+
+        An exercise that counts has none: its assignment says when its solution is shown.
+        """
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
+        body = await read_body(GradeRequest, request)
+        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
+        await practice.check_solution(access.caller(request), exercise.plain_id)
+        counts = exercise.attempts != AttemptsSpec()
+        if counts or not await run_in_turns(request, partial(has_full_marks, exercise, body)):
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN,
+                "The solution is shown after full marks, and not for exercises that count.",
+                "solution-not-shown",
+                "The solution is not shown",
+            )
+        return await solutions.answer(exercise)
 
     return router

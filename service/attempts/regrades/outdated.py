@@ -33,6 +33,7 @@ from sqlalchemy import (
 
 from service.attempts.attempt import AttemptFilter
 from service.attempts.graded import AttemptGrading
+from service.attempts.policy import points_after
 from service.attempts.recording import insert_or_ignore, outcome_ids
 from service.attempts.regrades.memoized_reports import MemoizedReports, PartResults, WrittenReport
 from service.attempts.results.listing import BY_TIME, TimePlace, condition, later_than
@@ -111,7 +112,11 @@ class Regrading:
     def preview(self, connection: Connection, numbers: Sequence[int]) -> list[RegradedAttempt]:
         """Return what regrading these attempts would change; write nothing."""
         rows = self._rows(connection, numbers)
-        return [self._regraded(row)[0] for row in rows if self._of(row) is not None]
+        return [
+            self._regraded(row)[0]
+            for row in rows
+            if attempted_exercise(self._exercise, row) is not None
+        ]
 
     def enqueue(self, connection: Connection) -> None:
         """Put all outdated attempts into the queue, each at most once."""
@@ -197,22 +202,8 @@ class Regrading:
         return self._condition & or_(another, attempts.c.grader != VERSION)
 
     def _needs(self, row: Row[Any]) -> bool:
-        exercise = self._of(row)
+        exercise = attempted_exercise(self._exercise, row)
         return exercise is not None and (row.version, row.grader) != (exercise.version, VERSION)
-
-    def _of(self, row: Row[Any]) -> Exercise | None:
-        """Return the exercise or variant of an attempt; None if its variant has other values now.
-
-        Learners who have answered a question are not graded by another one.
-        """
-        if row.variant is None:
-            return self._exercise
-        make = variant_of if row.assignment is None else hidden_variant
-        try:
-            variant = make(pinned(self._exercise, row.choices), row.variant)
-        except NoVariantError:
-            return None
-        return variant if values_of(variant.version) == values_of(row.version) else None
 
     def _rows(self, connection: Connection, numbers: Sequence[int]) -> Sequence[Row[Any]]:
         chosen = select(attempts, assignments.c.choices).join(assignments, isouter=True)
@@ -221,7 +212,7 @@ class Regrading:
 
     def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, WrittenReport]:
         before = json.loads(row.report)
-        exercise = self._of(row)
+        exercise = attempted_exercise(self._exercise, row)
         assert exercise is not None, "the variant has other values"
         # Never above the level of the old report: the service may have had a lower ceiling than
         # this process.
@@ -235,7 +226,7 @@ class Regrading:
             level,
             lambda: self._report(exercise, row.submission, level),
         )
-        after = round(report.points * row.worth, 6)
+        after = points_after(report.points, report.max_points, row.hint_price, row.worth)
         reasons = tuple(_reasons(_results(before), report.parts))
         change = RegradedAttempt(
             row.id,
@@ -299,6 +290,21 @@ class Regrading:
         ]
         if changed:
             queue_scores(connection, attempts.c.number.in_(changed), Priority.REGRADE)
+
+
+def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
+    """Return the exercise or variant of an attempt; None if its variant has other values now.
+
+    Learners who have answered a question are not graded by another one.
+    """
+    if row.variant is None:
+        return exercise
+    make = variant_of if row.assignment is None else hidden_variant
+    try:
+        variant = make(pinned(exercise, row.choices), row.variant)
+    except NoVariantError:
+        return None
+    return variant if values_of(variant.version) == values_of(row.version) else None
 
 
 def _results(report: Mapping[str, Any]) -> PartResults:

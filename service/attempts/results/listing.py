@@ -10,6 +10,7 @@ from sqlalchemy import ColumnElement, Connection, Row, Tuple, and_, literal, sel
 
 from service.attempts.attempt import AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
+from service.attempts.hints import hints_before
 from service.attempts.storage.tables import (
     UtcTime,
     assignments,
@@ -17,6 +18,7 @@ from service.attempts.storage.tables import (
     earlier_reports,
     overrides,
 )
+from service.contract.attempts import TakenHint
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _TICK: Final = timedelta(microseconds=1)
@@ -65,6 +67,7 @@ class AttemptHistory:
     overrides: Sequence[Row[Any]]
     earlier: Sequence[Row[Any]]
     course: str | None
+    hints: Sequence[TakenHint] = ()
 
 
 LISTED: Final = [attempts.c[name] for name in ListedAttempt.__dataclass_fields__]
@@ -108,7 +111,8 @@ def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
         ).all()
         for table in (overrides, earlier_reports)
     )
-    return AttemptHistory(attempt, submission, report, changed, replaced, course)
+    hints = hints_before(connection, attempt_id)
+    return AttemptHistory(attempt, submission, report, changed, replaced, course, hints)
 
 
 # The place of an attempt in time: its moment, and its number among attempts of the same moment.

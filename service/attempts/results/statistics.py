@@ -2,13 +2,14 @@
 
 import json
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, Final, TypeAlias
 
 from sqlalchemy import ColumnElement, Connection, String, cast, func, select, type_coerce
 
 from service.attempts.attempt import AttemptFilter
+from service.attempts.hints import hint_figures
 from service.attempts.results.listing import condition
 from service.attempts.storage.tables import attempts, outcomes
 from service.contract.statistics import (
@@ -28,6 +29,8 @@ from service.statistics import Share
 MOST_MISCONCEPTIONS: Final = 100
 MOST_GROUPS: Final = 50
 MOST_LEARNERS: Final = 50
+# The attempts of a learner that a learning curve has.
+MOST_IN_A_CURVE: Final = 12
 _WRONG: Final = (Verdict.INCORRECT, Verdict.PARTIAL)
 
 # A part and a code of a message in it.
@@ -50,13 +53,19 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
             for code in told["codes"]:
                 slips[part, code].update(counts[outcome])
                 outcome_with.setdefault((part, code), outcome)
+    by_attempt = _by_attempt(connection, chosen)
     return ExerciseStatistics(
         exercise=wanted.exercise,
         attempts=sum(each.total() for each in counts.values()),
         learners=connection.scalar(select(func.count(attempts.c.learner.distinct())).where(chosen))
         or 0,
         parts=[part.figures(name) for name, part in parts.items()],
-        misconceptions=_commonest(connection, chosen, slips, outcome_with),
+        misconceptions=[
+            each.model_copy(update={"by_attempt": _curve(by_attempt, contents, each)})
+            for each in _commonest(connection, chosen, slips, outcome_with)
+        ],
+        learners_by_attempt=[counts.total() for counts in by_attempt],
+        hints=hint_figures(connection, chosen),
         identical=list(_identical(connection, chosen, contents)),
     )
 
@@ -79,6 +88,44 @@ def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Co
     for outcome, date, times in connection.execute(counted).all():
         found[outcome][date] = times
     return found
+
+
+def _by_attempt(connection: Connection, chosen: ColumnElement[bool]) -> list[Counter[int]]:
+    """The number of learners by outcome, of their first attempts, their second ones, and so on.
+
+    An attempt in which nothing could be read is not counted.
+    """
+    place = func.row_number().over(
+        partition_by=attempts.c.learner, order_by=[attempts.c.at, attempts.c.number]
+    )
+    placed = (
+        select(attempts.c.outcome, place.label("place"))
+        .where(chosen, attempts.c.ordinal.is_not(None))
+        .subquery()
+    )
+    counted = (
+        select(placed.c.outcome, placed.c.place, func.count())
+        .where(placed.c.place <= MOST_IN_A_CURVE)
+        .group_by(placed.c.outcome, placed.c.place)
+    )
+    found: dict[int, Counter[int]] = defaultdict(Counter)
+    for outcome, at, times in connection.execute(counted).all():
+        found[at][outcome] = times
+    return [found[at] for at in sorted(found)]
+
+
+def _curve(
+    by_attempt: Sequence[Counter[int]],
+    contents: Mapping[int, Mapping[str, Any]],
+    slip: MisconceptionFigures,
+) -> list[int]:
+    """The number of learners with a misconception in their first attempt, and so on."""
+    having = {
+        number
+        for number, content in contents.items()
+        if slip.part in content and slip.code in content[slip.part]["codes"]
+    }
+    return [sum(counts[number] for number in having & counts.keys()) for counts in by_attempt]
 
 
 def _contents(

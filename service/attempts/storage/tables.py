@@ -90,6 +90,7 @@ course_learners = Table(
 # for each attempt, or NULL for that of each exercise. ``variants`` is the secret from which the
 # seeds of the learners follow, or NULL if all learners get the same exercise. ``choices`` has the
 # table ``[vary]`` of each exercise, as JSON, as it was when the assignment got its variants.
+# ``hint_prices`` is a JSON list, or NULL for those of each exercise.
 assignments = Table(
     "assignments",
     metadata,
@@ -108,6 +109,7 @@ assignments = Table(
     Column("solution", String(10), nullable=False),
     Column("variants", String(64)),
     Column("choices", Text),
+    Column("hint_prices", Text),
     UniqueConstraint("course", "id"),
 )
 
@@ -141,7 +143,8 @@ _ASSIGNED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("assig
 # exercise, in all assignments and none; it is unique, so that two requests at once cannot both take
 # the last allowed attempt. ``assignment`` is NULL if the attempt belongs to none. ``variant`` is a
 # seed, or NULL for the exercise itself.
-# ``awarded`` are points of a tutor instead of the report's. The indexes cover all columns by which
+# ``awarded`` are points of a tutor instead of the report's. ``hint_price`` is what the hints before
+# the attempt cost, as a share of its points. The indexes cover all columns by which
 # lists are filtered and statistics counted, because the rows with their reports are far larger.
 attempts = Table(
     "attempts",
@@ -170,6 +173,7 @@ attempts = Table(
     Column("awarded", Float),
     Column("assignment", RowNumber, ForeignKey(assignments.c.number)),
     Column("variant", String(20)),
+    Column("hint_price", Float, nullable=False, server_default="0"),
     Index("ix_attempts_assigned", "exercise", "learner", "assignment", "ordinal", **_ASSIGNED),
     # It has all columns of a gradebook.
     Index(
@@ -190,6 +194,23 @@ attempts = Table(
     Index("ix_attempts_exercise", "exercise", "at", "number", "ordinal"),
     Index("ix_attempts_learner", "learner", "at", "number", "ordinal"),
     Index("ix_attempts_outcome", "exercise", "outcome", "answers_digest", "learner", "at"),
+)
+
+# The steps of hints that learners took for messages on an attempt. ``row`` and ``cell`` are empty
+# if the message has none. ``price`` is a share of the points of the exercise.
+hints = Table(
+    "hints",
+    metadata,
+    Column("id", RowNumber, primary_key=True),
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), nullable=False),
+    Column("part", String(40), nullable=False),
+    Column("code", String(40), nullable=False),
+    Column("row", String(40), nullable=False),
+    Column("cell", String(40), nullable=False),
+    Column("step", Integer, nullable=False),
+    Column("price", Float, nullable=False),
+    Column("at", UtcTime, nullable=False),
+    UniqueConstraint("attempt", "part", "row", "cell", "step"),
 )
 
 # Points awarded by a tutor instead of a report's, or NULL to withdraw them; the newest row counts.

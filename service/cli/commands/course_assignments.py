@@ -38,7 +38,7 @@ commands = typer.Typer(help="The assignments of a course.", no_args_is_help=True
 
 # What these options are to remove what was set before.
 _NONE = "none"
-_REMOVABLE = ("opens", "due", "closes", "limit", "feedback")
+_REMOVABLE = ("opens", "due", "closes", "limit", "feedback", "hint_prices")
 
 CourseOption = Annotated[str, typer.Argument(help="The id of a course.", callback=encodable)]
 AssignmentName = Annotated[str, typer.Argument(help="The id of the assignment.")]
@@ -78,6 +78,11 @@ VariantsOption = Annotated[
     typer.Option(
         "--variants/--no-variants", help="Give each learner a variant of their own, or none."
     ),
+]
+
+HintPricesOption = Annotated[
+    str | None,
+    typer.Option(help="What each step of a hint costs, as shares of the points: 0,0.05,0.1."),
 ]
 
 
@@ -137,6 +142,7 @@ def add(
     practice: PracticeOption = None,
     solution: SolutionOption = None,
     variants: VariantsOption = None,
+    hint_prices: HintPricesOption = None,
 ) -> None:
     """Add an assignment to a course."""
     fields = _fields(
@@ -144,6 +150,8 @@ def add(
     )
     if variants is not None:
         fields["variants"] = variants
+    if hint_prices is not None:
+        fields["hint_prices"] = _words(hint_prices)
     fields.setdefault("title", assignment)
     body = checked(NewAssignment, id=assignment, **fields)
     catalogue = installed()
@@ -172,6 +180,7 @@ def change(
     practice: PracticeOption = None,
     solution: SolutionOption = None,
     variants: VariantsOption = None,
+    hint_prices: HintPricesOption = None,
 ) -> None:
     """Change an assignment. With a later due date, late attempts get their points back."""
     fields = _fields(
@@ -179,6 +188,8 @@ def change(
     )
     if variants is not None:
         fields["variants"] = variants
+    if hint_prices is not None:
+        fields["hint_prices"] = _words(hint_prices)
     removed = dict.fromkeys(name for name in _REMOVABLE if fields.get(name) == _NONE)
     body = checked(AssignmentChange, **(fields | removed))
     # A field that is None on purpose removes what was set.
@@ -289,7 +300,7 @@ def _fields(
         "closes": _date(closes),
         "limit": limit,
         "late_worth": late_worth,
-        "feedback": feedback if feedback in (None, _NONE) else feedback.split(","),
+        "feedback": feedback and _words(feedback),
         "practice": practice,
         "solution": solution,
     }
@@ -323,6 +334,10 @@ def _points(option: str) -> Mapping[str, Any]:
     return {"exercise": name, "points": points}
 
 
+def _words(option: str) -> str | list[str]:
+    return option if option == _NONE else option.split(",")
+
+
 def _date(option: str | None) -> datetime | str | None:
     if option in (None, _NONE):
         return option
@@ -352,6 +367,9 @@ def _print(assignment: CourseAssignment) -> None:
     screen.print(f"  attempts {limit}; late attempts earn {assignment.late_worth:.0%}")
     screen.print(f"  feedback {told}", soft_wrap=True)
     screen.print(f"  practice {assignment.practice}; solution {assignment.solution}")
+    if assignment.hint_prices is not None:
+        prices = ", ".join(f"{each:.0%}" for each in assignment.hint_prices)
+        screen.print(f"  the steps of a hint cost {prices} of the points", soft_wrap=True)
     if assignment.variants:
         screen.print("  each learner has variants of their own", soft_wrap=True)
     for extension in assignment.extensions:

@@ -223,8 +223,8 @@ class _Asked:
 def _slip_of(asked: _Asked) -> DrawnSlip:
     part, exercise = asked.part, asked.exercise
 
-    def judge_table(texts: TableTexts) -> TableBlame | None:
-        return blame(part, exercise, texts)
+    def judge_table(texts: TableTexts, turn: int) -> TableBlame | None:
+        return blame(part, exercise, texts, turn)
 
     drawn = partial(drawn_slip, exercise, part.convention, part.seed, judge_table)
     try:
@@ -233,10 +233,15 @@ def _slip_of(asked: _Asked) -> DrawnSlip:
         return drawn()
 
 
-def blame(part: FindSlipSpec, exercise: Exercise, texts: TableTexts) -> TableBlame | None:
-    """Return what is wrong in a table; None if it is right, or a cell cannot be read."""
+def blame(
+    part: FindSlipSpec, exercise: Exercise, texts: TableTexts, turn: int = 0
+) -> TableBlame | None:
+    """Return what is wrong in a table; None if it is right, or a cell cannot be read.
+
+    Each ``turn`` has other samples.
+    """
     answer = {"rows": as_rows(texts)}
-    samples = draw(exercise, answer)
+    samples = draw(exercise, [answer, turn] if turn else answer)
     grading = Grading(exercise, samples, Reader.of(exercise, samples, "radians"))
     table = dh_table.read(part.table, answer, grading)
     if table is None or not all(entry.readable for row in table.rows for entry in row.entries):

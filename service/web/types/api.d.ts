@@ -14,6 +14,7 @@ declare namespace Api {
     practice?: Practice;
     solution?: ShowSolution;
     variants?: boolean;
+    hint_prices?: number[];
   };
   type AssignmentState = "not_open" | "open" | "late" | "closed";
   type Attempt = {
@@ -25,6 +26,7 @@ declare namespace Api {
     is_late: boolean;
     points: number;
     max_points: number;
+    hint_points?: number;
   };
   type AttemptChange = {
     id: string;
@@ -42,7 +44,9 @@ declare namespace Api {
     report: Report;
     overrides: AttemptOverride[];
     earlier_reports: EarlierReport[];
+    hints: TakenHint[];
   };
+  type AttemptHintRequest = { part: string; code: string; row?: string; cell?: string; step: number; };
   type AttemptList = { attempts: AttemptSummary[]; next?: string; };
   type AttemptOverride = { points?: number; reason: string; author: string; at: string; };
   type AttemptRequest = {
@@ -62,6 +66,7 @@ declare namespace Api {
     is_late: boolean;
     points: number;
     max_points: number;
+    hint_points?: number;
     awarded?: number;
     version: string;
     grader: string;
@@ -87,6 +92,7 @@ declare namespace Api {
     practice: Practice;
     solution: ShowSolution;
     variants: boolean;
+    hint_prices?: number[];
     extensions: Extension[];
   };
   type CourseAssignmentList = { assignments: CourseAssignment[]; };
@@ -171,6 +177,8 @@ declare namespace Api {
     learners: number;
     parts: PartFigures[];
     misconceptions: MisconceptionFigures[];
+    learners_by_attempt: number[];
+    hints: HintFigures[];
     identical: IdenticalAnswers[];
   };
   type ExerciseSubmission = {
@@ -273,7 +281,8 @@ declare namespace Api {
     exercise: string;
     learner?: string;
   };
-  type Hint = { step: number; steps: number; title: string; text: string; picture?: string; };
+  type Hint = { step: number; steps: number; title: string; text: string; picture?: string; lesson?: string; };
+  type HintFigures = { part: string; code: string; taken: number[]; };
   type HintRequest = {
     answers: Record<string, unknown>;
     angle_unit?: AngleUnit;
@@ -310,7 +319,14 @@ declare namespace Api {
   type LostPoints = { code: string; points: number; message: string; row?: string; cells?: string[]; };
   type Marking = "content" | "cells" | "rows" | "whole";
   type MatrixShape = { form: "matrix"; columns: string[]; rows: string[]; };
-  type MisconceptionFigures = { part: string; code: string; sentence?: string; attempts: number; by_day: Record<string, number>; };
+  type MisconceptionFigures = {
+    part: string;
+    code: string;
+    sentence?: string;
+    attempts: number;
+    by_day: Record<string, number>;
+    by_attempt: number[];
+  };
   type MissingLearner = { learner: string; name: string; email?: string; exercises: string[]; due?: string; closes?: string; };
   type MissingList = { missing: MissingLearner[]; };
   type ModelSolution = {
@@ -334,6 +350,7 @@ declare namespace Api {
     practice?: Practice;
     solution?: ShowSolution;
     variants?: boolean;
+    hint_prices?: number[];
     id: string;
   };
   type NewCourse = { id: string; title: string; zone: string; };
@@ -360,6 +377,7 @@ declare namespace Api {
     is_late: boolean;
     points: number;
     max_points: number;
+    hint_points?: number;
     counts: boolean;
   };
   type OwnCourse = { id: string; title: string; zone: string; name: string; assignments: OwnAssignment[]; };
@@ -373,6 +391,8 @@ declare namespace Api {
     attempts_left?: number;
     may_practise: boolean;
     shows_solution: boolean;
+    hint_prices?: number[];
+    hints: TakenHint[];
     attempts: OwnAttempt[];
   };
   type Part = {
@@ -500,6 +520,16 @@ declare namespace Api {
   type TableInFormulas = { cells: PrintedFormula[][]; converted?: ConvertedRow[]; pose?: PrintedFormula[][]; };
   type TableRow = { a: string; alpha: string; d: string; theta: string; };
   type TableToDraw = { rows: unknown; convention?: Convention; structure?: string; formulas?: boolean; };
+  type TakenHint = {
+    attempt: string;
+    part: string;
+    code: string;
+    row?: string;
+    cell?: string;
+    step: number;
+    price: number;
+    at: string;
+  };
   type Theme = "auto" | "light" | "dark";
   type TokenRequest = { learner: string; exercises?: string[]; minutes?: number; };
   type TokenResponse = { token: string; learner: string; expires_at: string; };

@@ -57,6 +57,7 @@ declare namespace Front {
   type PreviewService = {
     preview(body: Api.PreviewRequest): Promise<Api.Preview>;
     previews(body: Api.PreviewManyRequest): Promise<Api.PreviewManyResponse>;
+    frames(body: Api.FramesRequest): Promise<Api.Frames>;
   };
   // What the bar of generated robots needs from its host.
   type PracticeHost = HTMLElement & {
@@ -112,15 +113,20 @@ declare namespace Front {
     announce(text: string): void;
     edited(): void;
     save(): void;
-    showReport(report: Api.Report): void;
+    showReport(report: Api.Report, attempt?: string): void;
   };
 
   // A place of a message, and the message as it is shown.
   type Topic = { row?: string; cell?: string };
   type Told = { element: HTMLElement; feedback: Api.Feedback; place: Topic };
 
+  // What the hints at the report of an attempt cost: shares of the points of the exercise.
+  type HintPrices = { attempt: string; prices: number[]; taken: Api.TakenHint[]; points: number };
+
   // What hints need from the exercise.
   type HintHost = HTMLElement & {
+    handIn: import("../static/student/handin/hand_in.js").HandIn | null;
+    bar: import("../static/student/check_bar.js").CheckBar;
     service: import("../static/shared/service.js").Service;
     exercise: Api.Exercise;
     answers: Record<string, unknown>;

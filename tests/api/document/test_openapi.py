@@ -31,6 +31,7 @@ PROBLEM = {"$ref": "#/components/schemas/Problem"}
 # Written out, because they are names of functions in programs of other people.
 OPERATIONS = {
     "listExercises", "getExercise", "getFigure", "getFrames", "getFrameChoices", "getHint",
+    "takeHint", "getSolutionForRightAnswers",
     "getRulePicture", "getSolution", "grade",
     "gradeMany", "createToken", "recordAttempt", "listAttempts", "getAttempt", "getStatistics",
     "preview", "previewMany", "getLiveness", "getReadiness", "exportAttempts", "overrideAttempt",

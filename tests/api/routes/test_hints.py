@@ -32,6 +32,11 @@ def test_the_three_steps_of_a_hint(client: httpx.Client) -> None:
         "v1/rules/standard/link_twist.svg",
         None,
     ]
+    assert [hint.get("lesson") for hint in hints] == [
+        None,
+        "learn-dh?convention=standard#alpha",
+        None,
+    ]
     picture = client.get(f"/{hints[1]['picture']}")
     assert picture.headers["content-type"] == "image/svg+xml"
     assert picture.text == rule_picture("link_twist", Convention.STANDARD, Theme.AUTO)

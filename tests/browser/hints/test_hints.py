@@ -61,6 +61,22 @@ def test_three_hints_with_a_try_in_between(visit: Opening, service: str, axe: st
     expect(page.locator(".hints")).to_have_count(0)
 
 
+def test_the_hints_at_a_cell_go_on_after_another_mistake(visit: Opening, service: str) -> None:
+    page = visit().page
+    wrong_table(page, service)
+    message = page.locator(".messages li, .notes li").filter(has=page.locator(".hints"))
+    before = message.inner_text()
+    button, steps = page.locator(".hints button"), page.locator(".hint-steps > li")
+    button.click()
+    expect(steps).to_have_count(1)
+    check(page, "90deg")
+    expect(button).to_have_text("Hint 2 of 3")
+    assert message.inner_text() != before
+    button.click()
+    expect(steps).to_have_count(2)
+    expect(steps.last).to_contain_text("by the right-hand rule")
+
+
 def test_a_first_view_loads_no_hints(visit: Opening, service: str) -> None:
     opened = visit()
     page = opened.page

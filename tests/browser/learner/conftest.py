@@ -26,12 +26,18 @@ from tests.api.serving import ROOT, served
 COURSE = "robotics-2026"
 SECRET = "0123456789abcdef" * 4
 ROBOT = {"exercise": "scara", "points": 10}
+EXERCISES = {"scara", "scara-faded", "planar-rr-numbers"}
 ASSIGNMENTS: Mapping[str, dict[str, Any]] = {
     "homework": {"limit": 2, "feedback": ["verdicts"], "due": 1},
     "late": {"due": -1, "closes": 1, "practice": "open"},
     "over": {"due": -1},
     "soon": {"opens": 1},
     "homework-1": {"limit": 3},
+    "hints": {
+        "exercises": [{"exercise": "scara-faded", "points": 10}],
+        "hint_prices": [0, 0.05, 0.1],
+        "solution": "after_full",
+    },
     "own": {"exercises": [{"exercise": "planar-rr-numbers", "points": 8}], "variants": True},
 }
 
@@ -81,7 +87,7 @@ def course(
             for date in {"opens", "due", "closes"} & fields.keys():
                 new[date] = (now + timedelta(days=fields[date])).isoformat()
             assignment = NewAssignment.model_validate(new)
-            add_assignment(connection, COURSE, assignment, {"scara", "planar-rr-numbers"})
+            add_assignment(connection, COURSE, assignment, EXERCISES)
         digest, until = Secret(SECRET).key_digest(names["KEY"]), now + timedelta(days=1)
         add_key(connection, "", digest, {Scope.RECORD}, None, now, until, COURSE)
         [link] = issue_links(connection, COURSE, LinksRequest(), Secret(SECRET), "", now)

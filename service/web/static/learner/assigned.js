@@ -3,8 +3,11 @@
 import { h, visible } from "../shared/dom.js";
 import { momentIn } from "../student/handin/dates.js";
 import { attemptName, attemptPoints } from "../student/handin/own_state.js";
+import { besides } from "../student/hints/solution.js";
 import { RecordedReport } from "../tutor/records/recorded_report.js";
 import { fragmentOf } from "./link_key.js";
+
+const HINTS = new URL("../student/hints/hints.css", import.meta.url).href;
 
 export const back = () => h("p", { class: "ways-on" }, h("a", { href: "#" }, "← All assignments"));
 
@@ -78,18 +81,20 @@ export async function report(service, place, { course, exercise: own }) {
 }
 
 /**
- * Return the model solution.
+ * Return the model solution beside the answers of the attempt that counts.
  *
  * @param {Front.Service} service
  * @param {Front.Assigned} place
+ * @param {Front.Own} own
  */
-export async function solution(service, { path, exercise }) {
-  const { parts } = await service.assignedSolution(path, exercise);
-  return [
-    h("h2", { tabindex: -1 }, "Solution"),
-    ...parts.flatMap(({ title, text }) => [
-      h("h3", {}, visible(title)),
-      h("pre", { tabindex: 0 }, text.split("\n").map(visible).join("\n")),
-    ]),
-  ];
+export async function solution(service, { path, exercise }, { exercise: { attempts } }) {
+  const counting = attempts.find(({ counts }) => counts);
+  const [{ parts }, shown, found] = await Promise.all([
+    service.assignedSolution(path, exercise),
+    service.within(path).exercise(exercise).catch(() => null),
+    counting ? service.attempt(counting.id) : null,
+  ]);
+  const answers = /** @type {Record<string, unknown>} */ (found?.submission.answers ?? {});
+  const style = h("link", { rel: "stylesheet", href: HINTS });
+  return [style, h("h2", { tabindex: -1 }, "Solution"), ...besides(shown, parts, answers)];
 }

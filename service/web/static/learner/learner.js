@@ -54,16 +54,19 @@ async function exercise(view, place) {
   if (!own) return [back(), h("h1", {}, "This is not one of your assignments")];
   if (place.attempt) return [back(), ...await report(service, place, own)];
   const { element, done } = form(place, key);
+  let latest = own;
   const showSolution = async () => {
     try {
-      done.replaceChildren(...await solution(service, place));
+      done.replaceChildren(...await solution(service, place, latest));
       done.querySelector("h2")?.focus();
     } catch (error) {
       done.append(h("p", { role: "alert" }, visible(error.message)));
     }
   };
-  const list = (/** @type {Front.Own} */ now) =>
+  const list = (/** @type {Front.Own} */ now) => {
+    latest = now;
     done.replaceChildren(...handedIn(now, place, showSolution).filter((each) => each !== null));
+  };
   list(own);
   element.addEventListener("submitted", async () => {
     const now = ownState(await service.own(), place.path, place.exercise);

@@ -70,6 +70,16 @@ export class Service {
     return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/hints`), body);
   }
 
+  /** @param {string} attempt @param {Api.AttemptHintRequest} body @returns {Promise<Api.Hint>} */
+  takeHint(attempt, body) {
+    return this.#ask(`v1/attempts/${encodeURIComponent(attempt)}/hints`, body);
+  }
+
+  /** The model solution, for answers with full marks. @param {string} id @param {Api.GradeRequest} body @returns {Promise<Api.ModelSolution>} */
+  solution(id, body) {
+    return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/solution`), body);
+  }
+
   /** @param {string} id @param {Api.ChoicesRequest} body @returns {Promise<Api.FrameChoices>} */
   choices(id, body) {
     return this.#ask(this.#own(`v1/exercises/${encodeURIComponent(id)}/choices`), body);

@@ -373,8 +373,8 @@ export class DhExercise extends HTMLElement {
     this.bar.isBusy = false;
   }
 
-  /** Show a report on the answers in the cells. @param {Api.Report} report */
-  showReport(report) {
+  /** Show a report on the answers in the cells, which may be an attempt's. @param {Api.Report} report @param {string} [attempt] */
+  showReport(report, attempt) {
     const filled = this.#parts.filter((part) => !part.isEmpty);
     const shown = new Map(report.parts.map((part) => [part.part, part]));
     for (const part of this.#parts) {
@@ -391,9 +391,7 @@ export class DhExercise extends HTMLElement {
         `${titles.get(part)}: ${verdict}, ${points(earned, most)} points.`,
     );
     this.form.rail.update();
-    if (!this.handIn || this.handIn.mayPractise) {
-      import("./hints/hints.js").then(({ offerHints }) => offerHints(this, filled, report)).catch(() => {});
-    }
+    import("./hints/hints.js").then(({ offerHints }) => offerHints(this, filled, report, attempt)).catch(() => {});
     this.announce([...told, this.form.leadToSlip(filled)].join(" "));
   }
 }

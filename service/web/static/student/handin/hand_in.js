@@ -7,6 +7,7 @@ import {
   attemptPoints,
   attemptsInWords,
   datesInWords,
+  hintsInWords,
   ownState,
   pointsInWords,
   refusalInWords,
@@ -128,7 +129,13 @@ export class HandIn {
     this.status.replaceChildren(
       h("p", {}, h("strong", {}, visible(assignment.title)), " ", badge, " ", extended ?? ""),
       h("p", {}, datesInWords(course, assignment)),
-      h("p", { class: "quiet counts" }, `${attemptsInWords(assignment, exercise)} · ${pointsInWords(exercise)}`),
+      h(
+        "p",
+        { class: "quiet counts" },
+        [attemptsInWords(assignment, exercise), pointsInWords(exercise), hintsInWords(exercise)].filter(Boolean).join(
+          " · ",
+        ),
+      ),
     );
     this.button.hidden = !this.host.hasAttribute("submit") || whyClosed(this.own) !== "";
     const check = this.host.bar.button;
@@ -230,7 +237,7 @@ export class HandIn {
     this.channel.postMessage("handed in");
     this.#dispatch("submitted", attempt);
     // The report marks the cells only if they still have the answers that were handed in.
-    if (JSON.stringify(answers) === JSON.stringify(this.host.answers)) this.host.showReport(report);
+    if (JSON.stringify(answers) === JSON.stringify(this.host.answers)) this.host.showReport(report, attempt.id);
     this.#dispatch("graded", { ...report, answers, attempt });
   }
 

@@ -79,6 +79,18 @@ export function pointsInWords({ points: most, earned, best }) {
 }
 
 /**
+ * Return how many hints the learner has taken in words, and what they cost the next attempt.
+ *
+ * @param {Pick<Api.OwnExercise, "points" | "hints">} exercise
+ */
+export function hintsInWords({ points, hints = [] }) {
+  if (!hints.length) return "";
+  const price = hints.reduce((sum, each) => sum + each.price, 0);
+  const cost = price ? `: −${number(Math.min(price, 1) * points)} in the next attempt` : "";
+  return `${hints.length} ${hints.length === 1 ? "hint" : "hints"} taken${cost}`;
+}
+
+/**
  * Return the name of an attempt: its number in the assignment. The service numbers the attempts at the exercise, also in
  * other assignments.
  *
@@ -94,12 +106,16 @@ export function attemptName({ attempts }, id) {
 /**
  * Return the points of an attempt in words, of those that the exercise has in the assignment.
  *
- * @param {Pick<Api.Attempt, "points" | "max_points" | "is_late">} attempt
+ * @param {Pick<Api.Attempt, "points" | "max_points" | "is_late" | "hint_points">} attempt
  * @param {Pick<Api.OwnExercise, "points">} exercise
  */
-export function attemptPoints({ points, max_points: most, is_late: isLate }, { points: worth }) {
-  const earned = most ? (points / most) * worth : 0;
-  return `${number(earned)} of ${number(worth)} points${isLate ? ", late" : ""}`;
+export function attemptPoints(
+  { points, max_points: most, is_late: isLate, hint_points: hints = 0 },
+  { points: worth },
+) {
+  const scale = most ? worth / most : 0;
+  const lost = hints ? `, −${number(hints * scale)} for hints` : "";
+  return `${number(points * scale)} of ${number(worth)} points${lost}${isLate ? ", late" : ""}`;
 }
 
 /** @param {number} share */

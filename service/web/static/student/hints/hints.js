@@ -1,16 +1,18 @@
 // Hints on demand: at each message on a mistake a button, which shows what to look at, then the rule with its picture,
-// then the rule on this row. Between two steps, the student changes the answer and checks it again.
+// then the rule on this row. Between two steps, the student changes the answer and checks it again. At a report on
+// handed-in answers, the service records each step, and it may have a price.
 
 import { h, visible } from "../../shared/dom.js";
+import { priceInWords, pricesOf, tryFirst } from "./prices.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { offerChoices } from "./choices.js";
+import { offerSolution } from "./solution.js";
 
 const STYLE = new URL("./hints.css", import.meta.url).href;
 const STEPS = 3;
 const UNREAD = ["unreadable", "missing"];
-const TRY_FIRST = "Change your answer and check it again. Then the next hint opens.";
 
-/** The steps that a message has had: `tried` are the answers for which the last one was given. */
+/** The steps of the hints at a place: `tried` are the answers for which the last one was given. */
 /** @typedef {{ steps: Api.Hint[], tried: string }} Had */
 
 /** @type {WeakMap<Api.Exercise, Map<string, Had>>} */
@@ -22,25 +24,33 @@ const ALL = new WeakMap();
  * @param {Front.HintHost} host
  * @param {Front.PartView[]} parts
  * @param {Api.Report} report
+ * @param {string} attempt the id of the recorded attempt with this report, if there is one
  */
-export function offerHints(host, parts, report) {
+export function offerHints(host, parts, report, attempt = "") {
   if (!host.shadowRoot?.querySelector(`link[href="${STYLE}"]`)) {
     host.shadowRoot?.append(h("link", { rel: "stylesheet", href: STYLE }));
   }
+  const prices = pricesOf(host.handIn, attempt);
+  const isFree = !host.handIn || (host.handIn.mayPractise && !host.handIn.own.exercise.hint_prices);
   const had = ALL.get(host.exercise) ?? new Map();
   ALL.set(host.exercise, had);
+  offerSolution(host, parts, report);
   const answered = { answers: host.answers, angle_unit: host.angleUnit };
   for (const view of parts) {
     const part = report.parts.find((each) => each.part === view.part.id);
     if (!part) continue;
-    offerChoices(host, view, part);
+    if (!host.handIn || host.handIn.mayPractise) offerChoices(host, view, part);
+    if (!isFree && !prices) continue;
+    const offered = new Set();
     for (const { element, feedback, place } of view.told) {
-      if (!hasHints(feedback, verdictAt(part, place))) continue;
+      // After another wrong answer to a cell, its message may be another one: the hints go on.
+      const key = JSON.stringify([part.part, place.row, place.cell]);
+      if (!hasHints(feedback, verdictAt(part, place)) || offered.has(key)) continue;
+      offered.add(key);
       const topic = { part: part.part, code: feedback.code, ...place };
-      const key = JSON.stringify(topic);
       const earlier = had.get(key) ?? { steps: [], tried: "" };
       had.set(key, earlier);
-      element.append(new HintBox(host, answered, topic, earlier).element);
+      element.append(new HintBox(host, answered, topic, earlier, prices).element);
     }
   }
 }
@@ -72,12 +82,14 @@ class HintBox {
    * @param {Pick<Api.HintRequest, "answers" | "angle_unit">} answered
    * @param {Front.Topic & { part: string, code: string }} topic
    * @param {Had} had
+   * @param {Front.HintPrices | null} prices null if hints are free
    */
-  constructor(host, answered, topic, had) {
+  constructor(host, answered, topic, had, prices) {
     this.host = host;
     this.answered = answered;
     this.topic = topic;
     this.had = had;
+    this.prices = prices;
     this.symbols = new Set(host.exercise.symbols.map(({ name }) => name));
     this.button = h("button", { type: "button", class: "quiet-button", onclick: () => this.#next() });
     this.note = h("p", { class: "quiet", role: "status" });
@@ -93,18 +105,21 @@ class HintBox {
   #show() {
     const { steps } = this.had;
     this.list.hidden = steps.length === 0;
-    this.list.replaceChildren(...steps.map((step) => this.#step(step)));
+    this.list.replaceChildren(...steps.map((step, i) => this.#step(step, step.title !== steps[i - 1]?.title)));
     this.button.hidden = steps.length === STEPS || !this.#isTried;
-    this.button.textContent = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
-    this.note.textContent = steps.length > 0 && steps.length < STEPS && !this.#isTried ? TRY_FIRST : "";
+    const name = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
+    const price = this.prices ? priceInWords(this.prices, this.topic, steps.length + 1) : "";
+    this.button.textContent = [name, price].filter(Boolean).join(": ");
+    const isOpen = steps.length > 0 && steps.length < STEPS && !this.#isTried;
+    this.note.textContent = isOpen ? tryFirst(this.prices) : "";
   }
 
-  /** @param {Api.Hint} hint */
-  #step({ step, title, text, picture }) {
+  /** @param {Api.Hint} hint @param {boolean} isNew the rule is not that of the step before */
+  #step({ title, text, picture, lesson }, isNew) {
     return h(
       "li",
       { tabindex: -1 },
-      step === 1 ? h("strong", {}, ...typesetMessage(visible(title), this.symbols), ". ") : null,
+      isNew ? h("strong", {}, ...typesetMessage(visible(title), this.symbols), ". ") : null,
       ...typesetMessage(visible(text), this.symbols),
       picture
         ? h("img", {
@@ -113,6 +128,18 @@ class HintBox {
           alt: visible(`${title}: the picture of this rule`),
         })
         : null,
+      lesson
+        ? h(
+          "p",
+          {},
+          h(
+            "a",
+            { href: this.host.service.address(lesson), target: "_blank", rel: "noopener" },
+            "See it move in DH in ten minutes",
+            h("span", { class: "aloud" }, " (in a new tab)"),
+          ),
+        )
+        : null,
     );
   }
 
@@ -120,8 +147,12 @@ class HintBox {
     if (this.button.getAttribute("aria-disabled") === "true") return;
     this.button.setAttribute("aria-disabled", "true");
     try {
-      const body = { ...this.answered, ...this.topic, step: this.had.steps.length + 1 };
-      const hint = await this.host.service.hint(this.host.exercise.id, body);
+      const asked = { ...this.topic, step: this.had.steps.length + 1 };
+      const { service, exercise, handIn } = this.host;
+      const hint = this.prices
+        ? await service.takeHint(this.prices.attempt, asked)
+        : await service.hint(exercise.id, { ...this.answered, ...asked });
+      if (this.prices) handIn?.refresh();
       this.had.steps.push(hint);
       this.had.tried = JSON.stringify(this.answered);
       this.#show();

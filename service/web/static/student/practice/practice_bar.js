@@ -3,15 +3,13 @@
 import { h } from "../../shared/dom.js";
 import { inConvention, robotOf, slipIn } from "./robot_ids.js";
 import { keepSolved, solvedOf } from "./solved.js";
+import { favoured, noteDealt, noteGraded } from "./spaced.js";
 
 const LEVELS = ["1: first robots", "2: arms", "3: offsets and wrists", "4: any angle"];
 const CONVENTIONS = ["standard", "modified"];
 const MOST = LEVELS.length;
 
 export class PracticeBar {
-  /** @type {Api.Situation | null} */
-  #favour = null;
-
   /** @param {Front.PracticeHost} host */
   constructor(host) {
     this.host = host;
@@ -63,8 +61,11 @@ export class PracticeBar {
     const wanted = level ?? Math.min(Math.max(Math.round(Number(this.host.getAttribute("practice"))) || 1, 1), MOST);
     const convention = level ? this.convention.value : this.host.getAttribute("convention") ?? CONVENTIONS[0];
     const after = robotOf(last) ? last : null;
+    const { service } = this.host;
+    const favour = favoured(service.base);
     try {
-      const { id } = await this.host.service.nextRobot(wanted, convention, after, this.#favour);
+      const { id } = await service.nextRobot(wanted, convention, after, favour);
+      noteDealt(service.base, id, favour);
       // The page may have chosen a robot meanwhile.
       if (this.host.getAttribute("exercise") === last) this.host.setAttribute("exercise", id);
     } catch (error) {
@@ -84,8 +85,11 @@ export class PracticeBar {
     if (this.element.hidden) return;
     const { id, symbols } = this.host.exercise;
     const sliding = symbols.flatMap(({ joint, kind }) => (joint && kind === "length" ? [joint] : []));
-    this.#favour = slipIn(report, sliding);
-    if (report.points >= report.max_points) keepSolved(this.host.service.base, this.#level, id);
+    const { base } = this.host.service;
+    const isSolved = report.points >= report.max_points;
+    const slip = slipIn(report, sliding);
+    if (slip || isSolved) noteGraded(base, id, slip);
+    if (isSolved) keepSolved(base, this.#level, id);
     this.show();
   }
 

@@ -16,10 +16,14 @@ export function valueOf(kind, text) {
   const trimmed = text.trim();
   if (trimmed === "") return null;
   if (kind === "number") return Number(trimmed);
-  if (kind === "words") return trimmed.split(/[\s,;]+/u).filter(Boolean);
+  if (kind === "words") return words(trimmed);
+  if (kind === "numbers") return words(trimmed).map(Number);
   if (kind === "list") return [text];
   return kind === "text" ? trimmed : text;
 }
+
+/** @param {string} text */
+const words = (text) => text.split(/[\s,;]+/u).filter(Boolean);
 
 /** @param {HTMLFormElement} form */
 function bodyOf(form) {

@@ -80,8 +80,8 @@ function reports({ report, earlier_reports: earlier }, drawn) {
 }
 
 /** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
-function facts({ attempt, submission, report }, exercise, attempts) {
-  const { learner, ordinal, at, is_late: late, version, grader, variant } = attempt;
+function facts({ attempt, submission, report, hints = [] }, exercise, attempts) {
+  const { learner, ordinal, at, is_late: late, version, grader, variant, hint_points: cost = 0 } = attempt;
   /** @type {(query: Record<string, string>, ...text: Front.Child[]) => HTMLElement} */
   const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
   const isOld = exercise && exercise.version !== version;
@@ -104,16 +104,33 @@ function facts({ attempt, submission, report }, exercise, attempts) {
     ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
     ["Points", h("strong", {}, earned(attempt))],
     attempt.awarded !== undefined && ["Without the override", points(attempt.points, attempt.max_points)],
-    late && report.points > 0 &&
+    (late || cost > 0) && report.points > 0 &&
     [
       "Points in the report",
-      `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`,
+      [
+        points(report.points, report.max_points),
+        cost > 0 && `−${number(cost)} for hints`,
+        late && report.points > cost && lateShare(attempt.points / (report.points - cost)),
+      ].filter(Boolean).join(", "),
     ],
+    hints.length > 0 && ["Hints before it", h("ul", {}, ...hints.map(hintInWords))],
     ["Angles without a unit", String(submission.angle_unit ?? "radians")],
     ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the current version)" : ""}, program ${grader}`)],
   ];
   const shown = pairs.filter((pair) => pair !== false);
   return h("dl", {}, ...shown.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+}
+
+/** @param {Api.TakenHint} hint */
+function hintInWords({ part, code, row, cell, step, price }) {
+  const where = [part, row, cell].filter((each) => each !== undefined).join("/");
+  return h(
+    "li",
+    {},
+    `step ${step} of `,
+    h("code", {}, code),
+    ` at ${visible(where)}${price ? `, ${percent(price)}` : ""}`,
+  );
 }
 
 /**

@@ -70,7 +70,7 @@ function inWords(counts) {
 }
 
 /** @param {string} tag @param {Record<string, string | number>} attributes */
-function make(tag, attributes) {
+export function make(tag, attributes) {
   const element = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   return element;

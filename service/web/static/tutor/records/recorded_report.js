@@ -7,13 +7,18 @@ import { item } from "../../student/messages.js";
 import { PartView } from "../../student/part_view.js";
 import { Previewer } from "../../student/previewer.js";
 import { send } from "../tutor_service.js";
+import { playedTable } from "../../student/report/played_table.js";
 
 const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) =>
   new URL(name, import.meta.url).href
 );
 
 /** @type {Front.PreviewService} */
-const TUTORS = { previews: (body) => send("v1/previews", body), preview: (body) => send("v1/preview", body) };
+const TUTORS = {
+  previews: (body) => send("v1/previews", body),
+  preview: (body) => send("v1/preview", body),
+  frames: (body) => send("v1/frames", body),
+};
 
 /** A part whose cells are read-only. */
 class RecordedPart extends PartView {
@@ -102,12 +107,19 @@ export class RecordedReport {
       view.filled.then((isFilled) => {
         view.showReport(report);
         element.classList.toggle("without-cells", !isFilled && !report.rows.length);
+        if (isFilled && this.exercise) this.#play(this.exercise, view);
       });
     }
     const isLeftOut = answer === undefined || answer === null;
     element.classList.toggle("left-out", isLeftOut);
     if (!isLeftOut && !element.querySelector(".as-sent")) element.append(asSent(answer));
     return element;
+  }
+
+  /** Let the rows of a table be played. @param {Api.Exercise} exercise @param {RecordedPart} view */
+  #play(exercise, view) {
+    if (view.part.kind !== "dh_table" || view.isEmpty || view.element.querySelector(".played-table")) return;
+    view.body.append(playedTable(exercise, view, this.host));
   }
 
   /**

@@ -2,6 +2,7 @@
 
 import { byId, h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
+import { learningCurve } from "./learning_curve.js";
 import { pair } from "../../shared/pasted_block.js";
 import { layoutOf } from "../../student/kinds.js";
 import { cellsInWords } from "../../student/report/places.js";
@@ -73,7 +74,8 @@ const rowName = (part, label) => visible(names.get(part)?.rows.get(label) || lab
 const columnName = (part, label) => visible(names.get(part)?.columns.get(label) ?? cellsInWords([label]));
 
 /** @param {Api.ExerciseStatistics} statistics */
-function draw({ attempts, learners, parts, misconceptions, identical }) {
+function draw(statistics) {
+  const { attempts, learners, parts, misconceptions, hints = [], identical } = statistics;
   if (!attempts) {
     tell(state, "");
     const isNarrowed = Object.values(span()).some(Boolean);
@@ -97,11 +99,16 @@ function draw({ attempts, learners, parts, misconceptions, identical }) {
     ),
     section(
       "Misconceptions",
-      "How many attempts have each misconception, the most frequent first, and on which days (UTC). The sentence is an example from one of the reports.",
+      "How many attempts have each misconception, the most frequent first, and on which days (UTC). The sentence is an example from one of the reports. The learning curve is the share of learners who have it in their first attempt, their second one, and so on.",
       [
-        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None found."),
+        misconceptions.length
+          ? folded(misconceptions, slipsOf(misconceptions, statistics.learners_by_attempt ?? []))
+          : h("p", {}, "None found."),
       ],
     ),
+    hints.length
+      ? section("Hints", "How often learners took each step of the hints for a message.", [folded(hints, hintsTaken)])
+      : "",
     section(
       "Identical wrong answers",
       "Several learners sent exactly the same wrong answer. This does not prove that anybody copied.",
@@ -176,12 +183,13 @@ const band = ({ share }) => (share === undefined ? "none" : BANDS.filter((edge) 
  * Return a function that draws a table of some of these misconceptions, with all charts at the same scale.
  *
  * @param {Api.MisconceptionFigures[]} misconceptions
+ * @param {number[]} learners the number of learners by attempt
  */
-function slipsOf(misconceptions) {
+function slipsOf(misconceptions, learners) {
   const charts = daysCharts(misconceptions.map(({ by_day: counts }) => counts));
   const most = misconceptions[0].attempts;
   /** @type {(figures: Api.MisconceptionFigures) => (string | Node)[]} */
-  const row = ({ part, code, sentence, attempts, by_day: counts }) => [
+  const row = ({ part, code, sentence, attempts, by_day: counts, by_attempt: having = [] }) => [
     sentence
       ? h("span", { class: "slip" }, h("span", {}, ...message(sentence)), h("code", {}, visible(code)))
       : h("code", {}, visible(code)),
@@ -193,10 +201,19 @@ function slipsOf(misconceptions) {
       h("meter", { min: 0, max: most, value: attempts, "aria-hidden": "true" }),
     ),
     charts.get(counts) ?? "",
+    learningCurve(having, learners) ?? "",
   ];
   return (/** @type {Api.MisconceptionFigures[]} */ shown) =>
-    table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days"], shown.map(row));
+    table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days", "Learning curve"], shown.map(row));
 }
+
+/** @param {Api.HintFigures[]} hints */
+const hintsTaken = (hints) =>
+  table(
+    "Hints",
+    ["Message", "Part", "What to look at", "The rule", "The rule here"],
+    hints.map(({ part, code, taken }) => [h("code", {}, visible(code)), titleOf(part), ...taken.map(String)]),
+  );
 
 /** @param {Api.IdenticalAnswers} identical */
 function group({ learners, attempts, wrong, among }) {

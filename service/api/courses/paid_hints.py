@@ -1,0 +1,136 @@
+"""The route of hints at recorded attempts: each step is recorded, and may have a price."""
+
+from collections.abc import Collection
+from datetime import UTC, datetime
+from functools import partial
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Any
+
+from fastapi import APIRouter, Path, Request, Response
+
+from service.access.caller import Caller
+from service.api.courses.asking import read, write
+from service.api.document.openapi import posting
+from service.api.http.bodies import read_body
+from service.api.http.lookup import Catalogue, exercise_or_404
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import Access
+from service.api.recording.new_attempts import not_recorded
+from service.api.recording.store import private, unknown_attempt
+from service.api.routes.hints import hint_for
+from service.api.turns import run_in_turns
+from service.attempts.policy import AttemptRefusedError, ruling
+from service.catalogue import Exercise, FeedbackLevel, least
+from service.catalogue.attempts import AttemptsSpec
+from service.contract.attempts import AttemptHintRequest
+from service.contract.grading import Hint, HintRequest
+from service.submissions.body import GradeRequest
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Connection, Row
+
+    from service.attempts.store import AttemptStore
+
+
+def routes(
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    store: "AttemptStore | None",
+    access: Access,
+    origins: Collection[str] = (),
+) -> APIRouter:
+    """Return the route; hints are for messages of reports with at most the level ``feedback``."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+
+    @router.post(
+        "/attempts/{attempt_id}/hints",
+        operation_id="takeHint",
+        summary="Take a hint for a message of a recorded report",
+        response_description="One step of the hint.",
+        **posting(
+            AttemptHintRequest,
+            Hint,
+            None,
+            HTTPStatus.FORBIDDEN,
+            HTTPStatus.NOT_FOUND,
+            HTTPStatus.SERVICE_UNAVAILABLE,
+        ),
+    )
+    async def take_hint(
+        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
+    ) -> Response:
+        """Return a step of the hint for a message of this attempt, and record that it was taken.
+
+        Its price reduces the points of the learner's later attempts at the exercise. The same step
+        costs nothing again. Before the next step, the learner hands in another answer.
+        """
+        from service.attempts.hints import HintStepOf, attempt_with_course, take
+        from service.attempts.regrades.outdated import attempted_exercise
+
+        access.require_allowed_origin(request, origins)
+        if store is None:
+            raise not_recorded()
+        body = await read_body(AttemptHintRequest, request)
+        row = await read(store, lambda it: attempt_with_course(it, attempt_id))
+        if row is None or not _may_use(access.caller(request), row):
+            raise unknown_attempt()
+        named = exercise_or_404(catalogue, row.exercise)
+        rules, prices, counted = await read(store, partial(_terms, row, named))
+        now = datetime.now(UTC)
+        try:
+            ruling(rules, counted, now)
+        except AttemptRefusedError as error:
+            raise _refused(error.name, str(error)) from error
+        exercise = attempted_exercise(named, row)
+        if prices is None or exercise is None:
+            raise _refused("no-hints", "Recorded attempts at this exercise have no hints.")
+        hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
+        wanted = HintStepOf(body.part, body.code, body.row or "", body.cell or "", body.step)
+        refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
+        if refused is not None:
+            raise _refused(refused.name, str(refused))
+        return private(hint)
+
+    return router
+
+
+def _may_use(caller: Caller, row: "Row[Any]") -> bool:
+    return (
+        caller.reaches(row.exercise)
+        and caller.course in (None, row.course)
+        and caller.learner in (None, row.learner)
+    )
+
+
+def _terms(
+    row: "Row[Any]", exercise: Exercise, connection: "Connection"
+) -> tuple[AttemptsSpec, list[float] | None, int]:
+    """Return the rules of the next attempt, the prices of hints, and the counted attempts."""
+    from service.attempts.recording import standing
+    from service.courses.terms import terms_of
+
+    counted = standing(connection, row.exercise, row.learner, "", None, row.assignment).counted
+    if row.assignment is None:
+        return exercise.attempts, exercise.attempts.hint_prices, counted
+    terms = terms_of(connection, row.course, row.in_assignment, row.learner)
+    return terms.rules, terms.hint_prices(exercise), counted
+
+
+def _hint(
+    exercise: Exercise, row: "Row[Any]", body: AttemptHintRequest, most: FeedbackLevel
+) -> Hint:
+    """Return the step of the hint for a message of the recorded report. Raises ProblemError."""
+    from json import loads
+
+    submission = GradeRequest.model_validate_json(row.submission)
+    asked = HintRequest.model_construct(
+        **{name: getattr(submission, name) for name in GradeRequest.model_fields},
+        **body.model_dump(),
+    )
+    # The report may have said less than the exercise allows.
+    told = FeedbackLevel(loads(row.report)["feedback"])
+    return hint_for(exercise, asked, least(most, told))
+
+
+def _refused(name: str, detail: str) -> ProblemError:
+    return ProblemError(HTTPStatus.FORBIDDEN, detail, name, "The hint is not given")

@@ -1,0 +1,36 @@
+// The prices of hints at a report on handed-in answers.
+
+import { number } from "../../shared/dom.js";
+
+/**
+ * Return what the hints at the report of an attempt cost, or null if it has none.
+ *
+ * @param {Front.HintHost["handIn"]} handIn
+ * @param {string} attempt
+ * @returns {Front.HintPrices | null}
+ */
+export function pricesOf(handIn, attempt) {
+  if (!handIn || !attempt) return null;
+  const { hint_prices: prices, hints = [], points } = handIn.own.exercise;
+  return prices ? { attempt, prices, taken: hints, points } : null;
+}
+
+/**
+ * Return the price of a step in words; an empty text if it costs nothing.
+ *
+ * @param {Front.HintPrices} offer
+ * @param {Front.Topic & { part: string }} topic
+ * @param {number} step
+ */
+export function priceInWords({ prices, taken, points }, topic, step) {
+  const isTaken = taken.some((each) =>
+    each.step === step && each.part === topic.part && each.row === topic.row && each.cell === topic.cell
+  );
+  if (isTaken) return "you have taken it";
+  const price = prices[step - 1];
+  return price ? `costs ${number(price * points)} of ${number(points)} points of each later attempt` : "";
+}
+
+/** @param {Front.HintPrices | null} prices */
+export const tryFirst = (prices) =>
+  `Change your answer and ${prices ? "hand it in" : "check it"} again. Then the next hint opens.`;
