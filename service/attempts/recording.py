@@ -106,13 +106,13 @@ def standing(
 
     Attempts count in the assignment, or, without one, outside of all assignments.
     """
-    which = {
+    which: dict[str, str | int | None] = {
         "exercise": exercise,
         "learner": learner,
         "owner": owner,
         "idempotency_key": idempotency_key,
+        "assignment": assignment,
     }
-    which |= {"assignment": assignment}
     statement = _OUTSIDE if assignment is None else _IN_ASSIGNMENT
     row = connection.execute(statement, which).one()
     found = row.earlier and connection.execute(_EARLIER, {"number": row.earlier}).one_or_none()
