@@ -51,6 +51,8 @@ from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.courses.links import issue_links
 from service.web import Tutoring, web_routes
+from tests.shipped import shipped_exercises
+from tests.solutions.solved import solved
 
 STATUSES = Path(__file__).parent / "permissions" / "statuses.txt"
 HERE, ELSEWHERE = "http://127.0.0.1:8000", "http://192.0.2.1:8000"
@@ -81,7 +83,9 @@ BODIES: Mapping[str, Any] = {
         "cell": "a",
         "step": 1,
     },
-    "POST /v1/exercises/{exercise_id}/solution": ANSWERS,
+    "POST /v1/exercises/{exercise_id}/solution": {
+        "answers": dict(solved(shipped_exercises()[EXERCISE]).answers)
+    },
     "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
     "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},

@@ -21,7 +21,7 @@ ROOMS = {
     "catalogue": {"shared"},
     "student": {"shared", "typeset", "robot", "pages", "catalogue"},
     "play": {"shared", "robot", "student"},
-    "ten_minutes": {"shared", "robot"},
+    "ten_minutes": {"shared", "typeset", "robot"},
     "practice": {"student"},
     "tutor": {"shared", "student"},
     "learner": {"shared", "typeset", "student", "tutor"},

@@ -33,9 +33,9 @@ def test_a_platform_is_registered_from_a_file_checked_and_removed(run: Run, tmp_
         assert "last launch: never" in checked.output
     down = run("lti", "check", "moodle")
     assert (down.exit_code, "does not answer" in down.output) == (1, True)
-    assert len(run("lti", "keys", "list").output.split()) == 1
+    assert len(run("lti", "keys", "list").output.splitlines()) == 1
     assert "signs from" in run("lti", "keys", "rotate").output
-    assert len(run("lti", "keys", "list").output.split()) == 2
+    assert len(run("lti", "keys", "list").output.splitlines()) == 2
     refused = run("lti", "roster", "robotics", "--names")
     assert (refused.exit_code, "does not tell its roster" in refused.stderr) == (2, True)
     assert run("lti", "remove", "moodle").exit_code == 0
