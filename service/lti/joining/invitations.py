@@ -1,7 +1,7 @@
 """Invitations: one-time links by which a platform registers itself.
 
 Only a digest of the link is stored. The beginning of its text says whether the registration waits
-for ``dh-grader lti allow``; as it is part of the digest, nobody can change it.
+for ``dh-grader lti allow``; a changed beginning gives another digest.
 """
 
 import secrets
@@ -84,7 +84,7 @@ def invitation_of(connection: Connection, text: str, now: datetime) -> Invitatio
 
 
 def claim(connection: Connection, text: str, now: datetime) -> Invitation:
-    """Return a valid invitation, which nobody else can use meanwhile. Raises RegistrationError."""
+    """Return a valid invitation, and mark it as used. Raises RegistrationError."""
     found = invitation_of(connection, text, now)
     mine = (invitations.c.digest == found.digest) & invitations.c.used_at.is_(None)
     if not connection.execute(update(invitations).where(mine).values(used_at=now)).rowcount:
