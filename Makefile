@@ -25,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test journeys thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -48,6 +48,9 @@ test: $(dev) ## lint, type-check and test on every core
 	echo '$(pytest)'; $(pytest); tested=$$?; \
 	wait $$checker; checked=$$?; cat "$$types"; [ $$tested = 0 ] && [ $$checked = 0 ]; }
 
+journeys: $(dev) ## the tests of long ways through browsers and processes, of which `make test` has a sample
+	$(pytest) -m "journey and not campaign"
+
 thorough: $(dev) ## the same tests, and all of which the suite has a sample (takes long)
 	$(pytest) -m "campaign or not campaign" --hypothesis-profile thorough --ignore tests/installed
 
@@ -58,7 +61,7 @@ screenshots: $(dev) ## photograph every view into docs/screenshots
 	$(python) -m tests.browser.screenshots
 
 coverage: $(dev) ## the same tests, and the lines that none of them runs (twice the time)
-	$(pytest) --cov
+	$(pytest) -m "not campaign" --cov
 
 lint: $(dev) ## ruff, mypy and the checks of the scripts, without the tests
 	$(ruff)

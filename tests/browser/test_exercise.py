@@ -50,7 +50,14 @@ def total(page: Page) -> Locator:
 
 
 # The first exercise has all answer kinds of the others.
-@pytest.mark.parametrize("exercise", ["spatial-rrr", "planar-rrr", "rrrp"])
+@pytest.mark.parametrize(
+    "exercise",
+    [
+        pytest.param("spatial-rrr", marks=pytest.mark.journey),
+        "planar-rrr",
+        pytest.param("rrrp", marks=pytest.mark.journey),
+    ],
+)
 def test_an_exercise_is_solved_by_keyboard(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise], exercise: str
 ) -> None:
@@ -116,6 +123,7 @@ def test_a_table_in_four_formats_fills_the_grid(visit: Opening, service: str) ->
     assert values(cells(page, 1))[16:20] == ["c2", "-s2", "0", "L1*c2"]
 
 
+@pytest.mark.journey
 def test_answers_are_previewed_marked_saved_and_shared(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise]
 ) -> None:

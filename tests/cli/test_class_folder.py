@@ -90,6 +90,7 @@ def test_a_file_without_permission_is_reported(folder: Path) -> None:
         os.seteuid(0)
 
 
+@pytest.mark.journey
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_ends_the_run_and_leaves_no_files_or_processes(
     folder: Path, tmp_path: Path, number: signal.Signals

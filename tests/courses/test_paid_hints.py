@@ -222,6 +222,7 @@ def test_the_statistics_count_hints_and_misconceptions_by_attempt(class_: Class)
     assert curves["half_turn"] == [2, 1, 0]
 
 
+@pytest.mark.journey
 def test_a_thief_with_all_hints_gains_nothing_below_their_price(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -70,6 +70,7 @@ MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
 })"""
 
 
+@pytest.mark.journey
 def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: Path) -> None:
     """A text's box is as high as the font; its upper and lower 4 pixels are empty."""
     shown = [*map(drawn, SHIPPED), *(reference_figure(SHIPPED[name]) for name in FRAMED)]

@@ -20,6 +20,7 @@ def sources(html: str) -> list[str]:
     return re.findall(r'(?:src|href)="([^"]+)"', html)
 
 
+@pytest.mark.journey
 def test_the_page_names_no_other_host(server: Served) -> None:
     with httpx.Client(base_url=server.address, trust_env=False, timeout=ANSWER) as client:
         page = client.get(PAGE)

@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from urllib.request import Request, urlopen
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from service.access.caller import Scope
@@ -48,6 +49,7 @@ def hand_in(link: str, address: str) -> None:
         assert answer.status == 201
 
 
+@pytest.mark.journey
 def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_path: Path) -> None:
     database = str(tmp_path / "attempts.db")
     key = administrator(database)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import expect
 
 from service.client import GraderClient
@@ -15,6 +16,7 @@ from tests.browser.test_pages import violations
 EXERCISE = "planar-rr-numbers"
 
 
+@pytest.mark.journey
 def test_a_tutor_sees_and_deals_variants(
     visit: Callable[..., Visit], axe: str, tmp_path: Path
 ) -> None:

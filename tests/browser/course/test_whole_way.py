@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from service.catalogue import shipped_folder
@@ -66,6 +67,7 @@ def open_homework(page: Page, link: str) -> None:
     page.locator(".assignment").get_by_role("link").click()
 
 
+@pytest.mark.journey
 def test_the_whole_way(visit: Callable[..., Visit], tmp_path: Path) -> None:
     database, folder = str(tmp_path / "attempts.db"), tmp_path / "exercises"
     folder.mkdir()

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from contextlib import suppress
 
+import pytest
 from playwright.sync_api import Error, Page, Route, expect
 
 from service.catalogue import load_exercise, shipped_folder
@@ -73,6 +74,7 @@ def hand_in(page: Page) -> None:
     page.locator(".bar").get_by_role("button", name="Hand in").click()
 
 
+@pytest.mark.journey
 def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     opened = visit(bypass_csp=True, viewport={"width": 1280, "height": 900})
     page = opened.page

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from service.catalogue import Exercise
@@ -44,6 +45,7 @@ def plain(page: Page) -> list[str]:
     return [text for text in page.evaluate(TEXTS) if PLAIN.search(text)]
 
 
+@pytest.mark.journey
 def test_every_exercise_is_typeset_and_fits_a_phone(
     visit: Callable[..., Visit], service: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
@@ -16,6 +17,7 @@ DEGREES = [
 ]  # fmt: skip
 
 
+@pytest.mark.journey
 def test_angles_are_read_as_degrees_where_the_report_proposes_it(
     visit: Opening, service: str, axe: str
 ) -> None:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 
+import pytest
 from playwright.sync_api import expect
 
 from service.catalogue import Exercise
@@ -15,6 +16,7 @@ IS_FOCUSED = "each => each.matches(':focus')"
 LAST_ROW = slice(12, 16)
 
 
+@pytest.mark.journey
 def test_the_stanford_arm_is_typed_from_an_empty_page_to_full_marks(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from service.catalogue import Exercise
@@ -21,6 +22,7 @@ NAMES = {
 }
 
 
+@pytest.mark.journey
 def test_the_stanford_arm_is_tapped_from_an_empty_page_to_full_marks(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise], axe: str
 ) -> None:

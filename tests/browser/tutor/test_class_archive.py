@@ -6,6 +6,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.fixtures import Visit
@@ -29,6 +30,7 @@ def saved(page: Page, button: str, folder: Path) -> Path:
     return file
 
 
+@pytest.mark.journey
 def test_a_platforms_zip_file_gives_gradebook_and_feedback_pages(
     visit: Callable[..., Visit], service: str, tmp_path: Path
 ) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
@@ -9,6 +10,7 @@ from tests.browser.steps import cells
 from tests.browser.test_pages import violations
 
 
+@pytest.mark.journey
 def test_the_unsaved_text_is_tried_in_the_real_form(
     visit: Callable[..., Visit], service: str, axe: str
 ) -> None:

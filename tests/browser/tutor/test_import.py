@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from time import monotonic
 
+import pytest
 from playwright.sync_api import expect
 
 from service.authoring import Level, examine
@@ -15,6 +16,7 @@ from tests.browser.test_tutor import NARROW, wide
 from tests.importing.test_arms import ARMS
 
 
+@pytest.mark.journey
 def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
     visit: Callable[..., Visit], axe: str, tmp_path: Path, figure: Callable[[str], None]
 ) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Final
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
@@ -12,6 +13,7 @@ NARROW: Final = {"width": 390, "height": 844}
 BACKGROUND: Final = "getComputedStyle(document.body).backgroundColor"
 
 
+@pytest.mark.journey
 def test_the_reference_is_accessible_light_and_dark(
     visit: Callable[..., Visit], service: str, axe: str
 ) -> None:

@@ -80,6 +80,7 @@ def test_a_server_and_this_program_give_the_same_document(
     assert list(Path().glob(".*")) == []
 
 
+@pytest.mark.journey
 def test_after_a_kill_the_next_run_requests_exactly_the_rest(
     run: Run, homework: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

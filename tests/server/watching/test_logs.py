@@ -5,6 +5,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.attempts.databases import new_file
 from tests.server.raw import service
 
@@ -32,6 +34,7 @@ def logged(folder: Path) -> tuple[list[dict[str, Any]], str]:
         return lines, running.log
 
 
+@pytest.mark.journey
 def test_every_line_is_an_object_and_contains_no_answer(tmp_path: Path) -> None:
     lines, text = logged(tmp_path)
     for line in lines:
