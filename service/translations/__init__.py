@@ -1,0 +1,29 @@
+"""Sentences and their translations.
+
+``sentence`` makes sentences, ``languages`` has the catalogues. Each language is a folder with the
+sentences of reports (``sentences.po``) and of pages (``pages.po``). This is the lowest package: it
+imports no other.
+"""
+
+from service.translations.languages import (
+    ENGLISH,
+    LANGUAGES,
+    Language,
+    accepted_language,
+    language_named,
+)
+from service.translations.sentence import Sentence, listed, say, say_count, template, told
+
+__all__ = [
+    "ENGLISH",
+    "LANGUAGES",
+    "Language",
+    "Sentence",
+    "accepted_language",
+    "language_named",
+    "listed",
+    "say",
+    "say_count",
+    "template",
+    "told",
+]

@@ -1,0 +1,83 @@
+"""The languages that sentences are told in, and the choice of one for a reader."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from gettext import GNUTranslations
+from pathlib import Path
+from typing import Final
+
+_FOLDER: Final = Path(__file__).parent
+# The catalogues of a language: the sentences of reports, and those of pages.
+DOMAINS: Final = ("sentences", "pages")
+
+
+@dataclass(frozen=True)
+class Language:
+    """A language by its code, and its name in itself. ``tag`` is that of HTML."""
+
+    code: str
+    name: str
+    tag: str
+
+    @cached_property
+    def translation(self) -> GNUTranslations | None:
+        """The catalogue of the language; None for English, the language of the templates."""
+        if self.code == "en":
+            return None
+        found = GNUTranslations()
+        # A template that no catalogue has stays English.
+        for domain in DOMAINS:
+            file = _FOLDER / self.code / f"{domain}.mo"
+            if file.is_file():
+                with file.open("rb") as content:
+                    read = GNUTranslations(content)
+                read.add_fallback(found)
+                found = read
+        return found
+
+
+ENGLISH: Final = Language("en", "English", "en")
+_KNOWN: Final = (
+    ENGLISH,
+    Language("de", "Deutsch", "de"),
+    Language("es", "Español", "es"),
+    Language("fr", "Français", "fr"),
+    Language("zh", "简体中文", "zh-Hans"),
+)
+# Those that are complete; a language without its catalogue of pages is not offered.
+LANGUAGES: Final[Mapping[str, Language]] = {
+    each.code: each
+    for each in _KNOWN
+    if each is ENGLISH or (_FOLDER / each.code / "sentences.mo").is_file()
+}
+
+
+def language_named(tag: str | None) -> Language | None:
+    """Return the language of a tag such as ``de``, ``de-AT`` or ``zh_CN``, if there is one."""
+    return LANGUAGES.get((tag or "").replace("_", "-").partition("-")[0].strip().lower())
+
+
+def accepted_language(header: str | None) -> Language:
+    """Return the language of an ``Accept-Language`` header that the reader likes best.
+
+    Otherwise it is English. A header of any shape is allowed.
+    """
+    wanted = []
+    for i, each in enumerate((header or "")[:500].split(",")):
+        tag, _, parameters = each.partition(";")
+        language = language_named(tag)
+        quality = _quality(parameters)
+        if language and quality > 0:
+            wanted.append((-quality, i, language))
+    return min(wanted, key=lambda one: one[:2], default=(0, 0, ENGLISH))[2]
+
+
+def _quality(parameters: str) -> float:
+    name, _, value = parameters.partition("=")
+    if name.strip().lower() != "q":
+        return 1.0
+    try:
+        return float(value)
+    except ValueError:
+        return 0.0

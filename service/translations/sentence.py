@@ -1,0 +1,92 @@
+"""Sentences for people: a template in English with named values.
+
+A sentence is its English text, and keeps the template and the values that made it. So whoever
+passes it on treats it as text, and the edge of the program can tell it in another language. ::
+
+    say("Joint {joint} slides, and its variable is {name}.", joint=3, name="d3")
+
+The extraction finds the templates in the calls of ``say``, ``say_count`` and ``template``, so each
+is one string constant there. A value is a name, a number or a formula, which is the same in all
+languages, or a sentence of its own, which is translated, too.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, Protocol, TypeAlias
+
+SentenceValue: TypeAlias = str | int
+
+_NO_VALUES: Final[Mapping[str, SentenceValue]] = {}
+
+
+class Translation(Protocol):
+    """The catalogue of a language, such as ``gettext.GNUTranslations``."""
+
+    def gettext(self, message: str, /) -> str:
+        """Return the template in the language."""
+
+    def ngettext(self, one: str, many: str, count: int, /) -> str:
+        """Return the template that the language has for this count."""
+
+
+class Sentence(str):
+    """A text in English that remembers its ``template`` and ``values``.
+
+    ``plural`` is the template for any other number than 1 of ``count``; it is empty if the template
+    counts nothing.
+    """
+
+    __slots__ = ("plural", "template", "values")
+
+    template: str
+    plural: str
+    values: Mapping[str, SentenceValue]
+
+    def __new__(
+        cls, template: str, values: Mapping[str, SentenceValue] = _NO_VALUES, plural: str = ""
+    ) -> "Sentence":
+        """Return the sentence that the template makes of its values."""
+        chosen = plural if plural and values["count"] != 1 else template
+        self = super().__new__(cls, chosen.format_map(values))
+        self.template, self.plural, self.values = template, plural, values
+        return self
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        """Return what makes an equal sentence, for copies in other processes."""
+        return self.template, self.values, self.plural
+
+
+def say(template: str, /, **values: SentenceValue) -> Sentence:
+    """Return the sentence of a template; ``{name}`` is the place of a value."""
+    return Sentence(template, values)
+
+
+def say_count(one: str, many: str, /, *, count: int, **values: SentenceValue) -> Sentence:
+    """Return a sentence that counts: ``one`` if ``count`` is 1, otherwise ``many``."""
+    return Sentence(one, {"count": count, **values}, many)
+
+
+def template(text: str, /) -> str:
+    """Return the text, a template that is filled elsewhere. The call marks it for extraction."""
+    return text
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return the words with commas between them and "and" before the last."""
+    if len(words) < 2:
+        return "".join(words)
+    return say("{first} and {last}", first=", ".join(words[:-1]), last=words[-1])
+
+
+def told(text: str, translation: Translation | None) -> str:
+    """Return a sentence in a language; None is English. A text without a template stays."""
+    if translation is None or not isinstance(text, Sentence):
+        return text
+    if text.plural:
+        found = translation.ngettext(text.template, text.plural, int(text.values["count"]))
+    else:
+        found = translation.gettext(text.template)
+    values = {
+        name: told(value, translation) if isinstance(value, str) else value
+        for name, value in text.values.items()
+    }
+    return found.format_map(values)

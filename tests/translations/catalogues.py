@@ -1,0 +1,172 @@
+"""Bring the catalogues of all languages up to date with the sentences in the source.
+
+``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes those
+that no source has any more, and compiles the ``.mo`` files that the program reads. Sentences
+without a translation stay empty; nothing is guessed. ``--missing de sentences`` prints the
+sentences that German lacks, as JSON; ``--fill de sentences FILE`` writes translations into the
+catalogue from such a JSON file.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Final
+
+from babel.messages.catalog import Catalog
+from babel.messages.extract import extract
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po, write_po
+
+ROOT: Final = Path(__file__).parents[2]
+FOLDER: Final = ROOT / "service" / "translations"
+CODES: Final = ("de", "es", "fr", "zh")
+# The functions that mark a sentence: in Python, in templates of pages and in their scripts.
+_KEYWORDS: Final[dict[str, dict[str, Any]]] = {
+    "python": {"say": None, "template": None, "say_count": (1, 2)},
+    "jinja2.ext:babel_extract": {"gettext": None, "_": None, "ngettext": (1, 2)},
+    "javascript": {"worded": None, "wordedFor": (1, 2)},
+}
+DOMAINS: Final = ("sentences", "pages")
+
+
+def extracted(domain: str) -> Catalog:
+    """Return the sentences of a domain in the source, with their files.
+
+    The sentences below ``service/web`` are those of pages; all others are those of reports.
+    """
+    found = Catalog(charset="utf-8", fuzzy=False)
+    for file, method in _files(domain):
+        with file.open("rb") as content:
+            options = {"trimmed": "true"} if method.startswith("jinja2") else {}
+            for _, message, comments, context in extract(
+                method,
+                content,
+                keywords=_KEYWORDS[method],
+                comment_tags=("Translators:",),
+                options=options,
+            ):
+                name = file.relative_to(ROOT).as_posix()
+                found.add(message, locations=[(name, 0)], auto_comments=comments, context=context)
+    return found
+
+
+def _files(domain: str) -> Iterator[tuple[Path, str]]:
+    for file in sorted((ROOT / "service").rglob("*.py")):
+        if (ROOT / "service" / "web" in file.parents) == (domain == "pages"):
+            yield file, "python"
+    if domain == "pages":
+        for file in sorted((ROOT / "service" / "web").rglob("*.html")):
+            yield file, "jinja2.ext:babel_extract"
+        for file in sorted((ROOT / "service" / "web" / "static").rglob("*.js")):
+            if "vendor" not in file.parts:
+                yield file, "javascript"
+
+
+def catalogue(code: str, domain: str) -> Catalog:
+    """Return the committed catalogue of a language; empty if there is none."""
+    file = FOLDER / code / f"{domain}.po"
+    if not file.is_file():
+        return Catalog(locale=code, domain=domain, charset="utf-8", fuzzy=False)
+    with file.open("rb") as content:
+        return read_po(content, locale=code, domain=domain)
+
+
+def updated(code: str, domain: str) -> Catalog:
+    """Return the catalogue with exactly the sentences of the source."""
+    old = catalogue(code, domain)
+    new = Catalog(locale=code, domain=domain, charset="utf-8", fuzzy=False)
+    for message in extracted(domain):
+        if not message.id:
+            continue
+        known = old.get(message.id)
+        new.add(
+            message.id,
+            known.string if known else None,
+            locations=message.locations,
+            auto_comments=message.auto_comments,
+            user_comments=known.user_comments if known else (),
+        )
+    return new
+
+
+def as_po(found: Catalog) -> bytes:
+    """Return the text of a catalogue, sorted by files, without line numbers and dates."""
+    out = BytesIO()
+    write_po(
+        out, found, width=100, omit_header=False, include_lineno=False, sort_by_file=True,
+        ignore_obsolete=True,
+    )  # fmt: skip
+    kept = [
+        line
+        for line in out.getvalue().splitlines(keepends=True)
+        if not line.startswith((b'"POT-Creation-Date', b'"PO-Revision-Date', b'"Generated-By'))
+    ]
+    return b"".join(kept)
+
+
+def as_mo(found: Catalog) -> bytes:
+    """Return the compiled catalogue, without the sentences that have no translation."""
+    out = BytesIO()
+    write_mo(out, found)
+    return out.getvalue()
+
+
+def write(code: str, domain: str, found: Catalog) -> None:
+    """Write both files of a catalogue. The compiled one is made of the text just written."""
+    (FOLDER / code).mkdir(exist_ok=True)
+    text = as_po(found)
+    (FOLDER / code / f"{domain}.po").write_bytes(text)
+    compiled = as_mo(read_po(BytesIO(text), locale=code, domain=domain))
+    (FOLDER / code / f"{domain}.mo").write_bytes(compiled)
+
+
+def _missing(code: str, domain: str) -> list[dict[str, Any]]:
+    """Return the sentences without a translation, each with an empty one to be filled in."""
+    plurals = catalogue(code, domain).num_plurals
+    found = []
+    for message in updated(code, domain):
+        if message.id and not any(_texts(message.string)):
+            many = isinstance(message.id, tuple)
+            file = message.locations[0][0] if message.locations else ""
+            text = [""] * plurals if many else ""
+            found.append({"id": message.id, "text": text, "file": file})
+    return found
+
+
+def _texts(text: Any) -> tuple[str, ...]:
+    return tuple(text) if isinstance(text, tuple | list) else (text or "",)
+
+
+def _fill(code: str, domain: str, file: Path) -> None:
+    found = updated(code, domain)
+    for each in json.loads(file.read_text("utf-8")):
+        name = tuple(each["id"]) if isinstance(each["id"], list) else each["id"]
+        message = found.get(name)
+        if message is None:
+            sys.stderr.write(f"no such sentence: {name!r}\n")
+        elif any(_texts(each["text"])):
+            text = each["text"]
+            message.string = tuple(text) if isinstance(text, list) else text
+    write(code, domain, found)
+
+
+def _main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--missing", nargs=2, metavar=("LANGUAGE", "DOMAIN"))
+    parser.add_argument("--fill", nargs=3, metavar=("LANGUAGE", "DOMAIN", "FILE"))
+    given = parser.parse_args()
+    if given.missing:
+        json.dump(_missing(*given.missing), sys.stdout, ensure_ascii=False, indent=1)
+    elif given.fill:
+        _fill(given.fill[0], given.fill[1], Path(given.fill[2]))
+    else:
+        for code in CODES:
+            for domain in DOMAINS:
+                write(code, domain, updated(code, domain))
+
+
+if __name__ == "__main__":
+    _main()

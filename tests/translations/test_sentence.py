@@ -1,0 +1,68 @@
+"""Sentences and what becomes of them in another language."""
+
+import copy
+import pickle
+from gettext import NullTranslations
+from typing import ClassVar
+
+import pytest
+
+from service.translations import listed, say, say_count, told
+
+
+class German(NullTranslations):
+    """Some templates in German."""
+
+    words: ClassVar = {
+        "{first} and {last}": "{first} und {last}",
+        "Exchange {cells}.": "Vertauschen Sie {cells}.",
+        "one row": "eine Zeile",
+        "{count} rows": "{count} Zeilen",
+    }
+
+    def gettext(self, message: str) -> str:
+        """Return the German template; an unknown one stays."""
+        return self.words.get(message, message)
+
+    def ngettext(self, one: str, many: str, count: int) -> str:
+        """Return the German template for a count."""
+        return self.gettext(one if count == 1 else many)
+
+
+def test_a_sentence_is_its_english_text() -> None:
+    assert say("Joint {joint} slides: {name}.", joint=3, name="d3") == "Joint 3 slides: d3."
+    assert listed(["a"]) == "a"
+    assert listed(["a", "d", "α"]) == "a, d and α"
+
+
+def test_sentences_within_a_sentence_are_told_in_the_language_too() -> None:
+    sentence = say("Exchange {cells}.", cells=listed(["a", "d"]))
+    assert sentence == "Exchange a and d."
+    assert told(sentence, German()) == "Vertauschen Sie a und d."
+
+
+def test_a_sentence_without_a_translation_and_a_plain_text_stay() -> None:
+    assert told(say("Write {name}.", name="0"), German()) == "Write 0."
+    assert told("one row", German()) == "one row"
+    assert told(say("one row"), None) == "one row"
+
+
+@pytest.mark.parametrize(
+    ("count", "english", "german"),
+    [(1, "one row", "eine Zeile"), (0, "0 rows", "0 Zeilen"), (3, "3 rows", "3 Zeilen")],
+)
+def test_a_sentence_counts(count: int, english: str, german: str) -> None:
+    sentence = say_count("one row", "{count} rows", count=count)
+    assert sentence == english
+    assert told(sentence, German()) == german
+
+
+def test_braces_in_a_value_are_no_places() -> None:
+    assert say("Write {name}.", name=r"c_{12}") == r"Write c_{12}."
+
+
+def test_copies_keep_their_template() -> None:
+    sentence = say("Exchange {cells}.", cells=listed(["a", "d"]))
+    for same in (copy.deepcopy(sentence), pickle.loads(pickle.dumps(sentence))):  # noqa: S301
+        assert same == sentence
+        assert told(same, German()) == "Vertauschen Sie a und d."
