@@ -17,6 +17,7 @@ from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
 from service.grading.report import PartReport, Report, Severity, Verdict, rounded_points
 from service.grading.work_budget import WorkBudget
+from service.translations import say
 from service.version import VERSION
 
 
@@ -46,8 +47,10 @@ class UnknownPartError(ValueError):
 
 _WORK_LIMIT: Final = Finding(
     "work_limit",
-    "Not every mistake is explained: there are too many for one report. Correct those that are "
-    "explained, then check again.",
+    say(
+        "Not every mistake is explained: there are too many for one report. Correct those that are "
+        "explained, then check again."
+    ),
     severity=Severity.INFO,
 ).message(corrects=False)
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from service.grading.report import LittleWorth, LostPoints, RowReport, Verdict, rounded_points
+from service.translations import Sentence, listed, say, say_count, template
 
 CELLS: Final = "cells"
 WHOLE: Final = "whole"
@@ -14,30 +15,31 @@ NOT_READ: Final = "not_read"
 NO_ANSWER: Final = "no_answer"
 PART: Final = "part"
 
-# The sentence of each code, as it follows "−0.5: ".
+# The sentence of each code of a loss without a row, as it follows "−0.5: ".
 _SENTENCES: Final = {
-    CELLS: "{cells} in row {row}",
-    WHOLE: "mistakes that run through the answer, each counted once",
-    OUTSIDE: "an extra row, or rows that do not lead to the end effector",
-    NO_JOINT_MOVES: "no joint moves this answer",
-    ALL_OR_NOTHING: "only a right answer earns points here",
-    NOT_READ: "the answer cannot be read",
-    NO_ANSWER: "no answer",
-    PART: "somewhere in this part",
+    WHOLE: template("mistakes that run through the answer, each counted once"),
+    OUTSIDE: template("an extra row, or rows that do not lead to the end effector"),
+    NO_JOINT_MOVES: template("no joint moves this answer"),
+    ALL_OR_NOTHING: template("only a right answer earns points here"),
+    NOT_READ: template("the answer cannot be read"),
+    NO_ANSWER: template("no answer"),
+    PART: template("somewhere in this part"),
 }
-_WHOLE_ROW: Final = "row {row}"
-_COLUMN, _COLUMNS = "column {cells}", "columns {cells}"
-_LITTLE_WORTH: Final = (
-    "{rows} worth little: zeros, and the joint variable in its usual place, need no geometry."
-)
-_NAMES: Final = {"alpha": "α", "theta": "θ"}
+# Rows that are a single thing of their own and no row of a table, by their labels.
+_SINGLE: Final = {
+    # Translators: the marked place of a mistake, after "−0.5: ".
+    "marked": template("marked"),
+    # Translators: the table that was handed in, after "−0.5: ".
+    "table": template("table"),
+}
+_NAMES: Final = {"alpha": "α", "theta": "θ", "axis": say("axis")}
 # A row of zeros is worth at most this share of the part.
 _MOST_OF_ZEROS: Final = 0.125
 
 
 def lost_points(code: str, points: float) -> LostPoints:
     """Return points that the answer has lost as a whole."""
-    return LostPoints(code, rounded_points(points), _SENTENCES[code])
+    return LostPoints(code, rounded_points(points), say(_SENTENCES[code]))
 
 
 def without_places(lost: Sequence[LostPoints]) -> tuple[LostPoints, ...]:
@@ -48,21 +50,27 @@ def without_places(lost: Sequence[LostPoints]) -> tuple[LostPoints, ...]:
 def lost_in_row(row: RowReport, points: float) -> LostPoints:
     """Return points that a row has lost by its cells that are not right."""
     cells = tuple(cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT)
-    sentence = _SENTENCES[CELLS] if 0 < len(cells) < len(row.cells) else _WHOLE_ROW
-    message = sentence.format(cells=_named(cells), row=row.label)
-    # A row that is a single thing of its own, such as the mark on a slip, is no row of a table.
-    if cells == (row.label,):
-        message = row.label
+    if cells == (row.label,) and row.label in _SINGLE:
+        message = say(_SINGLE[row.label])
+    elif 0 < len(cells) < len(row.cells):
+        message = _cells_in_row(cells, row.label)
+    else:
+        message = say("row {row}", row=row.label)
     return LostPoints(CELLS, rounded_points(points), message, row.label, cells)
 
 
-def _named(labels: Sequence[str]) -> str:
-    """Return the names of cells, such as ``a and α`` or ``columns 1, 2 and 4``."""
-    names = [_NAMES.get(label, label) for label in labels]
-    words = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
-    if names and names[0].isdigit():
-        return (_COLUMN if len(names) == 1 else _COLUMNS).format(cells=words)
-    return words
+def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
+    """Return the place of cells: ``a and α in row 2`` or ``columns 1, 2 and 4 in row 3``."""
+    cells = listed([_NAMES.get(label, label) for label in labels])
+    if not labels[0].isdigit():
+        return say("{cells} in row {row}", cells=cells, row=row)
+    return say_count(
+        "column {cells} in row {row}",
+        "columns {cells} in row {row}",
+        count=len(labels),
+        cells=cells,
+        row=row,
+    )
 
 
 def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
@@ -78,9 +86,12 @@ def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
     if not found:
         return None
     labels = tuple(row.label for row in found)
-    if len(labels) == 1:
-        named = f"Row {labels[0]} is"
-    else:
-        named = f"Rows {', '.join(labels[:-1])} and {labels[-1]} are"
-    points = rounded_points(sum(row.max_points for row in found))
-    return LittleWorth(labels, points, _LITTLE_WORTH.format(rows=named))
+    message = say_count(
+        "Row {rows} is worth little: zeros, and the joint variable in its usual place, need no "
+        "geometry.",
+        "Rows {rows} are worth little: zeros, and the joint variable in its usual place, need no "
+        "geometry.",
+        count=len(labels),
+        rows=listed(labels),
+    )
+    return LittleWorth(labels, rounded_points(sum(row.max_points for row in found)), message)

@@ -16,6 +16,7 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading import Submission, grade
 from service.grading.report import Verdict
 from service.kinematics.dh import Convention
+from service.translations import say
 
 MOST: Final = 3
 # Each is graded.
@@ -84,7 +85,7 @@ def _reversed_x(rows: list[Cells], i: int, convention: Convention) -> FrameChoic
         rows[k] = {**rows[k], "theta": _plus_half_turn(rows[k]["theta"])}
     reverse = i if convention is Convention.STANDARD else i + 1
     rows[reverse] = {**rows[reverse], **_negated(rows[reverse], "a", "alpha")}
-    return FrameChoice(f"x{i + 1} points the other way.", tuple(rows))
+    return FrameChoice(say("{axis} points the other way.", axis=f"x{i + 1}"), tuple(rows))
 
 
 def _reversed_z(rows: list[Cells], i: int, convention: Convention) -> FrameChoice:
@@ -93,7 +94,7 @@ def _reversed_z(rows: list[Cells], i: int, convention: Convention) -> FrameChoic
         rows[k] = {**rows[k], "alpha": _plus_half_turn(rows[k]["alpha"])}
     reverse = i + 1 if convention is Convention.STANDARD else i
     rows[reverse] = {**rows[reverse], **_negated(rows[reverse], "d", "theta")}
-    return FrameChoice(f"z{i + 1} points the other way.", tuple(rows))
+    return FrameChoice(say("{axis} points the other way.", axis=f"z{i + 1}"), tuple(rows))
 
 
 def _slid(rows: list[Cells], i: int, convention: Convention, length: str) -> FrameChoice:
@@ -104,7 +105,11 @@ def _slid(rows: list[Cells], i: int, convention: Convention, length: str) -> Fra
     here = _sum(here, length, is_minus=is_standard and is_opposite)
     after = _sum(after, length, is_minus=is_standard or not is_opposite)
     rows[i], rows[i + 1] = {**rows[i], "d": here}, {**rows[i + 1], "d": after}
-    text = f"The origin of frame {{{i + 1}}} lies farther along z{i + 1}."
+    text = say(
+        "The origin of frame {frame} lies farther along {axis}.",
+        frame=f"{{{i + 1}}}",
+        axis=f"z{i + 1}",
+    )
     return FrameChoice(text, tuple(rows))
 
 

@@ -19,6 +19,7 @@ from service.grading.report import RuleName
 from service.hints.rules import RULES
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
+from service.translations import ENGLISH, Language, told
 
 # The drawn parameters; pixels for each unit of length.
 _LENGTH, _TWIST, _OFFSET, _ANGLE = 1.6, np.radians(40), 1.0, np.radians(55)
@@ -69,8 +70,13 @@ class _Scene:
 
 
 @cache
-def rule_picture(name: RuleName, convention: Convention, theme: Theme) -> str:
-    """Return the picture of a rule as SVG. Raises KeyError if the rule has none."""
+def rule_picture(
+    name: RuleName, convention: Convention, theme: Theme, language: Language = ENGLISH
+) -> str:
+    """Return the picture of a rule as SVG, with its text alternative in a language.
+
+    Raises KeyError if the rule has no picture.
+    """
     rule = RULES[name]
     if not rule.pictured:
         raise KeyError(name)
@@ -81,7 +87,10 @@ def rule_picture(name: RuleName, convention: Convention, theme: Theme) -> str:
     for parameter in rule.pictured:
         _parameter(sheet, scene, parameter)
     _names(sheet, scene, rule.pictured)
-    caption = Caption(f"rule-{name}", rule.title, rule.stated(convention))
+    title, description = (
+        told(text, language.translation) for text in (rule.title, rule.stated(convention))
+    )
+    caption = Caption(f"rule-{name}", title, description)
     return sheet.svg((), caption, theme)
 
 

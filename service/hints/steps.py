@@ -22,6 +22,7 @@ from service.grading.report import (
 )
 from service.hints.rules import OF_COLUMN, RULES, SCREENS
 from service.kinematics.dh import Convention
+from service.translations import Sentence, say
 
 STEPS: Final = 3
 _IN_WORDS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
@@ -84,7 +85,7 @@ def hint_step(
         return HintStep(rule.title, rule.stated(convention), convention, pictured, screen)
     text = rule.look if step == 1 else rule.apply
     fields = _fields(topic, part, convention, told)
-    return HintStep(rule.title, text.format_map(fields), convention)
+    return HintStep(rule.title, say(text, **fields), convention)
 
 
 def _message(report: PartReport, topic: Topic) -> Feedback | None:
@@ -130,13 +131,17 @@ def _fields(
     topic: Topic, part: PartSpec, convention: Convention, report: PartReport
 ) -> dict[str, str]:
     """Return the values of the fields of a sentence."""
-    before, here = "of the frame before", "of this frame"
     labels = [row.label for row in report.rows]
     if isinstance(part, DhTableSpec) and topic.row in labels:
         index = labels.index(topic.row)
         before, here = (labels[index - 1] if index else "0"), topic.row
-    x_before, x_here = _axis("x", before), _axis("x", here)
-    z_before, z = _axis("z", before), _axis("z", here)
+        x_before, x_here = _axis("x", before), _axis("x", here)
+        z_before, z = _axis("z", before), _axis("z", here)
+    else:
+        x_before, z_before = (
+            say("the {letter} axis of the frame before", letter=letter) for letter in "xz"
+        )
+        x_here, z = (say("the {letter} axis of this frame", letter=letter) for letter in "xz")
     is_modified = convention is Convention.MODIFIED
     return {
         "row": topic.row or "",
@@ -151,15 +156,20 @@ def _fields(
 
 
 def _axis(letter: str, label: str) -> str:
-    """Return the name of an axis: z1, x_e, or "the z axis of this frame"."""
+    """Return the name of an axis: z1, x_e, or "the z axis e2"."""
     if label.isdecimal():
         return f"{letter}{label}"
-    return f"{letter}_{label}" if len(label) == 1 else f"the {letter} axis {label}"
+    if len(label) == 1:
+        return f"{letter}_{label}"
+    return say("the {letter} axis {label}", letter=letter, label=label)
 
 
-def _entry(topic: Topic) -> str:
+def _entry(topic: Topic) -> Sentence:
+    """Return the name of a place in an answer."""
+    if topic.row is None:
+        return say("the answer")
     if topic.cell is None:
-        return "the answer" if topic.row is None else f"row {topic.row}"
+        return say("row {row}", row=topic.row)
     if topic.cell in _IN_WORDS:
-        return f"{_IN_WORDS[topic.cell]} in row {topic.row}"
-    return f"row {topic.row}, column {topic.cell}"
+        return say("{symbol} in row {row}", symbol=_IN_WORDS[topic.cell], row=topic.row)
+    return say("row {row}, column {column}", row=topic.row, column=topic.cell)

@@ -12,7 +12,15 @@ from service.translations.languages import (
     accepted_language,
     language_named,
 )
-from service.translations.sentence import Sentence, listed, say, say_count, template, told
+from service.translations.sentence import (
+    Sentence,
+    listed,
+    paragraph,
+    say,
+    say_count,
+    template,
+    told,
+)
 
 __all__ = [
     "ENGLISH",
@@ -22,6 +30,7 @@ __all__ = [
     "accepted_language",
     "language_named",
     "listed",
+    "paragraph",
     "say",
     "say_count",
     "template",

@@ -11,6 +11,7 @@ languages, or a sentence of its own, which is translated, too.
 """
 
 from collections.abc import Mapping, Sequence
+from functools import reduce
 from typing import Any, Final, Protocol, TypeAlias
 
 SentenceValue: TypeAlias = str | int
@@ -71,10 +72,22 @@ def template(text: str, /) -> str:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Return the words with commas between them and "and" before the last."""
+    """Return the words with commas between them and "and" before the last.
+
+    The words may be sentences.
+    """
     if len(words) < 2:
-        return "".join(words)
-    return say("{first} and {last}", first=", ".join(words[:-1]), last=words[-1])
+        return words[0] if words else ""
+    first = reduce(lambda one, other: say("{one}, {other}", one=one, other=other), words[:-1])
+    return say("{first} and {last}", first=first, last=words[-1])
+
+
+def paragraph(*sentences: str) -> str:
+    """Return complete sentences one after the other; empty ones are left out."""
+    said = [each for each in sentences if each]
+    if len(said) < 2:
+        return said[0] if said else ""
+    return say("{first} {second}", first=paragraph(*said[:-1]), second=said[-1])
 
 
 def told(text: str, translation: Translation | None) -> str:

@@ -1,6 +1,7 @@
 """Each misconception has a rule, and the sentences of rules contain no value of an exercise."""
 
 import re
+from gettext import NullTranslations
 from string import Formatter
 from xml.etree import ElementTree
 
@@ -13,6 +14,7 @@ from service.hints import picture
 from service.hints.picture import rule_picture
 from service.hints.rules import OF_COLUMN, RULES, Rule
 from service.kinematics.dh import Convention, modified_link, standard_link
+from service.translations import Language
 from tests.together import together
 
 RECORDS = [record for record in all_records() if record.codes]
@@ -66,3 +68,21 @@ def test_a_picture_names_the_axes_and_the_parameter(convention: Convention) -> N
         assert float(root.attrib["width"]) <= 352
     twist = rule_picture("link_twist", convention, Theme.LIGHT)
     assert ("αi−1" in re.sub(r"<[^>]+>", "", twist)) == (convention is Convention.MODIFIED)
+
+
+class German(NullTranslations):
+    """The title of one rule in German."""
+
+    def gettext(self, message: str) -> str:
+        """Return the German title; other texts stay."""
+        return "Gliedlänge a" if message == "Link length a" else message
+
+
+def test_the_text_alternative_of_a_picture_is_in_the_language() -> None:
+    german = Language("de", "Deutsch", "de")
+    german.__dict__["translation"] = German()
+    drawn = rule_picture("link_length", Convention.STANDARD, Theme.LIGHT, german)
+    assert [each.text for each in ElementTree.fromstring(drawn).iter(f"{SVG}title")] == [
+        "Gliedlänge a"
+    ]
+    assert "z_{i-1}" in drawn

@@ -35,6 +35,14 @@ def test_a_sentence_is_its_english_text() -> None:
     assert listed(["a", "d", "α"]) == "a, d and α"
 
 
+def test_the_words_of_a_list_may_be_sentences() -> None:
+    words = [say("one row"), "a", say("one row"), "d"]
+    assert listed(words) == "one row, a, one row and d"
+    assert told(listed(words), German()) == "eine Zeile, a, eine Zeile und d"
+    assert told(listed(words[:1]), German()) == "eine Zeile"
+    assert listed([]) == ""
+
+
 def test_sentences_within_a_sentence_are_told_in_the_language_too() -> None:
     sentence = say("Exchange {cells}.", cells=listed(["a", "d"]))
     assert sentence == "Exchange a and d."

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Final
 
 from service.formats.shared.plain_text import number, visible
@@ -17,6 +18,8 @@ from service.grading import (
 from service.grading.feedback import EXPECTED, YOURS
 from service.grading.lost_points import NO_ANSWER, NOT_READ
 from service.grading.report import messages_of
+from service.translations import Sentence, paragraph, say, say_count, told
+from service.translations.sentence import Translation
 
 # The sign of each verdict.
 SIGNS: Final[Mapping[Verdict, str]] = {
@@ -26,6 +29,8 @@ SIGNS: Final[Mapping[Verdict, str]] = {
     Verdict.UNREADABLE: "?",
     Verdict.MISSING: "–",
 }
+
+_RESULTS: Final = (YOURS, EXPECTED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,41 +61,50 @@ class Message:
         return " ".join(filter(None, pieces))
 
 
-def messages(part: PartReport) -> Iterator[Message]:
-    """Yield the messages on a part, its rows and its cells."""
+def messages(part: PartReport, translation: Translation | None = None) -> Iterator[Message]:
+    """Yield the messages on a part, its rows and its cells, in a language; None is English."""
     if part.verdict is Verdict.MISSING and not part.feedback and not part.rows:
-        nothing = Feedback("missing", Severity.ERROR, "Nothing was handed in.")
-        yield _message(nothing, (), Verdict.MISSING, ())
+        nothing = Feedback("missing", Severity.ERROR, say("Nothing was handed in."))
+        yield _message(nothing, (), Verdict.MISSING, (), translation)
     for feedback, places, verdict in messages_of(part):
-        yield _message(feedback, places, verdict, part.rows)
+        yield _message(feedback, places, verdict, part.rows, translation)
 
 
-def marks(part: PartReport, weight: float = 1.0) -> list[str]:
+def marks(
+    part: PartReport, weight: float = 1.0, translation: Translation | None = None
+) -> list[str]:
     """Return a line with the lost points and their places, such as ``−0.5: α in row 2``.
 
     A second line says why a row of zeros earned little. A message already says that an answer is
     missing or cannot be read.
     """
     lost = [
-        f"−{number(each.points * weight)}: {each.message}"
+        f"−{number(each.points * weight)}: {told(each.message, translation)}"
         for each in part.lost
         if each.code not in (NO_ANSWER, NOT_READ)
     ]
-    notes = [part.little_worth.message] if part.little_worth else []
+    notes = [told(part.little_worth.message, translation)] if part.little_worth else []
     return [visible(line) for line in filter(None, ["; ".join(lost), *notes])]
 
 
 def _message(
-    feedback: Feedback, places: Iterable[Place], verdict: Verdict, rows: Sequence[RowReport]
+    feedback: Feedback,
+    places: Iterable[Place],
+    verdict: Verdict,
+    rows: Sequence[RowReport],
+    translation: Translation | None,
 ) -> Message:
-    offers = filter(None, (_suggestion(feedback), _correction(feedback, rows)))
+    text = told(feedback.message, translation)
+    question = told(_suggestion(feedback), translation)
+    # A message may already ask whether the repaired text was meant.
+    offers = paragraph("" if question in text else question, _correction(feedback, rows))
     return Message(
         severity=feedback.severity,
         verdict=verdict,
-        places=visible(places_in_words(places, rows)),
-        text=visible(feedback.message),
-        offers=visible(" ".join(offers)),
-        example=_counterexample(feedback.values) if feedback.values else "",
+        places=visible(told(places_in_words(places, rows), translation)),
+        text=visible(text),
+        offers=visible(told(offers, translation)),
+        example=visible(told(_counterexample(feedback.values or {}), translation)),
     )
 
 
@@ -110,46 +124,76 @@ def places_in_words(places: Iterable[Place], rows: Sequence[RowReport] = ()) -> 
     for row, named in cells.items():
         columns = () if len(named) > 1 and named == complete.get(row) else tuple(named)
         alike.setdefault(columns, []).append(row)
-    return "; ".join(
-        f"row{'s' if len(labels) > 1 else ''} {', '.join(labels)}{_columns(columns)}"
-        for columns, labels in alike.items()
+    said = [_rows_and_columns(labels, columns) for columns, labels in alike.items()]
+    if not said:
+        return ""
+    return reduce(lambda one, other: say("{one}; {other}", one=one, other=other), said)
+
+
+def _rows_and_columns(rows: Sequence[str], columns: Sequence[str]) -> Sentence:
+    named = ", ".join(rows)
+    if not columns:
+        return say_count("row {rows}", "rows {rows}", count=len(rows), rows=named)
+    # Translators: {columns} is a list of names, or such as "columns 1, 3".
+    return say_count(
+        "row {rows} {columns}",
+        "rows {rows} {columns}",
+        count=len(rows),
+        rows=named,
+        columns=_columns(columns),
     )
 
 
 def _columns(labels: Sequence[str]) -> str:
-    if not labels:
-        return ""
-    noun = "" if not labels[0].isdigit() else "column " if len(labels) == 1 else "columns "
-    return f" {noun}{', '.join(labels)}"
+    named = ", ".join(labels)
+    if not labels[0].isdigit():
+        return named
+    return say_count("column {columns}", "columns {columns}", count=len(labels), columns=named)
 
 
 def _suggestion(feedback: Feedback) -> str:
-    """Return a question that offers the repaired text, unless the message already asks it."""
-    question = f"Did you mean {feedback.suggestion}?"
-    return "" if feedback.suggestion is None or question in feedback.message else question
+    """Return a question that offers the repaired text; empty if there is none."""
+    if feedback.suggestion is None:
+        return ""
+    return say("Did you mean {suggestion}?", suggestion=feedback.suggestion)
 
 
 def _correction(feedback: Feedback, rows: Sequence[RowReport]) -> str:
     """Return the correction of a message, and the corrections of its places, in sentences."""
-    found = [] if feedback.correction is None else [_told(feedback.correction)]
+    found = [] if feedback.correction is None else [_in_words(feedback.correction)]
     at: dict[Correction, list[Place]] = {}
     for place in feedback.places or ():
         if place.correction is not None:
             at.setdefault(place.correction, []).append(place)
-    told = [
-        f"{places_in_words(places, rows)}: {_told(correction)}" for correction, places in at.items()
+    placed = [
+        say(
+            "{places}: {correction}",
+            places=places_in_words(places, rows),
+            correction=_in_words(correction),
+        )
+        for correction, places in at.items()
     ]
-    return " ".join([*found, *told])
+    return paragraph(*found, *placed)
 
 
-def _told(correction: Correction) -> str:
-    return correction.text if correction.latex is None else f"It should be {correction.text}."
+def _in_words(correction: Correction) -> str:
+    if correction.latex is None:
+        return correction.text
+    return say("It should be {formula}.", formula=correction.text)
 
 
 def _counterexample(values: Mapping[str, float | str]) -> str:
     """Return ``(with q1 = 0.4, yours gives 1.2, not 0.9)`` from the values of one sample."""
-    given = [f"{name} = {value}" for name, value in values.items() if name not in (YOURS, EXPECTED)]
-    at = f"with {', '.join(given)}" if given else ""
-    yours = f"yours gives {values[YOURS]}" if YOURS in values else ""
-    right = f"not {values[EXPECTED]}" if EXPECTED in values else ""
-    return visible(f"({', '.join(filter(None, [at, yours, right]))})")
+    at = ", ".join(f"{name} = {value}" for name, value in values.items() if name not in _RESULTS)
+    yours, right = str(values.get(YOURS, "")), str(values.get(EXPECTED, ""))
+    if not yours:
+        return say("(with {values})", values=at) if at else ""
+    if not right:
+        if not at:
+            return say("(yours gives {yours})", yours=yours)
+        return say("(with {values}, yours gives {yours})", values=at, yours=yours)
+    if not at:
+        return say("(yours gives {yours}, not {right})", yours=yours, right=right)
+    return say(
+        "(with {values}, yours gives {yours}, not {right})", values=at, yours=yours, right=right
+    )

@@ -9,6 +9,7 @@ from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Severity
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
+from service.translations import say
 
 _TAKEN = register(
     of=StudentTable,
@@ -69,22 +70,31 @@ def _misfit(judgement: Judgement) -> int:
 
 
 def _taken(convention: Convention) -> Finding:
-    return _TAKEN.finding(
-        f"The answer names no convention; it was read as {convention.value}, which fits it best. "
-        f"Check which convention you used, and name it.",
-        severity=Severity.INFO,
-    )
+    if convention is Convention.STANDARD:
+        hint = say(
+            "The answer names no convention; it was read as standard, which fits it best. Check "
+            "which convention you used, and name it."
+        )
+    else:
+        hint = say(
+            "The answer names no convention; it was read as modified, which fits it best. Check "
+            "which convention you used, and name it."
+        )
+    return _TAKEN.finding(hint, severity=Severity.INFO)
 
 
 def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...]:
     """Return the finding on an answer that names another convention than the part does."""
     if table.convention in (None, asked):
         return ()
-    named = table.convention.value
-    return (
-        _NOT_ASKED_FOR.finding(
-            f"This part asks for the {asked.value} convention and was graded in it, but the answer "
-            f"says {named}.",
-            severity=Severity.WARNING,
-        ),
-    )
+    if asked is Convention.STANDARD:
+        hint = say(
+            "This part asks for the standard convention and was graded in it, but the answer says "
+            "modified."
+        )
+    else:
+        hint = say(
+            "This part asks for the modified convention and was graded in it, but the answer says "
+            "standard."
+        )
+    return (_NOT_ASKED_FOR.finding(hint, severity=Severity.WARNING),)

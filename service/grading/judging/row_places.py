@@ -1,5 +1,6 @@
 """The messages on rows that are graded under another number, missing, or too many."""
 
+from functools import reduce
 from typing import Final
 
 from service.grading.feedback import Finding
@@ -9,9 +10,14 @@ from service.grading.part import Grading
 from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Severity
 from service.kinematics.dh import Convention
+from service.translations import Sentence, say, template
 
-# Fixed rows by their labels.
-_FIXED: Final = {"0": "the fixed row before the first joint", "e": "the end effector"}
+# Compared fixed rows by their labels.
+_FIXED: Final = {
+    "0": template("row {row} with the fixed row before the first joint"),
+    "e": template("row {row} with the end effector"),
+}
+_FIXED_BEHIND: Final = template("row {row} with the fixed row {label} behind the last joint")
 _MATCHED = register(
     of=StudentTable,
     code="rows_matched",
@@ -79,7 +85,7 @@ def row_places(
     # Compare entries: rows with rounded angles made exact are new objects with the same entries.
     places = {id(row.entries): i for i, row in enumerate(table.rows)}
     moved = [
-        f"row {place + 1} with {_of(judged)}"
+        _compared(place + 1, judged)
         for judged in judgement.rows
         if judged.row is not None
         for place in [places[id(judged.row.entries)]]
@@ -87,30 +93,36 @@ def row_places(
     ]
     if not moved:
         return ()
-    message = f"Your rows were compared in this way: {', '.join(moved)}."
+    rows = reduce(lambda one, other: say("{one}, {other}", one=one, other=other), moved)
+    message = say("Your rows were compared in this way: {rows}.", rows=rows)
     return (_MATCHED.finding(message, severity=Severity.INFO),)
 
 
-def _of(judged: JudgedRow) -> str:
+def _compared(row: int, judged: JudgedRow) -> Sentence:
     if judged.joint is not None:
-        return f"joint {judged.joint.index}"
-    return _FIXED.get(judged.label, f"the fixed row {judged.label} behind the last joint")
+        return say("row {row} with joint {joint}", row=row, joint=judged.joint.index)
+    return say(_FIXED.get(judged.label, _FIXED_BEHIND), row=row, label=judged.label)
 
 
 def missing_row(judged: JudgedRow) -> Finding:
     """The finding on a row that is not there."""
     if judged.joint is not None:
-        return _MISSING_ROW.finding(f"There is no row for joint {judged.joint.index}.")
+        return _MISSING_ROW.finding(
+            say("There is no row for joint {joint}.", joint=judged.joint.index)
+        )
     return _MISSING_TOOL_ROW.finding(
-        "The fixed row that leads from the last joint's frame to the end effector is missing.",
+        say("The fixed row that leads from the last joint's frame to the end effector is missing."),
     )
 
 
 def row_too_many(i: int) -> Finding:
     """The finding on a fixed row that the arm does not need."""
     return _ROW_TOO_MANY.finding(
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector: check whether "
-        f"you need it.",
+        say(
+            "Row {row} of your table belongs to no joint and not to the end effector: check "
+            "whether you need it.",
+            row=i + 1,
+        ),
         severity=Severity.WARNING,
     )
 
@@ -118,5 +130,9 @@ def row_too_many(i: int) -> Finding:
 def extra_row(i: int) -> Finding:
     """The finding on a row that belongs to nothing."""
     return EXTRA_ROW.finding(
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector: leave it out.",
+        say(
+            "Row {row} of your table belongs to no joint and not to the end effector: leave it "
+            "out.",
+            row=i + 1,
+        ),
     )

@@ -40,6 +40,7 @@ from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 from service.kinematics.frames.frame_choice import NO_SUCH_CELL, ROW_COSTS, WRONG_CELL, departure
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import say
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,8 +239,11 @@ _TOOL_NOT_REACHED = register(
     unlike={"4/d": "2*q4"},
 )
 _UNREACHED = _TOOL_NOT_REACHED.finding(
-    "Each row alone fits this robot, but the product of all rows does not give the end-effector "
-    "frame of the exercise: compare the origin and the axes of your last frame with it.",
+    say(
+        "Each row alone fits this robot, but the product of all rows does not give the "
+        "end-effector frame of the exercise: compare the origin and the axes of your last frame "
+        "with it."
+    ),
 )
 
 

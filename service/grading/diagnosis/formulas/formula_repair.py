@@ -17,6 +17,7 @@ from service.grading.formula_text import spelled
 from service.grading.misconception import AnyHypothesis, Repaired
 from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 # A formula with more nodes is compared, but not rewritten.
 MAX_NODES = 100
@@ -115,7 +116,9 @@ class WrongEntry(WrongValue):
 
     def _completed(self, rewritten: Any, sign: int) -> Any:
         [finding] = rewritten.findings
-        hint = finding.hint if sign > 0 else f"{finding.hint} The sign is wrong, too."
+        hint = finding.hint
+        if sign < 0:
+            hint = say("{sentence} The sign is wrong, too.", sentence=hint)
         tree = rewritten.answer if sign > 0 else negated(rewritten.answer)
         correction = spelled(tree, self.spelling) if self.corrects else None
         if correction is None or len(correction.text) > MAX_TEXT:

@@ -4,7 +4,7 @@ import numpy as np
 
 from service.expressions.tree import Call, Node
 from service.grading.diagnosis.formulas.formula_rewriting import nodes
-from service.grading.diagnosis.lists.angle_sum import BETWEEN, WrongSum
+from service.grading.diagnosis.lists.angle_sum import WrongSum
 from service.grading.diagnosis.wrong_value import (
     UNEXPLAINED,
     Hypotheses,
@@ -25,25 +25,27 @@ from service.grading.misconception import (
 from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import CONSTANT, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
-WRONG_SIGN = (
+WRONG_SIGN = say(
     "The sign of this angle is wrong: an angle counts positive by the right-hand rule about its "
     "axis."
 )
-FITS_IN_DEGREES = (
+FITS_IN_DEGREES = say(
     "This angle was read in radians, but it fits in degrees: write the unit behind it (deg or °)."
 )
-FITS_IN_RADIANS = (
+FITS_IN_RADIANS = say(
     "This angle was read in degrees, but it fits in radians: write the unit behind it (rad)."
 )
-CONVERTED = (
+CONVERTED = say(
     "This angle was converted between degrees and radians. Leave out the factor: a joint variable "
     "and a function such as atan2 already give the angle."
 )
-ARGUMENTS_SWAPPED = (
+ARGUMENTS_SWAPPED = say(
     "The arguments of atan2 are exchanged: in atan2(y, x) the part of the sine comes first, that "
     "of the cosine second."
 )
+NOT_RIGHT = say("This angle is not right: check which two directions it is measured between.")
 
 
 class WrongAngle(WrongValue):
@@ -114,8 +116,10 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
     if opposite.any() and not opposite.all():
         finding = finding_on(
             case,
-            "This angle is right for some joint values only: atan(y/x) gives one angle for two "
-            "opposite directions. Use atan2(y, x).",
+            say(
+                "This angle is right for some joint values only: atan(y/x) gives one angle for two "
+                "opposite directions. Use atan2(y, x)."
+            ),
         )
         yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED_VALUE)
 
@@ -132,18 +136,26 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
 def lost_sign(case: WrongValue) -> Hypotheses:
     """The angle was computed by acos or asin, so it is right for only half of all directions."""
     names = {
-        "acos": (-case.expected, "acos gives no negative angle"),
-        "asin": (np.pi - case.expected, "asin gives no angle over 90°"),
+        "acos": (
+            -case.expected,
+            say(
+                "This angle is right for some joint values only: acos gives no negative angle. "
+                "Use atan2(y, x)."
+            ),
+        ),
+        "asin": (
+            np.pi - case.expected,
+            say(
+                "This angle is right for some joint values only: asin gives no angle over 90°. "
+                "Use atan2(y, x)."
+            ),
+        ),
     }
-    for function, (other, reason) in names.items():
+    for function, (other, hint) in names.items():
         if _calls(case.expression.tree, function):
             is_other = np.abs(difference(case.actual, other, angle=True)) < ROUNDED_VALUE
-            finding = finding_on(
-                case,
-                f"This angle is right for some joint values only: {reason}. Use atan2(y, x).",
-            )
             written = np.where(is_other, other, case.expected)
-            yield Written(written, finding, tolerance=ROUNDED_VALUE)
+            yield Written(written, finding_on(case, hint), tolerance=ROUNDED_VALUE)
 
 
 @misconception(
@@ -159,8 +171,11 @@ def half_turn(case: WrongValue) -> Hypotheses:
     """The direction is the opposite one."""
     finding = finding_on(
         case,
-        "This angle is off by half a turn: check its signs, and in atan2 those of both arguments.",
-        otherwise="It is off by half a turn (180°).",
+        say(
+            "This angle is off by half a turn: check its signs, and in atan2 those of both "
+            "arguments."
+        ),
+        otherwise=say("It is off by half a turn (180°)."),
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
 
@@ -203,11 +218,7 @@ def _calls(tree: Node, *functions: str) -> bool:
 )
 def quarter_turn(case: WrongValue) -> Hypotheses:
     """A turn by 90° was left out or added."""
-    finding = finding_on(
-        case,
-        f"This angle is not right: {BETWEEN}",
-        otherwise="It is off by a quarter turn (90°).",
-    )
+    finding = finding_on(case, NOT_RIGHT, otherwise=say("It is off by a quarter turn (90°)."))
     error = difference(case.actual, case.expected, angle=True)
     yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
 
@@ -229,7 +240,7 @@ def of_sum(case: WrongValue) -> Explained | None:
 )
 def unexplained(case: WrongValue) -> Finding:
     """No misconception explains the angle."""
-    return differs(case, f"This angle is not right: {BETWEEN}")
+    return differs(case, NOT_RIGHT)
 
 
 def diagnose_angle(case: WrongValue) -> Finding:

@@ -6,18 +6,15 @@ from itertools import chain, combinations, product
 
 import numpy as np
 
-from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongValue, finding_on
 from service.grading.misconception import Written, misconception
 from service.grading.numerics.comparison import difference
 from service.grading.numerics.tolerances import CONSTANT, WHOLE_MULTIPLE
 from service.kinematics.transforms import Numbers
+from service.translations import listed, say, say_count
 
 # An angle of more addends is not taken apart: ten addends have a thousand subsets.
 MAX_ADDENDS = 6
-
-SUMMED = "Check which angles add up to it."
-BETWEEN = "check which two directions it is measured between."
 
 
 def addends(case: WrongValue) -> dict[str, int]:
@@ -94,8 +91,12 @@ class WrongSum:
 def left_out(wrong: WrongSum) -> Hypotheses:
     """Some of the angles are missing in the sum, for example all but the last."""
     for names, part in wrong.subsets():
-        verb = "is" if len(names) == 1 else "are"
-        hint = f"{wrong.named(names)} {verb} missing from this angle. {SUMMED}"
+        hint = say_count(
+            "{angles} is missing from this angle. Check which angles add up to it.",
+            "{angles} are missing from this angle. Check which angles add up to it.",
+            count=len(names),
+            angles=wrong.named(names),
+        )
         yield Written(wrong.case.expected - part, finding_on(wrong.case, hint))
 
 
@@ -111,7 +112,9 @@ def left_out(wrong: WrongSum) -> Hypotheses:
 def constant(wrong: WrongSum) -> Hypotheses:
     """The sum contains no angle."""
     if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
-        hint = "This angle is constant, but it must not be: check which variables it depends on."
+        hint = say(
+            "This angle is constant, but it must not be: check which variables it depends on."
+        )
         yield Written(wrong.case.actual, finding_on(wrong.case, hint))
 
 
@@ -127,10 +130,12 @@ def constant(wrong: WrongSum) -> Hypotheses:
 def reversed_addends(wrong: WrongSum) -> Hypotheses:
     """Some of the angles have the wrong sign in the sum."""
     for names, part in wrong.subsets():
-        verb = "has" if len(names) == 1 else "have"
-        hint = (
-            f"{wrong.named(names)} {verb} the wrong sign in this angle: check which way this turn "
-            "counts positive."
+        hint = say_count(
+            "{angles} has the wrong sign in this angle: check which way this turn counts positive.",
+            "{angles} have the wrong sign in this angle: check which way this turn counts "
+            "positive.",
+            count=len(names),
+            angles=wrong.named(names),
         )
         yield Written(wrong.case.expected - 2 * part, finding_on(wrong.case, hint))
 
@@ -147,7 +152,10 @@ def reversed_addends(wrong: WrongSum) -> Hypotheses:
 def counted_twice(wrong: WrongSum) -> Hypotheses:
     """An angle is counted twice."""
     for name, count in wrong.counts.items():
-        hint = f"{wrong.named([name])} counts twice in this angle. {SUMMED}"
+        hint = say(
+            "{angle} counts twice in this angle. Check which angles add up to it.",
+            angle=wrong.named([name]),
+        )
         written = wrong.case.expected + count * wrong.case.samples.values[name]
         yield Written(written, finding_on(wrong.case, hint))
 
@@ -164,7 +172,11 @@ def counted_twice(wrong: WrongSum) -> Hypotheses:
 def added(wrong: WrongSum) -> Hypotheses:
     """The sum contains an angle that does not belong in it."""
     for name, value in wrong.others():
-        hint = f"{wrong.named([name])} does not belong in this angle: {BETWEEN}"
+        hint = say(
+            "{angle} does not belong in this angle: check which two directions it is measured "
+            "between.",
+            angle=wrong.named([name]),
+        )
         for sign in (1, -1):
             finding = finding_on(wrong.case, hint)
             yield Written(wrong.case.expected + sign * value, finding)
@@ -183,6 +195,10 @@ def of_another_joint(wrong: WrongSum) -> Hypotheses:
     """The sum contains another joint's angle in place of the right one."""
     for other, value in wrong.others():
         for name, count in wrong.counts.items():
-            hint = f"{wrong.named([other])} stands in the place of another angle: {BETWEEN}"
+            hint = say(
+                "{angle} stands in the place of another angle: check which two directions it is "
+                "measured between.",
+                angle=wrong.named([other]),
+            )
             written = wrong.case.expected + count * (value - wrong.case.samples.values[name])
             yield Written(written, finding_on(wrong.case, hint))

@@ -19,6 +19,7 @@ from service.grading.misconception import (
 from service.grading.numerics.tolerances import ROUNDED_VALUE
 from service.kinematics.rotations import SEQUENCES, from_angles
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import Sentence, say
 
 
 @dataclass(frozen=True)
@@ -68,10 +69,13 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
     """One, two or all three of the angles have the same slip."""
     angles = case.angles
     repairs = (
-        (-angles, Finding("sign", angle.WRONG_SIGN, "Change its sign.")),
+        (-angles, Finding("sign", angle.WRONG_SIGN, say("Change its sign."))),
         (np.radians(angles), Finding("degrees_as_radians", angle.FITS_IN_DEGREES)),
         (np.degrees(angles), Finding("radians_as_degrees", angle.FITS_IN_RADIANS)),
-        (np.pi / 2 - angles, Finding("swapped_atan2", angle.ARGUMENTS_SWAPPED, "Exchange them.")),
+        (
+            np.pi / 2 - angles,
+            Finding("swapped_atan2", angle.ARGUMENTS_SWAPPED, say("Exchange them.")),
+        ),
     )
     may_be_swapped = (np.ptp(angles, axis=1) > ROUNDED_VALUE) | np.array(case.arctangents)
     for count in (1, 2, 3):
@@ -105,9 +109,11 @@ def _on_angles(finding: Finding, angles: Numbers) -> Finding:
 def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The angles were written in another order, most often from last to first."""
     finding = says(
-        "These angles are right, but in another order: the first angle is that of the first axis "
-        "of the sequence.",
-        f"The order here is that of the axes {case.sequence}.",
+        say(
+            "These angles are right, but in another order: the first angle is that of the first "
+            "axis of the sequence."
+        ),
+        say("The order here is that of the axes {sequence}.", sequence=case.sequence),
     )
     for order in ([2, 1, 0], [1, 0, 2], [0, 2, 1], [1, 2, 0], [2, 0, 1]):
         yield Repaired(replace(case, angles=case.angles[order]), finding)
@@ -125,8 +131,8 @@ def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
 def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The angles describe the first frame in the last one."""
     finding = says(
-        "These angles describe the inverse rotation: the first frame as seen from the last.",
-        "Take them from the matrix whose columns are the axes of the last frame.",
+        say("These angles describe the inverse rotation: the first frame as seen from the last."),
+        say("Take them from the matrix whose columns are the axes of the last frame."),
     )
     yield Repaired(replace(case, rotation=np.swapaxes(case.rotation, 1, 2)), finding)
 
@@ -146,16 +152,31 @@ def other_sequence(case: WrongTriple) -> Iterator[RepairedTriple]:
         ((sequence, fixed) for sequence in SEQUENCES for fixed in (False, True)),
         key=lambda other: (other[0] != case.sequence, other[1] != case.fixed),
     )
+    asked = _asked_for(case.sequence, fixed=case.fixed)
     for sequence, fixed in others:
         finding = says(
-            f"These are the right angles of another sequence: {_named(sequence, fixed)}.",
-            f"Asked for are those of {_named(case.sequence, case.fixed)}.",
+            _of_another_sequence(sequence, fixed=fixed),
+            asked,
         )
         yield Repaired(replace(case, sequence=sequence, fixed=fixed), finding)
 
 
-def _named(sequence: str, fixed: bool) -> str:
-    return f"{sequence} about {'fixed' if fixed else 'moving'} axes"
+def _of_another_sequence(sequence: str, *, fixed: bool) -> Sentence:
+    if fixed:
+        return say(
+            "These are the right angles of another sequence: {sequence} about fixed axes.",
+            sequence=sequence,
+        )
+    return say(
+        "These are the right angles of another sequence: {sequence} about moving axes.",
+        sequence=sequence,
+    )
+
+
+def _asked_for(sequence: str, *, fixed: bool) -> Sentence:
+    if fixed:
+        return say("Asked for are those of {sequence} about fixed axes.", sequence=sequence)
+    return say("Asked for are those of {sequence} about moving axes.", sequence=sequence)
 
 
 def explain_triple(case: WrongTriple) -> Explained | None:

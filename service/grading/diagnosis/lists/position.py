@@ -20,6 +20,7 @@ from service.grading.misconception import (
     says,
 )
 from service.grading.numerics.tolerances import EXACT_VALUE
+from service.translations import say, template
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,9 @@ class WrongPosition(WrongNumbers):
 def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
     """The coordinates are right, but in each other's places."""
     names = ", ".join("xyz"[axis] for axis in case.axes)
-    finding = says(f"These coordinates are in the wrong order: it must be {names}.")
+    finding = says(
+        say("These coordinates are in the wrong order: it must be {order}.", order=names)
+    )
     for order in permutations(range(len(case.axes))):
         yield Written(case.expected[list(order)], finding)
 
@@ -79,7 +82,7 @@ def slip(case: WrongPosition) -> Explained | None:
 def reversed_position(case: WrongPosition) -> Hypotheses:
     """The vector was taken from the point to the origin."""
     finding = says(
-        "Every coordinate has the wrong sign: check where the vector must start and end.",
+        say("Every coordinate has the wrong sign: check where the vector must start and end."),
     )
     yield Written(-case.expected, finding)
 
@@ -99,7 +102,8 @@ def other_pose(case: WrongPosition) -> Hypotheses:
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
         if np.ptp(position, axis=-1).max() > EXACT_VALUE:
-            found = named(pose, "This position comes from")
+            # Translators: {pose} is a name such as "the pose of frame {2}".
+            found = named(pose, template("This position comes from {pose}. {advice}"))
             yield Written(position, found, record=pose.record)
 
 

@@ -13,6 +13,7 @@ from service.grading.misconception import Written, explanation, misconception, s
 from service.grading.numerics.samples import Samples
 from service.kinematics.screws import moved, product_in_body, product_in_space
 from service.kinematics.transforms import Matrices, Numbers, inverse
+from service.translations import say
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +63,11 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
 def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     """Space axes were multiplied on the right of M, or body axes on its left."""
     finding = says(
-        "M stands on the wrong side of the exponentials: space axes are multiplied in front of M, "
-        "body axes behind it.",
-        "T = e^[S1]θ1 … e^[Sn]θn M = M e^[B1]θ1 … e^[Bn]θn.",
+        say(
+            "M stands on the wrong side of the exponentials: space axes are multiplied in front "
+            "of M, body axes behind it."
+        ),
+        say("T = e^[S1]θ1 … e^[Sn]θn M = M e^[B1]θ1 … e^[Bn]θn."),
     )
     yield _pose(product_in_body(product.space, product.amounts, product.home), finding)
     yield _pose(product_in_space(product.body, product.amounts, product.home), finding)
@@ -89,8 +92,8 @@ def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
 def missing_home(product: Exponentials) -> Hypotheses:
     """The home pose was left out."""
     finding = says(
-        "This is the product of the exponentials alone: the home pose M is missing.",
-        "Multiply M behind the space axes' exponentials.",
+        say("This is the product of the exponentials alone: the home pose M is missing."),
+        say("Multiply M behind the space axes' exponentials."),
     )
     for axes in (product.space, product.body):
         yield _pose(product_in_space(axes, product.amounts, np.eye(4)), finding)
@@ -116,8 +119,8 @@ def missing_home(product: Exponentials) -> Hypotheses:
 def reversed_product(product: Exponentials) -> Hypotheses:
     """The exponentials were multiplied from the last joint to the first."""
     finding = says(
-        "The exponentials are multiplied in reverse order: check which joint comes first.",
-        "Begin with that of joint 1, nearest to the base.",
+        say("The exponentials are multiplied in reverse order: check which joint comes first."),
+        say("Begin with that of joint 1, nearest to the base."),
     )
     amounts = product.amounts[::-1]
     yield _pose(product_in_space(product.space[::-1], amounts, product.home), finding)
@@ -143,8 +146,10 @@ def reversed_product(product: Exponentials) -> Hypotheses:
 def moment_sign(product: Exponentials) -> Hypotheses:
     """Every turning joint has v = ω × q."""
     finding = says(
-        "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
-        "cross product.",
+        say(
+            "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
+            "cross product."
+        ),
     )
     for axes, multiply in ((product.space, product_in_space), (product.body, product_in_body)):
         turns = np.abs(axes[..., :3]).max(axis=-1, keepdims=True) > 0.5

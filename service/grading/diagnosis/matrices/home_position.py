@@ -10,6 +10,7 @@ from service.grading.diagnosis.screws.all_screws import WrongScrews
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.misconception import register
 from service.grading.reading.entry import Entry
+from service.translations import say
 
 NOT_AT_HOME = register(
     of=WrongScrews,
@@ -20,8 +21,8 @@ NOT_AT_HOME = register(
     example=("planar-rpr-poe", "space-screws", {"3/4": "q1 q2"}),
     unlike={"3/4": "1"},
 ).finding(
-    "In the home position every joint variable is 0: no joint variable belongs here.",
-    "Put 0 for each joint variable.",
+    say("In the home position every joint variable is 0: no joint variable belongs here."),
+    say("Put 0 for each joint variable."),
 )
 
 

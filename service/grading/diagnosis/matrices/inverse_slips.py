@@ -20,8 +20,12 @@ from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, misconception, says
 from service.kinematics.transforms import Numbers
+from service.translations import Sentence, say
 
-RULE = "The inverse of (R, p) is (Rᵀ, −Rᵀp)."
+
+def _with_rule(sentence: Sentence) -> Finding:
+    """Return a finding with this sentence and the rule for the inverse."""
+    return says(say("{sentence} The inverse of (R, p) is (Rᵀ, −Rᵀp).", sentence=sentence))
 
 
 def _parts(case: MatrixCase) -> tuple[Numbers, Numbers]:
@@ -50,9 +54,11 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
 )
 def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     """The whole transform was transposed, which inverts only a rotation."""
-    finding = says(
-        "This is the transpose of the transform, not its inverse: only a rotation is inverted so. "
-        f"{RULE}",
+    finding = _with_rule(
+        say(
+            "This is the transpose of the transform, not its inverse: only a rotation is inverted "
+            "so."
+        )
     )
     if case.is_transform:
         rotation, position = _parts(case)
@@ -102,7 +108,7 @@ def negated_rotation(case: MatrixCase) -> Hypotheses:
         yield Written(written, NEGATED, ROTATION_BLOCK)
 
 
-NEGATED = says(f"The signs were changed, but that does not invert a rotation. {RULE}")
+NEGATED = _with_rule(say("The signs were changed, but that does not invert a rotation."))
 
 
 @misconception(
@@ -117,9 +123,11 @@ NEGATED = says(f"The signs were changed, but that does not invert a rotation. {R
 )
 def position_not_turned(case: MatrixCase) -> Hypotheses:
     """The position of the inverse is −p, without the rotation."""
-    finding = says(
-        "The position is the right vector, but seen in the axes of the other frame: it must be "
-        f"turned, too. {RULE}",
+    finding = _with_rule(
+        say(
+            "The position is the right vector, but seen in the axes of the other frame: it must "
+            "be turned, too."
+        )
     )
     if case.is_transform:
         _, position = _parts(case)
@@ -138,7 +146,9 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
 )
 def position_not_inverted(case: MatrixCase) -> Hypotheses:
     """The position was not inverted."""
-    finding = says(f"The position is still that of the transform that was to be inverted. {RULE}")
+    finding = _with_rule(
+        say("The position is still that of the transform that was to be inverted.")
+    )
     if case.is_transform:
         _, position = _parts(case)
         yield _position(position, finding)
@@ -160,7 +170,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
 )
 def position_reversed(case: MatrixCase) -> Hypotheses:
     """The position was turned into the other frame, but its sign was not changed."""
-    finding = says(f"Every coordinate of the position has the wrong sign. {RULE}")
+    finding = _with_rule(say("Every coordinate of the position has the wrong sign."))
     if case.is_transform:
         yield _position(-case.expected[:3, 3], finding)
 
@@ -177,7 +187,7 @@ def position_reversed(case: MatrixCase) -> Hypotheses:
 )
 def position_turned_back(case: MatrixCase) -> Hypotheses:
     """The position of the inverse is −R p."""
-    finding = says(f"The position was turned by R, not by its transpose. {RULE}")
+    finding = _with_rule(say("The position was turned by R, not by its transpose."))
     if case.is_transform:
         rotation, position = _parts(case)
         for sign in (-1, 1):

@@ -22,6 +22,7 @@ from service.kinematics.chain import A, D, compound
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers, rot_z
+from service.translations import say
 
 
 @dataclass(frozen=True)
@@ -71,8 +72,10 @@ class LinkAmongOthers:
 def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     """The angle was measured from the base: A2 contains θ1 + θ2 instead of θ2."""
     finding = says(
-        "A link transform holds the variable of its own joint only. The joints before it have link "
-        "transforms of their own.",
+        say(
+            "A link transform holds the variable of its own joint only. The joints before it have "
+            "link transforms of their own."
+        ),
     )
     for first in range(len(link.angles)):
         total = np.sum(link.angles[first:], axis=0)
@@ -103,8 +106,10 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
 def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     """The product of all links up to this one was handed in."""
     finding = says(
-        "This is the product of all link transforms up to this one. A link transform leads from "
-        "one frame to the next only.",
+        say(
+            "This is the product of all link transforms up to this one. A link transform leads "
+            "from one frame to the next only."
+        ),
     )
     if len(link.links) > 1:
         yield Written(as_entries(compound(link.links)), finding)
@@ -122,8 +127,10 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
 def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
     """The position contains a and d as they are, not turned by the link's angle."""
     finding = says(
-        "The rotation is right, but the last column is not turned with it. Check the order of the "
-        "four factors of a link transform.",
+        say(
+            "The rotation is right, but the last column is not turned with it. Check the order of "
+            "the four factors of a link transform."
+        ),
     )
     right = link.links[-1]
     cells = row(right, link.convention)

@@ -17,6 +17,7 @@ from service.grading.diagnosis.wrong_value import finding_on
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed, misconception, says
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 # Three turning joints have three runs of joints whose angles add up: 12, 23, 123.
 MAX_RUNS = 3
@@ -44,7 +45,7 @@ Formulas = Iterator[Rewritten]
 )
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     """The entry has the right size and the wrong sign."""
-    yield Written(-case.expected, finding_on(case, "The sign is wrong."))
+    yield Written(-case.expected, finding_on(case, say("The sign is wrong.")))
 
 
 @misconception(
@@ -60,8 +61,10 @@ def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
 def degrees_as_radians(case: WrongEntry) -> Formulas:
     """A number of degrees was written in a sine or cosine, but is read in radians."""
     finding = says(
-        "A number in a sine or cosine was read in radians, but it fits in degrees: write the unit "
-        "behind it (deg or °).",
+        say(
+            "A number in a sine or cosine was read in radians, but it fits in degrees: write the "
+            "unit behind it (deg or °)."
+        ),
     )
     if any(map(_has_bare_number, case.sines_and_cosines)):
         yield Rewritten(in_degrees(case.tree, is_angle=False, notes=[]), finding)
@@ -95,8 +98,10 @@ def _has_bare_number(node: Node) -> bool:
 def radians_as_degrees(case: WrongEntry) -> Formulas:
     """A number of radians was written in a sine or cosine, but is read in degrees."""
     finding = says(
-        "A number in a sine or cosine was read in degrees, but it fits in radians: write the unit "
-        "behind it (rad).",
+        say(
+            "A number in a sine or cosine was read in degrees, but it fits in radians: write the "
+            "unit behind it (rad)."
+        ),
     )
     yield Rewritten(rewriting.everywhere(case.tree, rewriting.without_degrees), finding)
 
@@ -115,10 +120,10 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     """Sine and cosine are exchanged, throughout or in one place."""
     count = len(case.sines_and_cosines)
     if count > 0:
-        finding = says("Sine and cosine are exchanged.")
+        finding = says(say("Sine and cosine are exchanged."))
         yield Rewritten(rewriting.at_sines_and_cosines(case.tree, rewriting.exchanged), finding)
     if count > 1:
-        in_one_place = says("Sine and cosine are exchanged in one place.")
+        in_one_place = says(say("Sine and cosine are exchanged in one place."))
         for tree, _ in rewriting.one_place(case.tree, rewriting.exchanged):
             yield Rewritten(tree, in_one_place)
 
@@ -136,8 +141,10 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
 def sum_of_cosines(case: WrongEntry) -> Formulas:
     """The cosine of a sum was written as a sum of cosines, or the same with the sine."""
     finding = says(
-        "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
-        "first.",
+        say(
+            "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the "
+            "angles first."
+        ),
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.sums_merged(case.tree), finding)
@@ -156,8 +163,10 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
 def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The student read the shorthand c12 as c1 c2, or s12 as s1 s2."""
     finding = says(
-        "Check this product of sines or cosines: the direction of a link has one sine or cosine of "
-        "a sum of joint angles.",
+        say(
+            "Check this product of sines or cosines: the direction of a link has one sine or "
+            "cosine of a sum of joint angles."
+        ),
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.products_merged(case.tree), finding)
@@ -181,8 +190,10 @@ def relative_angle(case: WrongEntry) -> Formulas:
     A joint angle is measured from the link before, not from the base.
     """
     finding = says(
-        "A joint angle is measured from the link before: the direction of a link is the sum of all "
-        "joint angles up to it.",
+        say(
+            "A joint angle is measured from the link before: the direction of a link is the sum "
+            "of all joint angles up to it."
+        ),
     )
     for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
         summed = rewriting.summed_from(first, case.turning)
@@ -203,8 +214,11 @@ def angle_left_out(case: WrongEntry) -> Formulas:
     """A joint angle is missing in a sum of joint angles: c23 for c123."""
     for symbol in _joint_angles(case):
         finding = says(
-            f"{case.spelling.name(symbol)} is missing in a sine or cosine: the direction of a link "
-            "is the sum of all joint angles up to it.",
+            say(
+                "{angle} is missing in a sine or cosine: the direction of a link is the sum of all "
+                "joint angles up to it.",
+                angle=case.spelling.name(symbol),
+            ),
         )
         yield from _with_angles_changed(case, rewriting.with_angle(symbol), finding)
 
@@ -223,8 +237,11 @@ def angle_too_many(case: WrongEntry) -> Formulas:
     """A sum of joint angles contains one too many: c123 for c12."""
     for symbol in _joint_angles(case):
         finding = says(
-            f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
-            "of a link is the sum of the joint angles up to it, and of none after it.",
+            say(
+                "{angle} does not belong in a sine or cosine here: the direction of a link is the "
+                "sum of the joint angles up to it, and of none after it.",
+                angle=case.spelling.name(symbol),
+            ),
         )
         yield from _with_angles_changed(case, rewriting.without_angle(symbol), finding)
 
@@ -256,7 +273,7 @@ def _with_angles_changed(
 )
 def term_sign(case: WrongEntry) -> Formulas:
     """One term of a sum has the wrong sign."""
-    finding = says("One term has the wrong sign.")
+    finding = says(say("One term has the wrong sign."))
     for change in (rewriting.other_operator, rewriting.first_term_negated):
         for tree, _ in rewriting.one_place(case.tree, change):
             yield Rewritten(tree, finding, signed=True)

@@ -7,7 +7,6 @@ from itertools import chain, combinations, permutations
 import numpy as np
 
 from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase, as_explanations
-from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
@@ -15,6 +14,7 @@ from service.grading.misconception import Written, explanation, misconception, s
 from service.grading.numerics.samples import Samples
 from service.kinematics.rotations import composed
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import Sentence, listed, say, say_count
 
 # With more steps, only one of them is assumed to be wrong.
 MAX_STEPS = 4
@@ -29,9 +29,15 @@ class Step:
     fixed: bool
 
 
-RULE = (
-    "A turn about a fixed axis is multiplied from the left, one about a moving axis from the right."
-)
+def _with_rule(sentence: Sentence) -> Finding:
+    """Return a finding with this sentence and the rule for the side of a turn."""
+    return says(
+        say(
+            "{sentence} A turn about a fixed axis is multiplied from the left, one about a moving "
+            "axis from the right.",
+            sentence=sentence,
+        )
+    )
 
 
 def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
@@ -59,12 +65,11 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
 def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     """A turn about a moving axis was multiplied as if the axis were fixed, or the other way."""
     exchanged = [replace(step, fixed=not step.fixed) for step in steps]
-    hint = f"Every turn was multiplied from the wrong side. {RULE}"
-    yield _made_of(exchanged, says(hint))
+    finding = _with_rule(say("Every turn was multiplied from the wrong side."))
+    yield _made_of(exchanged, finding)
     for i in range(1, len(steps)):
-        hint = f"Turn {i + 1} was multiplied from the wrong side. {RULE}"
-        turns = [*steps[:i], exchanged[i], *steps[i + 1 :]]
-        yield _made_of(turns, says(hint))
+        finding = _with_rule(say("Turn {turn} was multiplied from the wrong side.", turn=i + 1))
+        yield _made_of([*steps[:i], exchanged[i], *steps[i + 1 :]], finding)
 
 
 @misconception(
@@ -82,8 +87,15 @@ def turned_back(steps: Sequence[Step]) -> Hypotheses:
     for some in _subsets(steps):
         axes = listed(sorted({steps[i].axis.lower() for i in some}))
         finding = says(
-            f"{_turns(some)} {'go' if len(some) > 1 else 'goes'} the wrong way: check the signs of "
-            f"the sines in the rotation about {axes}.",
+            say_count(
+                "Turn {turns} goes the wrong way: check the signs of the sines in the rotation "
+                "about {axes}.",
+                "Turns {turns} go the wrong way: check the signs of the sines in the rotation "
+                "about {axes}.",
+                count=len(some),
+                turns=_numbers(some),
+                axes=axes,
+            ),
         )
         yield _made_of([(back if i in some else steps)[i] for i in range(len(steps))], finding)
 
@@ -109,8 +121,12 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     for i, step in enumerate(steps):
         for axis in "XYZ".replace(step.axis, ""):
             finding = says(
-                f"Turn {i + 1} was made about {axis.lower()}: check which axis it is about.",
-                f"It is about {step.axis.lower()}.",
+                say(
+                    "Turn {turn} was made about {axis}: check which axis it is about.",
+                    turn=i + 1,
+                    axis=axis.lower(),
+                ),
+                say("It is about {axis}.", axis=step.axis.lower()),
             )
             turned = replace(step, rotation=_about(axis, step))
             yield _made_of([*steps[:i], turned, *steps[i + 1 :]], finding)
@@ -129,16 +145,24 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     """One turn has the angle of another, or two turns have exchanged angles."""
     for i, j in permutations(range(len(steps)), 2):
         finding = says(
-            f"Turn {i + 1} was made by the angle of turn {j + 1}: check which angle belongs to "
-            "which axis.",
+            say(
+                "Turn {turn} was made by the angle of turn {other}: check which angle belongs to "
+                "which axis.",
+                turn=i + 1,
+                other=j + 1,
+            ),
         )
         turned = list(steps)
         turned[i] = replace(steps[i], rotation=_about(steps[i].axis, steps[j]))
         yield _made_of(turned, finding)
     for i, j in combinations(range(len(steps)), 2):
         finding = says(
-            f"The angles of turns {i + 1} and {j + 1} are exchanged: check which angle belongs to "
-            "which axis.",
+            say(
+                "The angles of turns {turn} and {other} are exchanged: check which angle belongs "
+                "to which axis.",
+                turn=i + 1,
+                other=j + 1,
+            ),
         )
         turned = list(steps)
         for one, other in ((i, j), (j, i)):
@@ -163,9 +187,13 @@ def left_out(steps: Sequence[Step]) -> Hypotheses:
     """Some turns are missing in the product."""
     for some in _subsets(steps):
         if len(some) < len(steps):
-            verb = "are" if len(some) > 1 else "is"
-            finding = says(f"{_turns(some)} {verb} missing from this rotation.")
-            yield _made_of([step for i, step in enumerate(steps) if i not in some], finding)
+            hint = say_count(
+                "Turn {turns} is missing from this rotation.",
+                "Turns {turns} are missing from this rotation.",
+                count=len(some),
+                turns=_numbers(some),
+            )
+            yield _made_of([step for i, step in enumerate(steps) if i not in some], says(hint))
 
 
 @misconception(
@@ -188,7 +216,7 @@ def another_order(steps: Sequence[Step]) -> Hypotheses:
     """The turns were multiplied in another order."""
     moving = [replace(step, fixed=False) for step in steps if not step.fixed]
     factors = [*(replace(step, fixed=False) for step in steps[::-1] if step.fixed), *moving]
-    finding = says(f"The turns were multiplied in the wrong order. {RULE}")
+    finding = _with_rule(say("The turns were multiplied in the wrong order."))
     for order in list(permutations(factors))[1:] if len(steps) <= MAX_STEPS else ():
         yield _made_of(order, finding)
 
@@ -205,9 +233,8 @@ def _subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
     return chain.from_iterable(combinations(range(len(steps)), k) for k in range(1, most + 1))
 
 
-def _turns(places: Sequence[int]) -> str:
-    numbers = listed([str(i + 1) for i in places])
-    return f"Turns {numbers}" if len(places) > 1 else f"Turn {numbers}"
+def _numbers(places: Sequence[int]) -> str:
+    return listed([str(i + 1) for i in places])
 
 
 def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:

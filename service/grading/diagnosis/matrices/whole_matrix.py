@@ -9,6 +9,7 @@ from itertools import permutations
 
 import numpy as np
 
+from service.grading.diagnosis.matrices.line_signs import Lines
 from service.grading.diagnosis.matrices.matrix_case import (
     BOTTOM_ROW,
     POSITION_BLOCK,
@@ -24,7 +25,6 @@ from service.grading.diagnosis.matrices.matrix_case import (
 )
 from service.grading.diagnosis.motions.link_products import named
 from service.grading.diagnosis.upstream.slip_search import AFTER_SIGNS
-from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
@@ -41,14 +41,11 @@ from service.grading.misconception import (
 from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.grading.report import Severity
 from service.kinematics.transforms import Numbers, inverse
+from service.translations import Sentence, say, template
 
 
 class BottomRow:
     """The bottom row of a wrong matrix."""
-
-
-class Lines:
-    """The columns and rows of a wrong matrix."""
 
 
 @misconception(
@@ -66,7 +63,7 @@ class Lines:
 def transposed_matrix(case: MatrixCase) -> Hypotheses:
     """The whole matrix was written with rows and columns exchanged."""
     code = "transposed_rotation" if case.rigid and not case.is_transform else "transposed_matrix"
-    finding = Finding(code, "This matrix is transposed.", "Write its rows as columns.")
+    finding = Finding(code, say("This matrix is transposed."), say("Write its rows as columns."))
     if case.expected.shape[0] == case.expected.shape[1]:
         yield Written(np.swapaxes(case.expected, 0, 1), finding)
 
@@ -91,14 +88,16 @@ def inverse_transform(case: MatrixCase) -> Hypotheses:
 
 
 INVERTED = says(
-    "This matrix leads the other way: it is the inverse of the transform that is asked for.",
-    "Its columns are the axes and the origin of the last frame, seen from the first.",
+    say("This matrix leads the other way: it is the inverse of the transform that is asked for."),
+    say("Its columns are the axes and the origin of the last frame, seen from the first."),
 )
 
 # The message for the inverse of another pose than the one asked for.
 OTHER_WAY = replace(
     INVERTED,
-    hint="This matrix leads the other way: check which frame it describes, and from which frame.",
+    hint=say(
+        "This matrix leads the other way: check which frame it describes, and from which frame."
+    ),
     correction="",
 )
 
@@ -112,7 +111,8 @@ def _inverted(matrix: Numbers) -> Numbers:
 def other_pose(case: MatrixCase) -> Hypotheses:
     """The answer is another pose."""
     for pose, entries in zip(*case.other_poses, strict=True):
-        found = named(pose, "This matrix is")
+        # Translators: {pose} is a name such as "the pose of frame {2}".
+        found = named(pose, template("This matrix is {pose}. {advice}"))
         yield Written(entries[UPPER_ROWS], found, UPPER_ROWS, record=pose.record)
 
 
@@ -134,7 +134,8 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     if case.is_transform:
         poses, entries = case.other_poses
         for pose, inverted in zip(poses, _inverted(entries), strict=True):
-            finding = named(pose, "This is the inverse of", OTHER_WAY)
+            # Translators: {pose} is a name such as "the pose of frame {2}".
+            finding = named(pose, template("This is the inverse of {pose}. {advice}"), OTHER_WAY)
             yield Written(inverted[UPPER_ROWS], finding, UPPER_ROWS)
 
 
@@ -150,9 +151,11 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
 def transposed_rotation(case: MatrixCase) -> Hypotheses:
     """The rotation has the axes of the first frame, described in the last one."""
     finding = says(
-        "The rotation is transposed: its columns, not its rows, must be the axes of the frame that "
-        "is described.",
-        "Write its rows as columns.",
+        say(
+            "The rotation is transposed: its columns, not its rows, must be the axes of the frame "
+            "that is described."
+        ),
+        say("Write its rows as columns."),
     )
     yield Written(np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1), finding, ROTATION_BLOCK)
 
@@ -170,9 +173,11 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
     """The axes of the last frame were written in another order."""
     for order in list(permutations(range(3)))[1:]:
         finding = says(
-            "The columns of the rotation are in the wrong order: check which axis belongs in which "
-            "column.",
-            f"Your columns are its {', '.join('xyz'[j] for j in order)} axes.",
+            say(
+                "The columns of the rotation are in the wrong order: check which axis belongs in "
+                "which column."
+            ),
+            say("Your columns are its {axes} axes.", axes=", ".join("xyz"[j] for j in order)),
         )
         yield Written(case.expected[:3, order], finding, ROTATION_BLOCK)
 
@@ -180,65 +185,26 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
 @misconception(of=RotationBlock, rank=60)
 def other_rotation(case: MatrixCase) -> Hypotheses:
     """Only the rotation belongs to another pose."""
-    return _from_other_poses(case, ROTATION_BLOCK, "The rotation comes from")
+    # Translators: {pose} is a name such as "the pose of frame {2}".
+    told = template("The rotation comes from {pose}. {advice}")
+    return _from_other_poses(case, ROTATION_BLOCK, told)
 
 
 @misconception(of=PositionBlock, rank=60)
 def other_position(case: MatrixCase) -> Hypotheses:
     """Only the position belongs to another pose."""
-    return _from_other_poses(case, POSITION_BLOCK, "The position comes from")
+    # Translators: {pose} is a name such as "the pose of frame {2}".
+    told = template("The position comes from {pose}. {advice}")
+    return _from_other_poses(case, POSITION_BLOCK, told)
 
 
-def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypotheses:
+def _from_other_poses(case: MatrixCase, block: Block, told: str) -> Hypotheses:
     poses, entries = case.other_poses
     # A constant block, such as a position of zeros, does not show which pose it belongs to.
     varies = np.ptp(entries[:, *block], axis=-1).max(axis=(1, 2)) > EXACT_VALUE
     for i in np.flatnonzero(varies).tolist():
-        found = named(poses[i], subject)
+        found = named(poses[i], told)
         yield Written(entries[i][block], found, block, record=poses[i].record)
-
-
-@misconception(
-    of=Lines,
-    rank=10,
-    code=("column_sign", "row_sign"),
-    rule="rotation_columns",
-    means=(
-        "a whole column has the wrong sign: an axis of the last frame points the opposite way",
-        "a whole row has the wrong sign: an axis of the first frame points the opposite way",
-    ),
-    example=("homogeneous-inverse", "numbers", {"3/2": "1", "3/4": "-2"}),
-    unlike={"1/4": "1"},
-)
-def line_sign(case: MatrixCase) -> Hypotheses:
-    """A whole column or row has the wrong sign, because an axis points the opposite way.
-
-    A line with only one wrong entry is diagnosed as that entry.
-    """
-    opposite = case.agree(case.actual, -case.expected)
-    wrong = case.wrong & case.mask(UPPER_ROWS)
-    columns = [j for j in range(wrong.shape[1]) if opposite[:3, j].all() and wrong[:, j].sum() > 1]
-    rows = [i for i in range(3) if opposite[i].all() and wrong[i].sum() > 1]
-    by_column = case.mask(*((slice(0, 3), slice(j, j + 1)) for j in columns))
-    by_row = case.mask(*((slice(i, i + 1), slice(None)) for i in rows))
-    if columns and (by_column & wrong).sum() >= (by_row & wrong).sum():
-        finding = _line_sign("column_sign", columns, "last")
-        yield Written(-case.expected[by_column], finding, by_column)
-    elif rows:
-        yield Written(-case.expected[by_row], _line_sign("row_sign", rows, "first"), by_row)
-
-
-def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
-    line = code.removesuffix("_sign").capitalize()
-    numbers = listed([str(i + 1) for i in indices])
-    have = f" {numbers} has" if len(indices) == 1 else f"s {numbers} have"
-    parts = listed([("x axis", "y axis", "z axis", "position")[i] for i in indices])
-    return Finding(
-        code,
-        f"{line}{have} the wrong sign throughout: check which way the {parts} of the "
-        f"{frame} frame should point.",
-        "Change the sign of each entry there.",
-    )
 
 
 @check(of=UpperRows, rank=20)
@@ -290,8 +256,8 @@ def bottom_row(case: MatrixCase) -> Explained | None:
     """The bottom row is not 0 0 0 1."""
     if not (case.is_transform and case.wrong[BOTTOM_ROW].any()):
         return None
-    hint = "The bottom row of a homogeneous transform is the same for every transform."
-    return Hypothesis(None, says(hint, "It is 0 0 0 1."), BOTTOM_ROW)
+    hint = say("The bottom row of a homogeneous transform is the same for every transform.")
+    return Hypothesis(None, says(hint, say("It is 0 0 0 1.")), BOTTOM_ROW)
 
 
 @dataclass(frozen=True)
@@ -316,8 +282,10 @@ def left_handed_rotation(axes: WrongAxes) -> Finding | None:
     if _fault(axes.rotation) is not None or not (np.linalg.det(axes.rotation) < 0).all():
         return None
     finding = says(
-        "The columns of the rotation form a left-handed frame (the determinant is negative): x × y "
-        "must be z.",
+        say(
+            "The columns of the rotation form a left-handed frame (the determinant is negative): "
+            "x × y must be z."
+        ),
     )
     return replace(finding, severity=Severity.WARNING)
 
@@ -338,23 +306,28 @@ def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
     fault = _fault(axes.rotation)
     if fault is None:
         return None
-    finding = says(
-        "The columns of a rotation are unit vectors at right angles to each other, so you can "
-        f"check yours: {fault}.",
-    )
-    return replace(finding, severity=Severity.HINT)
+    return replace(says(fault), severity=Severity.HINT)
 
 
-def _fault(rotation: Numbers) -> str | None:
-    """Return in words the first column without length 1, else the first two not at right angles."""
+def _fault(rotation: Numbers) -> Sentence | None:
+    """Name the first column without length 1, else the first two that are not at right angles."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
     wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
         if wrong[j, j]:
-            return f"column {j + 1} is no unit vector"
+            return say(
+                "The columns of a rotation are unit vectors at right angles to each other, so you "
+                "can check yours: column {column} is no unit vector.",
+                column=j + 1,
+            )
     for i, j in ((0, 1), (0, 2), (1, 2)):
         if wrong[i, j]:
-            return f"columns {i + 1} and {j + 1} are not at right angles"
+            return say(
+                "The columns of a rotation are unit vectors at right angles to each other, so you "
+                "can check yours: columns {first} and {second} are not at right angles.",
+                first=i + 1,
+                second=j + 1,
+            )
     return None
 
 

@@ -1,8 +1,8 @@
 """Slips in a product of link transforms.
 
 Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the pose, its
-rotation or its position. So the first sentence of a finding has no subject; ``named`` adds it:
-"This matrix is …", "The position comes from …".
+rotation or its position. So a finding has only the name of the pose and an advice; ``named`` makes
+sentences of them: "This matrix is …", "The position comes from …".
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -18,6 +18,7 @@ from service.grading.numerics.samples import Samples
 from service.kinematics.chain import Table, compound, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
+from service.translations import Sentence, say
 
 LinkPose = Written[Matrices]
 
@@ -81,6 +82,11 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     return (Chain(values, robot.convention, frames=(base, *table.labels)),)
 
 
+def _other_pose(pose: Sentence, advice: Sentence, correction: Sentence) -> Finding:
+    """Return a finding with the name of a pose, which ``named`` puts into a sentence."""
+    return says(say("{pose}. {advice}", pose=pose, advice=advice), correction)
+
+
 @misconception(
     of=Chain,
     rank=10,
@@ -93,10 +99,13 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
 def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     """The link transforms were multiplied in reverse order."""
     order = range(len(chain.links))
-    finding = says(
-        f"the product of the link transforms in reverse order, {chain.product(order[::-1])}. "
-        "Each link transform describes its frame in the one before.",
-        f"Multiply {chain.product(order)}.",
+    finding = _other_pose(
+        say(
+            "the product of the link transforms in reverse order, {product}",
+            product=chain.product(order[::-1]),
+        ),
+        say("Each link transform describes its frame in the one before."),
+        say("Multiply {product}.", product=chain.product(order)),
     )
     yield Written(compound(chain.links[::-1]), finding)
 
@@ -112,13 +121,18 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
 )
 def other_convention(chain: Chain) -> Iterator[LinkPose]:
     """The table's numbers were put into the link transform of the other convention."""
-    used, right = chain.convention.other.value, chain.convention.value
-    finding = says(
-        f"the product that the table gives with the link transform of the {used} convention. "
-        "Check in which order a link transform moves about and along z and x.",
-        f"The table is written in the {right} convention.",
-    )
-    yield Written(compound(chain.misread_links), finding)
+    if chain.convention is Convention.STANDARD:
+        pose = say(
+            "the product that the table gives with the link transform of the modified convention"
+        )
+        correction = say("The table is written in the standard convention.")
+    else:
+        pose = say(
+            "the product that the table gives with the link transform of the standard convention"
+        )
+        correction = say("The table is written in the modified convention.")
+    advice = say("Check in which order a link transform moves about and along z and x.")
+    yield Written(compound(chain.misread_links), _other_pose(pose, advice, correction))
 
 
 @misconception(
@@ -138,10 +152,10 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     """The pose of a frame before the last one was handed in."""
     last = len(chain.links)
     for k in reversed(range(1, last)):
-        finding = says(
-            f"the pose of frame {chain.frame(k)}. The pose of frame {chain.frame(last)} is asked "
-            "for.",
-            f"Go on with {chain.product(range(k, last))}.",
+        finding = _other_pose(
+            say("the pose of frame {frame}", frame=chain.frame(k)),
+            say("The pose of frame {frame} is asked for.", frame=chain.frame(last)),
+            say("Go on with {product}.", product=chain.product(range(k, last))),
         )
         yield Written(chain.from_base[k - 1], finding)
 
@@ -158,10 +172,10 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
 def wrong_base(chain: Chain) -> Iterator[LinkPose]:
     """The pose was described in a frame after the base frame."""
     for k in range(1, len(chain.links)):
-        finding = says(
-            f"the pose seen from frame {chain.frame(k)}. The pose in frame {chain.frame(0)} is "
-            "asked for.",
-            f"Put {chain.product(range(k))} in front.",
+        finding = _other_pose(
+            say("the pose seen from frame {frame}", frame=chain.frame(k)),
+            say("The pose in frame {frame} is asked for.", frame=chain.frame(0)),
+            say("Put {product} in front.", product=chain.product(range(k))),
         )
         yield Written(chain.to_end[k], finding)
 
@@ -184,10 +198,10 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     last = len(chain.links)
     poses = chain.from_base[: last - 2] @ chain.to_end[2:]
     for k, pose in enumerate(poses, start=1):
-        finding = says(
-            f"the product without A{chain.frames[k + 1]}. Check that each row of the table takes "
-            "part in the product.",
-            f"Multiply {chain.product(range(last))}.",
+        finding = _other_pose(
+            say("the product without {link}", link=f"A{chain.frames[k + 1]}"),
+            say("Check that each row of the table takes part in the product."),
+            say("Multiply {product}.", product=chain.product(range(last))),
         )
         yield Written(pose, finding)
 
@@ -216,17 +230,20 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     left, the whole product is reversed.
     """
     order = list(range(len(chain.links)))
-    advice = "Check on which side a motion about a moving axis is multiplied."
-    correction = f"Multiply from the right throughout: {chain.product(order)}."
+    advice = say("Check on which side a motion about a moving axis is multiplied.")
+    correction = say("Multiply from the right throughout: {product}.", product=chain.product(order))
     poses = chain.links[1:] @ chain.from_base[:-1]
     poses[:-1] = poses[:-1] @ chain.to_end[2:]
     for k, pose in zip(order[1:], poses, strict=True):
         wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
-        used = f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}."
-        yield Written(pose, says(f"{used} {advice}", correction))
-    used = "the product of all rotations and translations, each put on the left."
-    throughout = says(f"{used} {advice}", correction)
-    yield Written(compound(chain.misread_links[::-1]), throughout)
+        used = say(
+            "the product with {link} multiplied from the left, {product}",
+            link=f"A{chain.frames[k + 1]}",
+            product=wrong_order,
+        )
+        yield Written(pose, _other_pose(used, advice, correction))
+    used = say("the product of all rotations and translations, each put on the left")
+    yield Written(compound(chain.misread_links[::-1]), _other_pose(used, advice, correction))
 
 
 @misconception(
@@ -263,10 +280,10 @@ def row_order(chain: Chain) -> Iterator[LinkPose]:
         return
     poses = compound(np.swapaxes(chain.links[orders], 0, 1))
     for order, pose in zip(orders, poses, strict=True):
-        finding = says(
-            f"the product in the order {chain.product(order)}. Check which joint each row of the "
-            "table belongs to.",
-            f"Multiply {chain.product(range(count))}.",
+        finding = _other_pose(
+            say("the product in the order {product}", product=chain.product(order)),
+            say("Check which joint each row of the table belongs to."),
+            say("Multiply {product}.", product=chain.product(range(count))),
         )
         yield Written(pose, finding)
 
@@ -276,12 +293,17 @@ def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
     return [pose for chain in chains for pose in hypotheses_of(chain)]
 
 
-def named(pose: Explained, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
-    """Return a function that builds the findings on a pose, with ``subject`` before the hint.
+def named(pose: Explained, told: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
+    """Return a function that builds the findings on a pose.
 
-    The findings ``others`` come first.
+    ``told`` is the template of their hints, such as "This matrix is {pose}. {advice}". The findings
+    ``others`` come first.
     """
-    return lambda: (
-        *others,
-        *(replace(each, hint=f"{subject} {each.hint}") for each in pose.findings),
-    )
+
+    def findings() -> Iterator[Finding]:
+        yield from others
+        for each in pose.findings:
+            assert isinstance(each.hint, Sentence)
+            yield replace(each, hint=say(told, **each.hint.values))
+
+    return lambda: tuple(findings())

@@ -19,15 +19,14 @@ from service.grading.diagnosis.matrices.matrix_case import (
     UpperRows,
 )
 from service.grading.diagnosis.motions.given_motion import Displacement, GivenMotion, product
-from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, hypotheses_of, misconception, says
 from service.grading.numerics.tolerances import EXACT_VALUE
+from service.translations import Sentence, listed, say, say_count
 
 # If there are more ways to leave turns out, none is tried.
 MAX_WAYS = 64
-ORDINALS = ("first", "second", "third", "fourth", "fifth")
 
 
 class WholeMotion:
@@ -42,7 +41,15 @@ class Displacements:
     """A position that is a sum of displacements."""
 
 
-SUM = "The position is the sum of all displacements, each turned by the turns before it."
+def _with_sum(sentence: Sentence) -> Finding:
+    """Return a finding with this sentence and the rule for the position."""
+    return says(
+        say(
+            "{sentence} The position is the sum of all displacements, each turned by the turns "
+            "before it.",
+            sentence=sentence,
+        )
+    )
 
 
 @misconception(
@@ -71,14 +78,27 @@ def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
 
 def _not_turned(found: Sequence[Displacement], straight: Sequence[tuple[str, ...]]) -> Finding:
     said = [
-        f"{listed(each.lengths) or 'the displacement'} "
-        f"{'are' if len(each.lengths) > 1 else 'is'} not turned by {listed(angles)}"
+        _clause(each.lengths, angles)
         for each, angles in zip(found, straight, strict=True)
         if angles
     ]
-    return says(
-        f"In this position {listed(said)}. Every turn before a displacement turns it: "
-        "d = d1 + R1 d2.",
+    # Translators: {clauses} is a list such as "l1 is not turned by phi".
+    hint = say(
+        "In this position {clauses}. Every turn before a displacement turns it: d = d1 + R1 d2.",
+        clauses=listed(said),
+    )
+    return says(hint)
+
+
+def _clause(lengths: Sequence[str], angles: Sequence[str]) -> Sentence:
+    if not lengths:
+        return say("the displacement is not turned by {angles}", angles=listed(angles))
+    return say_count(
+        "{lengths} is not turned by {angles}",
+        "{lengths} are not turned by {angles}",
+        count=len(lengths),
+        lengths=listed(lengths),
+        angles=listed(angles),
     )
 
 
@@ -95,8 +115,11 @@ def missing_displacement(motion: GivenMotion) -> Hypotheses:
     """The displacement of one motion is missing in the sum."""
     found = motion.displacements
     for i in range(len(found)) if len(found) > 1 else ():
-        finding = says(f"The displacement of {_which(found, i)} is missing. {SUM}")
-        yield Written(motion.position() - motion.part(found[i]), finding)
+        if _are_numbered(found):
+            missing = say("The displacement of motion {motion} is missing.", motion=i + 1)
+        else:
+            missing = say("The displacement of one motion is missing.")
+        yield Written(motion.position() - motion.part(found[i]), _with_sum(missing))
 
 
 @misconception(
@@ -112,15 +135,17 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
     """The answer is the displacement of one motion alone, in any of the frames."""
     found = motion.displacements
     for i, each in enumerate(found) if len(found) > 1 else ():
-        finding = says(f"This is the displacement of {_which(found, i)} alone. {SUM}")
+        if _are_numbered(found):
+            alone = say("This is the displacement of motion {motion} alone.", motion=i + 1)
+        else:
+            alone = say("This is the displacement of one motion alone.")
         for straight in _subsets(each.angles):
-            yield Written(motion.part(each, straight), finding)
+            yield Written(motion.part(each, straight), _with_sum(alone))
 
 
-def _which(found: Sequence[Displacement], i: int) -> str:
-    """Return the name of the motion with displacement ``i``: "the first motion" or "one motion"."""
-    is_plain = [len(each.angles) for each in found] == list(range(len(found)))
-    return f"the {ORDINALS[i]} motion" if is_plain else "one motion"
+def _are_numbered(found: Sequence[Displacement]) -> bool:
+    """True if displacement ``i`` is that of motion ``i + 1``."""
+    return [len(each.angles) for each in found] == list(range(len(found)))
 
 
 @misconception(
@@ -140,7 +165,7 @@ def turn_left_out(motion: GivenMotion) -> Hypotheses:
     """A turn is missing in the rotation."""
     for some in _subsets(motion.angles):
         if 0 < len(some) < len(motion.angles):
-            hint = f"The turn by {listed(some)} is missing from this rotation."
+            hint = say("The turn by {angles} is missing from this rotation.", angles=listed(some))
             yield Written(motion.rotation(some), says(hint))
 
 
@@ -162,7 +187,12 @@ def turn_reversed(motion: GivenMotion) -> Hypotheses:
     for angle in motion.angles:
         values = {**motion.values, angle: -motion.values[angle]}
         rotation = replace(motion, values=values).rotation()
-        finding = says(f"The turn by {angle} goes the wrong way: check the signs of its sines.")
+        finding = says(
+            say(
+                "The turn by {angle} goes the wrong way: check the signs of its sines.",
+                angle=angle,
+            )
+        )
         yield Written(rotation, finding)
 
 
@@ -186,8 +216,10 @@ def turns_in_another_order(motion: GivenMotion) -> Hypotheses:
 
 
 OTHER_ORDER = says(
-    "The motions were multiplied in the wrong order. Each is described in the frame that the one "
-    "before it has reached, so the first stands on the left.",
+    say(
+        "The motions were multiplied in the wrong order. Each is described in the frame that the "
+        "one before it has reached, so the first stands on the left."
+    ),
 )
 
 

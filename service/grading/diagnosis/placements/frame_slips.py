@@ -10,6 +10,7 @@ from service.grading.misconception import AnyHypothesis, check, says
 from service.kinematics.dh import Convention
 from service.kinematics.frames.placement import AxisPosition, RightPlace
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 
 @dataclass(frozen=True)
@@ -25,10 +26,9 @@ class WrongPlacement:
         return hypotheses
 
     @property
-    def neighbour(self) -> str:
-        """The name of the axis that x must cross."""
-        beside = "before" if self.convention is Convention.STANDARD else "after"
-        return f"the z axis of the frame {beside} it"
+    def is_standard(self) -> bool:
+        """True if x must cross the z axis of the frame before, False for the frame after."""
+        return self.convention is Convention.STANDARD
 
 
 @dataclass(frozen=True)
@@ -78,14 +78,20 @@ _FRAMES = "stanford-arm-frames"
 )
 def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
     """The joint is the one that the other convention takes."""
-    step = -1 if case.convention is Convention.STANDARD else 1
+    step = -1 if case.is_standard else 1
     if case.chosen != case.right + step:
         return None
-    return says(
-        f"The {case.convention.other.value} convention puts z of this frame along that axis; here "
-        f"the {case.convention.value} convention is asked for.",
-        f"Put z along the axis of joint {case.right}.",
-    )
+    if case.is_standard:
+        hint = say(
+            "The modified convention puts z of this frame along that axis; here the standard "
+            "convention is asked for."
+        )
+    else:
+        hint = say(
+            "The standard convention puts z of this frame along that axis; here the modified "
+            "convention is asked for."
+        )
+    return says(hint, say("Put z along the axis of joint {joint}.", joint=case.right))
 
 
 @check(
@@ -100,8 +106,8 @@ def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
 def wrong_joint_axis(case: WrongJointAxis) -> Finding | None:
     """The joint is any other one."""
     return says(
-        "z of this frame belongs on the axis of another joint: count the joints again.",
-        f"Put z along the axis of joint {case.right}.",
+        say("z of this frame belongs on the axis of another joint: count the joints again."),
+        say("Put z along the axis of joint {joint}.", joint=case.right),
     )
 
 
@@ -117,8 +123,10 @@ def wrong_joint_axis(case: WrongJointAxis) -> Finding | None:
 def z_not_along_axis(_: WrongFrameZ) -> Finding | None:
     """The direction of z is another one than that of the axis."""
     return says(
-        "z must be along the joint axis about which the joint turns, or along which it slides, in "
-        "either sense."
+        say(
+            "z must be along the joint axis about which the joint turns, or along which it "
+            "slides, in either sense."
+        )
     )
 
 
@@ -135,7 +143,7 @@ def origin_off_axis(case: WrongFrameOrigin) -> Finding | None:
     """The origin is beside the axis."""
     if case.place.own.distance(case.origin) <= case.slack:
         return None
-    return says("The origin is not on the joint axis along which z lies.")
+    return says(say("The origin is not on the joint axis along which z lies."))
 
 
 @check(
@@ -151,7 +159,19 @@ def origin_not_at_intersection(case: WrongFrameOrigin) -> Finding | None:
     """The axes cross, and the origin is not at the crossing."""
     if case.place.relation is not AxisPosition.CROSSING:
         return None
-    return says(f"The joint axis crosses {case.neighbour}: the origin belongs where they meet.")
+    if case.is_standard:
+        return says(
+            say(
+                "The joint axis crosses the z axis of the frame before it: the origin belongs "
+                "where they meet."
+            )
+        )
+    return says(
+        say(
+            "The joint axis crosses the z axis of the frame after it: the origin belongs where "
+            "they meet."
+        )
+    )
 
 
 @check(
@@ -167,9 +187,18 @@ def origin_not_on_normal(case: WrongFrameOrigin) -> Finding | None:
     """The axes are skew, and the origin is not at the foot of their common normal."""
     if case.place.relation is not AxisPosition.SKEW:
         return None
+    if case.is_standard:
+        return says(
+            say(
+                "The origin belongs at the foot of the common normal of the joint axis and the z "
+                "axis of the frame before it."
+            )
+        )
     return says(
-        f"The origin belongs at the foot of the common normal of the joint axis and "
-        f"{case.neighbour}."
+        say(
+            "The origin belongs at the foot of the common normal of the joint axis and the z axis "
+            "of the frame after it."
+        )
     )
 
 
@@ -186,7 +215,7 @@ def x_not_perpendicular(case: WrongFrameX) -> Finding | None:
     """The direction of x is not perpendicular to the joint axis."""
     if case.is_perpendicular_to(case.place.own.direction):
         return None
-    return says("x must be perpendicular to z of its own frame.")
+    return says(say("x must be perpendicular to z of its own frame."))
 
 
 @check(
@@ -202,7 +231,9 @@ def x_not_perpendicular_to_neighbour(case: WrongFrameX) -> Finding | None:
     """The direction of x is not perpendicular to the neighbouring axis."""
     if case.is_perpendicular_to(case.place.neighbour.direction):
         return None
-    return says(f"x must be perpendicular to {case.neighbour}, too.")
+    if case.is_standard:
+        return says(say("x must be perpendicular to the z axis of the frame before it, too."))
+    return says(say("x must be perpendicular to the z axis of the frame after it, too."))
 
 
 @check(
@@ -216,4 +247,16 @@ def x_not_perpendicular_to_neighbour(case: WrongFrameX) -> Finding | None:
 )
 def x_not_crossing(case: WrongFrameX) -> Finding | None:
     """The line of x does not meet the neighbouring axis."""
-    return says(f"x must cross {case.neighbour}: it is along the common normal of both axes.")
+    if case.is_standard:
+        return says(
+            say(
+                "x must cross the z axis of the frame before it: it is along the common normal of "
+                "both axes."
+            )
+        )
+    return says(
+        say(
+            "x must cross the z axis of the frame after it: it is along the common normal of both "
+            "axes."
+        )
+    )

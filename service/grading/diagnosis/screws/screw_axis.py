@@ -11,6 +11,7 @@ from service.grading.misconception import Written, diagnosed, misconception, say
 from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 
 @dataclass(frozen=True)
@@ -54,24 +55,39 @@ class WrongScrew(WrongNumbers):
         return np.concatenate([self.direction, velocity])
 
 
-EXCHANGED_HALVES = says("ω and v are exchanged: write ω first, then v.", "Exchange ω and v.")
+EXCHANGED_HALVES = says(
+    say("ω and v are exchanged: write ω first, then v."), say("Exchange ω and v.")
+)
 AXIS_REVERSED = says(
-    "The axis points the opposite way: check which way the joint counts positive.",
-    "Change the sign of all six numbers.",
+    say("The axis points the opposite way: check which way the joint counts positive."),
+    say("Change the sign of all six numbers."),
 )
 MOMENT_SIGN = says(
-    "v has the wrong sign: the turn moves the point at the origin with v = −ω × q, not ω × q.",
+    say("v has the wrong sign: the turn moves the point at the origin with v = −ω × q, not ω × q."),
 )
 
 
 def seen_from_elsewhere(frame: str) -> Finding:
     """Return the finding that an axis is described in the other frame than ``frame``."""
-    seen, asked = ("end-effector", "base") if frame == "space" else ("base", "end-effector")
+    if frame == "space":
+        return Finding(
+            "body_for_space",
+            say(
+                "ω and v are written as seen from the end-effector frame. A space axis is seen "
+                "from the base frame."
+            ),
+            say("Measure ω and the point q in the base frame, with the arm in its home position."),
+        )
     return Finding(
-        "body_for_space" if frame == "space" else "space_for_body",
-        f"ω and v are written as seen from the {seen} frame. A {frame} axis is seen from the "
-        f"{asked} frame.",
-        f"Measure ω and the point q in the {asked} frame, with the arm in its home position.",
+        "space_for_body",
+        say(
+            "ω and v are written as seen from the base frame. A body axis is seen from the "
+            "end-effector frame."
+        ),
+        say(
+            "Measure ω and the point q in the end-effector frame, with the arm in its home "
+            "position."
+        ),
     )
 
 
@@ -135,8 +151,8 @@ def other_frame(case: WrongScrew) -> Hypotheses:
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     """A sliding joint was written as a turning one; it needs ω = 0 (infinite pitch)."""
     finding = says(
-        "This joint slides and does not turn: check which of ω and v holds its direction.",
-        "ω is 0, and v is the unit vector of the direction.",
+        say("This joint slides and does not turn: check which of ω and v holds its direction."),
+        say("ω is 0, and v is the unit vector of the direction."),
     )
     if not case.turns and (np.abs(case.actual[:3]).max(axis=0) > EXACT_VALUE).all():
         # For any ω and v that were written.
@@ -155,8 +171,8 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
 def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     """The axis of a turning joint was written as v."""
     finding = says(
-        "This joint turns and does not slide: check which of ω and v holds its direction.",
-        "ω is the unit vector along the axis, and v = −ω × q.",
+        say("This joint turns and does not slide: check which of ω and v holds its direction."),
+        say("ω is the unit vector along the axis, and v = −ω × q."),
     )
     if case.turns:
         yield Written(np.concatenate([0 * case.direction, case.direction]), finding)
@@ -189,8 +205,11 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
     """ω, or v of a sliding joint, is not of unit length."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = says(
-        f"The direction is right, but {letter} is not of length 1, as it must be.",
-        f"Divide all six numbers by the length of {letter}.",
+        say(
+            "The direction is right, but {letter} is not of length 1, as it must be.",
+            letter=letter,
+        ),
+        say("Divide all six numbers by the length of {letter}.", letter=letter),
     )
     factor = (case.actual[unit] * case.expected[unit]).sum(axis=0)
     if (np.abs(factor) >= EXACT_VALUE).all():
@@ -208,7 +227,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
 )
 def point_for_velocity(case: WrongScrew) -> Hypotheses:
     """A point on the axis was written in place of v."""
-    finding = says("v holds a point q on the axis. It must be a velocity, v = −ω × q.")
+    finding = says(say("v holds a point q on the axis. It must be a velocity, v = −ω × q."))
     if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
         point = case.actual[3:]
         of_point = -np.cross(case.direction, point, axis=0)
@@ -229,11 +248,11 @@ def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis is missing, superfluous or wrong."""
     if not case.turns:
         return
-    hint = "The part of v along ω is not right: check the pitch of this joint."
+    hint = say("The part of v along ω is not right: check the pitch of this joint.")
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
     if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction
-        yield Written(case.with_velocity(velocity), says(hint, "v = −ω × q + h ω."))
+        yield Written(case.with_velocity(velocity), says(hint, say("v = −ω × q + h ω.")))
 
 
 @misconception(
@@ -247,14 +266,19 @@ def pitch(case: WrongScrew) -> Hypotheses:
 )
 def point_off_axis(case: WrongScrew) -> Hypotheses:
     """The point q from which v was computed is not on the axis."""
-    finding = says(
-        "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates of q "
-        f"in the {'base' if case.frame == 'space' else 'end-effector'} frame, and the cross "
-        "product.",
-    )
+    if case.frame == "space":
+        hint = say(
+            "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates "
+            "of q in the base frame, and the cross product."
+        )
+    else:
+        hint = say(
+            "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates "
+            "of q in the end-effector frame, and the cross product."
+        )
     along = (case.actual[3:] * case.direction).sum(axis=0)
     if case.turns and nearly_equal(along, case.pitch, case.length_scale):
-        yield Written(case.with_velocity(case.actual[3:]), finding)
+        yield Written(case.with_velocity(case.actual[3:]), says(hint))
 
 
 @misconception(
@@ -270,7 +294,10 @@ def other_direction(case: WrongScrew) -> Hypotheses:
     """The unit vector is not parallel to the joint axis."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = says(
-        f"{letter} is not along the axis of this joint: check the axis in the home position.",
+        say(
+            "{letter} is not along the axis of this joint: check the axis in the home position.",
+            letter=letter,
+        ),
     )
     length = np.sqrt((case.actual[unit] ** 2).sum(axis=0))
     along = (case.actual[unit] * case.expected[unit]).sum(axis=0)

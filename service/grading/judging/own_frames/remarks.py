@@ -12,6 +12,7 @@ from service.grading.report import Severity
 from service.kinematics.dh import Convention
 from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices
+from service.translations import Sentence, paragraph, say
 
 OWN_FRAME_CHOICE: Final = "own_frame_choice"
 
@@ -40,13 +41,8 @@ def remarks_on(
         frame = joint.index - 1 if convention is Convention.STANDARD else joint.index
         departures = _departures(pose, frame, joint, exercise.length_scale)
         if departures:
-            findings.append(
-                Finding(
-                    OWN_FRAME_CHOICE,
-                    f"You {' and '.join(departures)}; that is a valid choice.",
-                    severity=Severity.INFO,
-                )
-            )
+            hint = paragraph(*departures)
+            findings.append(Finding(OWN_FRAME_CHOICE, hint, severity=Severity.INFO))
     return tuple(findings)
 
 
@@ -57,17 +53,33 @@ def _chosen(departs: NDArray[np.bool_], rows_right: NDArray[np.bool_]) -> NDArra
     return departs & ~np.isin(runs, implied)
 
 
-def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -> list[str]:
+def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -> list[Sentence]:
     departures = []
+    x, z = f"x{frame}", f"z{frame}"
     rotation, origin = pose[:, :3, :3], pose[:, :3, 3]
     if (rotation[:, 2, 2] < 0).all():
-        departures.append(f"let z{frame} point the opposite way")
+        departures.append(
+            say("You let {axis} point the opposite way; that is a valid choice.", axis=z)
+        )
     if np.abs(rotation[:, 1, 0]).max() > SAME_POSE:
-        departures.append(f"turned x{frame} about z{frame}")
+        departures.append(say("You turned {x} about {z}; that is a valid choice.", x=x, z=z))
     elif (rotation[:, 0, 0] < 0).all():
-        departures.append(f"let x{frame} point the opposite way")
+        departures.append(
+            say("You let {axis} point the opposite way; that is a valid choice.", axis=x)
+        )
     if np.abs(origin[:, :2]).max() > SAME_POSE * length_scale:
-        departures.append(f"moved the axis of the sliding joint {joint.index} sideways")
+        departures.append(
+            say(
+                "You moved the axis of the sliding joint {joint} sideways; that is a valid choice.",
+                joint=joint.index,
+            )
+        )
     elif np.abs(origin[:, 2]).max() > SAME_POSE * length_scale:
-        departures.append(f"put origin {frame} elsewhere on z{frame}")
+        departures.append(
+            say(
+                "You put origin {frame} elsewhere on {axis}; that is a valid choice.",
+                frame=frame,
+                axis=z,
+            )
+        )
     return departures

@@ -12,6 +12,7 @@ from service.grading.numerics.samples import Samples
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
+from service.translations import say
 
 
 class Rereadable:
@@ -90,13 +91,23 @@ def written_table(
 )
 def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     """The table follows the rules of the other convention."""
-    names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
-    used, asked = names[table.convention.other], names[table.convention]
-    finding = says(
-        f"The table is right in the {used} convention, but not in the {asked} one, which "
-        f"counts here: check which link's a and α belong in row i.",
-        f"In the {asked} convention a and α move by one row.",
-    )
+    if table.convention is Convention.STANDARD:
+        finding = says(
+            say(
+                "The table is right in the modified (proximal) convention, but not in the "
+                "standard (distal) one, which counts here: check which link's a and α belong in "
+                "row i."
+            ),
+            say("In the standard (distal) convention a and α move by one row."),
+        )
+    else:
+        finding = says(
+            say(
+                "The table is right in the standard (distal) convention, but not in the modified "
+                "(proximal) one, which counts here: check which link's a and α belong in row i."
+            ),
+            say("In the modified (proximal) convention a and α move by one row."),
+        )
     yield Repaired(replace(table, convention=table.convention.other), finding)
 
 
@@ -120,8 +131,10 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
 def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     """All angles were written in degrees, but are read in radians."""
     finding = says(
-        "The angles were read in radians, but they fit in degrees: write the unit behind each (deg "
-        "or °), or hand the table in with the angle unit degrees.",
+        say(
+            "The angles were read in radians, but they fit in degrees: write the unit behind each "
+            "(deg or °), or hand the table in with the angle unit degrees."
+        ),
     )
     if np.abs(table.constants[:, IS_ANGLE]).max() > 2 * np.pi:
         yield Repaired(_rescaled(table, np.pi / 180), finding)
@@ -147,8 +160,10 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
 def radians_as_degrees(table: WrittenTable) -> Iterator[RepairedTable]:
     """All angles were written in radians, but are read in degrees."""
     finding = says(
-        "The angles were read in degrees, but they fit in radians: write the unit behind each "
-        "(rad), or hand the table in with the angle unit radians.",
+        say(
+            "The angles were read in degrees, but they fit in radians: write the unit behind each "
+            "(rad), or hand the table in with the angle unit radians."
+        ),
     )
     if np.abs(table.constants[:, IS_ANGLE]).max() <= np.radians(2 * np.pi):
         yield Repaired(_rescaled(table, 180 / np.pi), finding)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from service.grading.diagnosis.matrices import whole_matrix
+from service.grading.diagnosis.matrices import line_signs, whole_matrix
 from service.grading.diagnosis.matrices.matrix_case import MatrixCase
 from service.grading.diagnosis.matrices.whole_matrix import WrongAxes, explain
 from service.grading.diagnosis.motions.link_products import Chain
@@ -68,7 +68,7 @@ PAIRS = [
         "wrong_frame",
     ),
     Pair(
-        whole_matrix.line_sign,
+        line_signs.line_sign,
         with_rotation(R * [1, -1, 1]),
         with_rotation(R * [[1, -1, 1], [1, 1, 1], [1, 1, 1]]),
         "column_sign",

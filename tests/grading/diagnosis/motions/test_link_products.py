@@ -10,6 +10,7 @@ from service.grading.diagnosis.motions.link_products import Chain, LinkPose, nam
 from service.grading.feedback import Finding
 from service.grading.misconception import Written
 from service.kinematics.transforms import Numbers
+from service.translations import say
 from tests.grading.diagnosis.example_chain import A1, A2, A3, A4, CHAIN, POSE, X, Z, product
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
@@ -54,7 +55,9 @@ def test_all_links_multiplied_from_the_left_are_explained() -> None:
     assert np.allclose(poses[-1], product(*MODIFIED[::-1]))
 
 
-def test_the_subject_is_added_to_the_first_sentence() -> None:
-    pose = Written(POSE, Finding("wrong_frame", "the pose of frame {2}."))
-    [other, finding] = named(pose, "This matrix is", Finding("sign", "Wrong."))()
-    assert (other.hint, finding.hint) == ("Wrong.", "This matrix is the pose of frame {2}.")
+def test_the_name_of_a_pose_is_put_into_a_sentence() -> None:
+    hint = say("{pose}. {advice}", pose="the pose of frame {2}", advice="Go on.")
+    pose = Written(POSE, Finding("wrong_frame", hint))
+    [other, finding] = named(pose, "This matrix is {pose}. {advice}", Finding("sign", "Wrong."))()
+    assert other.hint == "Wrong."
+    assert finding.hint == "This matrix is the pose of frame {2}. Go on."

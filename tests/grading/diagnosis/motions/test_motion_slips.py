@@ -151,12 +151,12 @@ POSITIONS: dict[str, tuple[list[str], str, str]] = {
         "displacement_not_turned",
         "k is not turned by phi",
     ),
-    "d1 + R1 d2": (["a - l sφ", "l cφ", "b"], "missing_displacement", "the third motion"),
+    "d1 + R1 d2": (["a - l sφ", "l cφ", "b"], "missing_displacement", "motion 3"),
     "R1 d2 + R1 R2 d3": (
-        ["k sφ sψ - l sφ", "l cφ - k cφ sψ", "k cψ"], "missing_displacement", "the first motion",
+        ["k sφ sψ - l sφ", "l cφ - k cφ sψ", "k cψ"], "missing_displacement", "motion 1",
     ),
-    "d3 alone": (["0", "0", "k"], "missing_displacement", "the third motion alone"),
-    "d1 alone": (["a", "0", "b"], "missing_displacement", "the first motion alone"),
+    "d3 alone": (["0", "0", "k"], "missing_displacement", "motion 3 alone"),
+    "d1 alone": (["a", "0", "b"], "missing_displacement", "motion 1 alone"),
 }  # fmt: skip
 
 

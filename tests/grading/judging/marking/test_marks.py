@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from service.grading import PartReport, Verdict
+from service.grading import CellReport, PartReport, RowReport, Verdict
+from service.grading.lost_points import lost_in_row
 from tests.grading.support.robots import EXACT, SCARA, STANFORD, Row
 from tests.grading.support.submitting import graded_table
 from tests.grading.support.worth import worth_of_rows
@@ -110,3 +111,10 @@ def test_a_slip_of_the_whole_table_is_lost_at_one_place(catalogue: Mapping[str, 
 def test_a_right_table_has_lost_nothing(catalogue: Mapping[str, Exercise]) -> None:
     report = graded_table(catalogue[SCARA.exercise], EXACT.rows(SCARA))
     assert (report.lost, report.little_worth) == ((), None)
+
+
+def test_a_single_value_has_lost_its_points_in_its_row() -> None:
+    row = RowReport("3", Verdict.INCORRECT, 0.0, 1.0, (CellReport("3", Verdict.INCORRECT),))
+    assert lost_in_row(row, 1.0).message == "row 3"
+    mark = RowReport("marked", Verdict.INCORRECT, 0.0, 1.0, (CellReport("marked", row.verdict),))
+    assert lost_in_row(mark, 1.0).message == "marked"
