@@ -88,11 +88,6 @@ def shortened(text: str) -> str:
     return text if len(text) <= _LONGEST_QUOTATION else f"{text[:_LONGEST_QUOTATION]}…"
 
 
-def counted(values: int) -> str:
-    """Return "one value", "2 values" and so on."""
-    return "one value" if values == 1 else f"{values} values"
-
-
 def quoted(text: str) -> str:
     """Return ``text`` as messages quote it: shortened, or as code points if it is unprintable."""
     text = shortened(text)

@@ -17,6 +17,7 @@ from service.grids.scripts.robot_table import RobotTable
 from service.grids.scripts.session import session_outputs
 from service.grids.scripts.titles import without_fence, without_titles
 from service.grids.scripts.toolbox_print import describes_print, read_print
+from service.translations import say
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
@@ -71,18 +72,25 @@ def _limited(text: str) -> SourceText:
     """Return the text as a SourceText. Raises GridError if it is empty or exceeds the limits."""
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
-        message = f"A pasted text has at most {most:,} characters; yours has {len(text):,}."
+        message = say(
+            "A pasted text has at most {most:,} characters; yours has {found:,}.",
+            most=most,
+            found=len(text),
+        )
         raise GridError("too_long", message, (most, len(text)))
     plain = SourceText.of(text)
     plain = SourceText(text.translate(_FULL_WIDTH), plain.starts, plain.ends)
     source = without_fence(plain.strip("\ufeff"))
     if not source.text.strip():
-        raise GridError("empty", "Nothing is written here.", (0, len(text)))
+        raise GridError("empty", say("Nothing is written here."), (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
         raise GridError(
             "too_many_cells",
-            f"This has more than {GRID_LIMITS.separators:,} commas, tabs, bars and line ends; "
-            "paste only the table or matrix.",
+            say(
+                "This has more than {most:,} commas, tabs, bars and line ends; "
+                "paste only the table or matrix.",
+                most=GRID_LIMITS.separators,
+            ),
             (0, len(text)),
         )
     return source
@@ -95,8 +103,10 @@ def grid_of(source: SourceText) -> Grid:
             return candidate.parse(source)
     raise GridError(
         "no_grid",
-        "This was not recognised as a table or matrix. Write each row on a line of its own with "
-        "commas between the values, or paste a table from a spreadsheet, Markdown, LaTeX, MATLAB "
-        "or Python.",
+        say(
+            "This was not recognised as a table or matrix. Write each row on a line of "
+            "its own with commas between the values, or paste a table from a "
+            "spreadsheet, Markdown, LaTeX, MATLAB or Python."
+        ),
         source.whole,
     )

@@ -10,6 +10,7 @@ from service.expressions.tree import Node
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.solutions.model_solution import PrintedAnswer, Shown
+from service.translations import Sentence, say
 
 # The column headers. In a modified table, a and α have the index i−1.
 _HEADERS = {
@@ -110,8 +111,8 @@ def no_row() -> PrintedAnswer:
 
 def too_long() -> PrintedAnswer:
     """Return the placeholder for an answer that is too long to be handed in."""
-    text = "longer than an answer may be"
-    return PrintedAnswer(text, rf"\text{{{text}}}", None)
+    text = say("longer than an answer may be")
+    return PrintedAnswer(text, Sentence(r"\text{{{text}}}", {"text": text}), None)
 
 
 def product(labels: Sequence[str]) -> Shown:

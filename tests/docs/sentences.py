@@ -36,7 +36,7 @@ _NO_SENTENCES: Final = frozenset(
     {
         "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
         "GivenMotion | None", "Reread | None", "end effector", "joint variable", "not applicable",
-        "see above", "turns in steps",
+        "see above", "turns in steps", "efector final",
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
         "Write a number or a formula, not true or false.",
@@ -229,7 +229,7 @@ def all_said() -> Iterator[Said]:
     catalogue = exercises()
     yield from said_of_formulas(formulas())
     # A preview without an exercise uses the names of textbooks.
-    yield from said_of_formulas(["g0"], GENERIC)
+    yield from said_of_formulas(["g0", "h", "beta"], GENERIC)
     yield from said_of_pasted(pasted_texts(), catalogue["planar-rr"])
     yield from said_of_answers(answers(catalogue), catalogue)
 

@@ -1,8 +1,11 @@
 """Unreadable texts: the code, the place in the typed text, and the repair."""
 
+from copy import deepcopy
+
 import pytest
 
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
+from service.translations import Sentence
 from tests.together import together
 
 CASES = [
@@ -105,6 +108,17 @@ def test_an_unreadable_text_has_a_code_a_place_and_a_repair(
     assert (error.code, error.span) == (code, span), error.message
     if suggestion is not None:
         assert error.suggestion == suggestion
+
+
+@together("text", [case[0] for case in CASES])
+def test_a_message_can_be_translated(text: str, arm: Vocabulary) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read(text, arm)
+    for error in (caught.value, deepcopy(caught.value)):
+        assert isinstance(error.message, Sentence)
+        assert error.message == Sentence(
+            error.message.template, error.message.values, error.message.plural
+        )
 
 
 REPAIRED = [case[0] for case in CASES if case[3] is not None and "\ufeff" not in case[0]]

@@ -21,6 +21,7 @@ from service.expressions.tree import (
     children,
 )
 from service.expressions.vocabulary.functions import INVERSE, OF_DEGREES, TRIGONOMETRIC
+from service.translations import say
 
 
 class _Facts(NamedTuple):
@@ -100,7 +101,7 @@ class _Conversion:
         """Add degrees to a constant term, unless it is an angle already."""
         facts = self.facts[id(node)]
         if facts.pi:
-            message = (
+            message = say(
                 "This is written with π, so it was taken as radians although angles are in "
                 "degrees here."
             )

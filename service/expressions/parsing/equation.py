@@ -10,6 +10,7 @@ from service.expressions.characters import greek
 from service.expressions.errors import Note, Span
 from service.expressions.parsing.lexing.words import split
 from service.expressions.vocabulary.symbols import Vocabulary
+from service.translations import say
 
 _STYLE: Final = r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)\s*"
 _LETTERS: Final = rf"(?:\\?[A-Za-z]{{1,12}}[0-9]{{0,3}}|[{greek.CLASS}][0-9]{{0,3}})"
@@ -62,7 +63,7 @@ def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
     if left is None:
         return source, None
     start, end = left.span
-    message = "Only the right side of the equation was read."
+    message = say("Only the right side of the equation was read.")
     return f"{source[:start]}{' ' * (end - start)}{source[end:]}", Note(
         "equation", message, left.span
     )

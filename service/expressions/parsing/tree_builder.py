@@ -25,6 +25,7 @@ from service.expressions.tree import (
 )
 from service.expressions.vocabulary.functions import ARITY, BUILT, INVERSE, OF_DEGREES
 from service.expressions.vocabulary.symbols import Symbol
+from service.translations import say
 
 _MOST_PARTS: Final = 64
 # The codes of notes that a number was read in radians.
@@ -79,9 +80,11 @@ class Builder:
     def join(self, left: Node, right: Node) -> Node:
         """Build a product without a sign, with a note on ``1/2q1``."""
         if type(left) is Binary and left.operator == "/" and self._is_open(left):
-            message = (
-                f"This was read from left to right, as ({self._text(left)})*{self._text(right)}. "
-                "Add brackets if all of it belongs below the line."
+            message = say(
+                "This was read from left to right, as ({quotient})*{factor}. "
+                "Add brackets if all of it belongs below the line.",
+                quotient=self._text(left),
+                factor=self._text(right),
             )
             self._note("division_then_product", message, left.start, right.end)
         if type(right) is not Call:
@@ -195,7 +198,7 @@ class Builder:
     def _angle_of_point(self, function: Token, arguments: list[Node], end: int) -> Node:
         """Build atan2(y, x) from Mathematica's ArcTan[x, y]."""
         (_, (_, power), start, stop), (x, y) = function, arguments
-        message = "Mathematica's ArcTan[x, y] was read as atan2(y, x)."
+        message = say("Mathematica's ArcTan[x, y] was read as atan2(y, x).")
         self._note("atan2_order", message, start, end)
         return self._called(("FUNCTION", ("atan2", power), start, stop), (y, x), end)
 
@@ -217,10 +220,10 @@ class Builder:
             if type(one) is not Unit or one.unit != "deg" or type(number) is not Number:
                 continue
             if number.value and not self.degrees:
-                text = self._text(number)
-                message = (
-                    f"Only one of these is in degrees: {text} was read as radians. For degrees, "
-                    f"write {text}°."
+                message = say(
+                    "Only one of these is in degrees: {number} was read as radians. For degrees, "
+                    "write {number}°.",
+                    number=self._text(number),
                 )
                 self._note("mixed_units", message, number.start, number.end)
 
@@ -229,9 +232,9 @@ class Builder:
         first, second = _names(y), _names(x)
         for ours, theirs in (("sin", "cos"), ("y", "x")):
             if theirs in first and ours in second and not {ours} & first and not {theirs} & second:
-                message = (
-                    "atan2 takes y first: atan2(y, x), so atan2(sin, cos). "
-                    "These two look as if they were the other way round."
+                message = say(
+                    "atan2 takes y first: atan2(y, x), so atan2(sin, cos). These two look as if "
+                    "they were the other way round."
                 )
                 self._note("atan2_order", message, start, end)
                 return
@@ -247,8 +250,10 @@ class Builder:
             self.notes.append(note)
 
     def _note_argument(self, start: int, end: int) -> None:
-        text = shortened(self.source[start:end])
-        message = f"Without brackets, {text} was read as the function's argument."
+        message = say(
+            "Without brackets, {text} was read as the function's argument.",
+            text=shortened(self.source[start:end]),
+        )
         self._note("bare_argument", message, start, end)
 
     def _note_bare(self, left: Node) -> None:

@@ -1,14 +1,16 @@
 """2e1 if e1 is a declared symbol: a power of ten or a product."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 
 @for_causes("ambiguous_number")
 def repair(failure: Failure) -> Repair:
     """Name both readings, and suggest the product."""
     product = failure.details["product"]
-    message = (
-        f"{quoted(failure.written)} may be a power of ten or a product. "
-        f"For the product, write {product}."
+    message = say(
+        "{written} may be a power of ten or a product. For the product, write {product}.",
+        written=quoted(failure.written),
+        product=product,
     )
     return error(failure, "ambiguous_number", message, failure.replaced(product))

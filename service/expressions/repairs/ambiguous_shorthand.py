@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 _GOES_ON = re.compile(r"\.?\w+")
 
@@ -15,13 +16,20 @@ def repair(failure: Failure) -> Repair:
     start, end = failure.span
     if match := _GOES_ON.match(failure.source, end):
         whole = start, match.end()
-        message = f"Write the argument of {function} in brackets, as in {function}(2*x)."
+        message = say(
+            "Write the argument of {function} in brackets, as in {function}(2*x).",
+            function=function,
+        )
         in_brackets = f"{function}({digits}{match.group()})"
         suggestion = failure.replaced(in_brackets, whole)
         return error(failure, "ambiguous_shorthand", message, suggestion)
-    message = (
-        f"{quoted(failure.written)} has two readings. Write {function}({names}) for the "
-        f"joint angles or {function}({digits}) for the number."
+    message = say(
+        "{written} has two readings. Write {function}({angles}) for the joint angles or "
+        "{function}({number}) for the number.",
+        written=quoted(failure.written),
+        function=function,
+        angles=names,
+        number=digits,
     )
     # In cos12(q1), the bracket may be a factor or an argument.
     is_followed = failure.source[end : end + 1] in {"(", "[", "{"}

@@ -1,6 +1,7 @@
 """A star after a joint variable that may mark it or multiply it: k*q1*+s1."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 
 @for_causes("ambiguous_star")
@@ -8,8 +9,10 @@ def repair(failure: Failure) -> Repair:
     """Name both readings, and suggest the text without the star."""
     (start, end) = failure.details["star"]
     variable = failure.source[failure.span[0] : start].strip()
-    message = (
-        f"The * after {quoted(variable)} may mark the joint variable. Delete it, or write the "
-        f"product as {variable}*(…)."
+    message = say(
+        "The * after {written} may mark the joint variable. Delete it, or write the product as "
+        "{variable}*(…).",
+        written=quoted(variable),
+        variable=variable,
     )
     return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))

@@ -5,6 +5,7 @@ import re
 from service.expressions.characters import greek, latex_commands
 from service.expressions.characters.unicode import SUBSCRIPTS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 _LETTER = rf"\\?[A-Za-z]+|[{greek.CLASS}{''.join(greek.VARIANTS)}]"
 _STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(latex_commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
@@ -29,7 +30,7 @@ def repair(failure: Failure) -> Repair:
         repaired = failure.repaired(joined)
         if repaired is None:
             return None
-        message = f"Write the name and its index without the braces: {quoted(name)}."
+        message = say("Write the name and its index without the braces: {name}.", name=quoted(name))
         return error(failure, "braced_stem", message, repaired, match.span())
     return None
 

@@ -2,6 +2,7 @@
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 
 @for_causes("grammar")
@@ -9,5 +10,5 @@ def repair(failure: Failure) -> Repair:
     """Ask for brackets."""
     if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:
         return None
-    message = "A power of a power has two readings. Add brackets: (a^b)^c or a^(b^c)."
+    message = say("A power of a power has two readings. Add brackets: (a^b)^c or a^(b^c).")
     return error(failure, "chained_power", message)

@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.translations import say
 
 _COMMENT = re.compile(r"(?<!\\)%|#|//|/\*|\(\*")
 # A word of prose.
@@ -20,7 +21,7 @@ def repair(failure: Failure) -> Repair:
         return None
     division = f"{before}/{after}"
     if match.group() == "//" and failure.repaired(division) == division:
-        message = (
+        message = say(
             "// is a comment in some languages and a whole-number division in others. "
             "For a fraction, write one slash."
         )
@@ -29,5 +30,7 @@ def repair(failure: Failure) -> Repair:
     # The text after the sign seems to be part of the formula, not a comment.
     if not _WORD.search(after) or _OPERATOR.match(after) or _OPERATOR.match(before[-1:]):
         before = ""
-    message = f"The text after {match.group()} looks like a comment. Write only the formula."
+    message = say(
+        "The text after {sign} looks like a comment. Write only the formula.", sign=match.group()
+    )
     return error(failure, "comment", message, before or None, span)

@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.translations import say
 
 _DASH = re.compile(r"[-–—−‐‑‒―]+")
 
@@ -11,5 +12,5 @@ def repair(failure: Failure) -> Repair:
     """Suggest 0, and say that a dash may mean zero or nothing."""
     if _DASH.fullmatch(failure.source.strip()) is None:
         return None
-    message = "A dash may mean zero or nothing. If the value is zero, write 0."
+    message = say("A dash may mean zero or nothing. If the value is zero, write 0.")
     return error(failure, "dash", message, "0", (0, len(failure.source)))

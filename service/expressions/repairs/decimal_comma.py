@@ -3,12 +3,12 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
 # A number with an apostrophe as decimal mark, and one in which it may separate thousands.
 _APOSTROPHE = re.compile(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
 _IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
-_POINT = "Write one number with a point."
 
 
 @for_causes("grammar", "transpose")
@@ -21,9 +21,9 @@ def repair(failure: Failure) -> Repair:
     if failure.terminal() != "COMMA" or not (left.isdigit() and right.isdigit()):
         return None
     if any(match.start() < start < match.end() for match in _THOUSANDS.finditer(failure.source)):
-        message = "A comma separates values. Write a thousand as 1000 and one as 1."
+        message = say("A comma separates values. Write a thousand as 1000 and one as 1.")
         return error(failure, "decimal_comma", message)
-    message = f"A comma separates values. {_POINT}"
+    message = say("A comma separates values. Write one number with a point.")
     point = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", failure.source)
     return error(failure, "decimal_comma", message, point)
 
@@ -34,6 +34,6 @@ def _apostrophe(failure: Failure) -> Repair:
     number = next((match for match in numbers if match.span(1) == failure.span), None)
     if number is None:
         return None
-    message = f"An apostrophe is no decimal point. {_POINT}"
+    message = say("An apostrophe is no decimal point. Write one number with a point.")
     point = None if _IN_THOUSANDS.fullmatch(number.group()) else failure.replaced(".")
     return error(failure, "decimal_comma", message, point)

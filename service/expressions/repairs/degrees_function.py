@@ -4,6 +4,7 @@ import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.functions import IN_DEGREES
+from service.translations import say
 
 _MODULE = re.compile(r"[A-Za-z]+\.$")
 
@@ -12,9 +13,19 @@ _MODULE = re.compile(r"[A-Za-z]+\.$")
 def repair(failure: Failure) -> Repair:
     """Suggest the function that returns the angle in radians: acos for acosd."""
     plain = IN_DEGREES.get(failure.details["name"], "")
-    advice = f"Write {plain}, which gives the angle." if plain else "Write the angle itself."
     start, end = failure.span
     if not plain and (module := _MODULE.search(failure.source[:start])):
         start = module.start()
-    message = f"{quoted(failure.written)} gives a number of degrees, not an angle. {advice}"
+    written = quoted(failure.written)
+    message = say(
+        "{written} gives a number of degrees, not an angle. Write the angle itself.",
+        written=written,
+    )
+    if plain:
+        message = say(
+            "{written} gives a number of degrees, not an angle. "
+            "Write {function}, which gives the angle.",
+            written=written,
+            function=plain,
+        )
     return error(failure, "degrees_function", message, failure.replaced(plain, (start, end)))

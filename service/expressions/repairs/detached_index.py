@@ -5,6 +5,7 @@ import re
 from service.expressions.characters import greek
 from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
 
@@ -19,6 +20,6 @@ def repair(failure: Failure) -> Repair:
     pieces = split(joined, failure.vocabulary)
     if pieces is None or pieces[-1].kind not in {"symbol", "shorthand"}:
         return None
-    message = f"Write the name and its index without a space: {joined}."
+    message = say("Write the name and its index without a space: {name}.", name=joined)
     suggestion = failure.replaced(joined, match.span())
     return error(failure, "detached_index", message, suggestion, match.span())

@@ -1,5 +1,6 @@
 """An empty text."""
 
 from service.expressions.repairs.failure import refusal
+from service.translations import say
 
-repair = refusal("empty", "empty", "Nothing is written here. If the value is zero, write 0.")
+repair = refusal("empty", "empty", say("Nothing is written here. If the value is zero, write 0."))

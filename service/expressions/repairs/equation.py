@@ -4,6 +4,7 @@ import re
 
 from service.expressions.parsing.equation import right_side
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.translations import say
 
 _EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
 _NAME = re.compile(r"\s*\\?[^\W\d]\w{0,20}\s*")
@@ -18,5 +19,5 @@ def repair(failure: Failure) -> Repair:
     left = [failure.source[a : b.start()] for a, b in zip(starts, signs, strict=False)]
     value = failure.source[signs[-1].end() :].strip()
     suggestion = value if all(map(_NAME.fullmatch, left)) else None
-    message = "This is an equation. Write only the value."
+    message = say("This is an equation. Write only the value.")
     return error(failure, "equation", message, suggestion or None, signs[0].span())

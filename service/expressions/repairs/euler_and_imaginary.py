@@ -3,11 +3,12 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
+from service.translations import paragraph, say
 
 _REASONS = {
-    "e": "Write a power of Euler's number as exp(x).",
-    "i": "There are no complex numbers here.",
-    "j": "There are no complex numbers here.",
+    "e": say("Write a power of Euler's number as exp(x)."),
+    "i": say("There are no complex numbers here."),
+    "j": say("There are no complex numbers here."),
 }
 _POWER = re.compile(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
 
@@ -18,7 +19,7 @@ def repair(failure: Failure) -> Repair:
     reason = _REASONS.get(failure.details["run"])
     if reason is None:
         return None
-    message = f"{undeclared(failure)} {reason}"
+    message = paragraph(undeclared(failure), reason)
     (start, end), suggestion = failure.span, None
     power = _POWER.match(failure.source, end) if failure.details["run"] == "e" else None
     if power is not None:

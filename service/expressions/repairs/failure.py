@@ -6,6 +6,7 @@ from typing import Final, Protocol
 
 from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError, quoted
 from service.expressions.vocabulary.symbols import Vocabulary
+from service.translations import say
 
 # The error that a rule returns, or None if it does not apply. The suggestion may be unreadable.
 Repair = ExpressionError | None
@@ -103,13 +104,8 @@ def undeclared(failure: Failure) -> str:
     """Return the sentence that the name at the failure is not declared."""
     name = quoted(failure.written)
     if failure.vocabulary.of_books:
-        return f"There is no {name} here."
-    return f"This exercise has no {name}."
-
-
-def position(span: Span) -> str:
-    """Return the place of the first character of ``span`` for a message: "character 1"."""
-    return f"character {span[0] + 1}"
+        return say("There is no {name} here.", name=name)
+    return say("This exercise has no {name}.", name=name)
 
 
 __all__ = [
@@ -118,7 +114,6 @@ __all__ = [
     "RepairRule",
     "error",
     "for_causes",
-    "position",
     "quoted",
     "refusal",
     "undeclared",

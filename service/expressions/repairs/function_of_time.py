@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
@@ -13,5 +14,5 @@ def repair(failure: Failure) -> Repair:
     without_time, count = _OF_TIME.subn("", failure.source)
     if failure.details["run"] != "t" or not count:
         return None
-    message = "Write joint variables without the time: q1, not q1(t)."
+    message = say("Write joint variables without the time: q1, not q1(t).")
     return error(failure, "function_of_time", message, without_time)

@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _INVERSE = re.compile(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
 # An exponent -1 in the source text, in any notation.
@@ -15,18 +16,22 @@ def repair(failure: Failure) -> Repair:
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]
     if not exponent.strip():
-        message = f"The function {name} has no argument. Write {name}(x)."
+        message = say("The function {name} has no argument. Write {name}(x).", name=name)
         return error(failure, "function_without_argument", message, span=place)
     if _INVERSE.match(exponent) is None:
-        message = "The power of a function is a whole number. Write another power as (sin(x))^p."
+        message = say(
+            "The power of a function is a whole number. Write another power as (sin(x))^p."
+        )
         return error(failure, "function_power", message, span=(place[1], failure.span[1]))
     end = _END.match(failure.source, place[1])
     whole = (place[0], end.end() if end else failure.span[1])
     inverse = f"a{name}" if name in {"sin", "cos", "tan"} else None
-    message = (
-        f"This has two readings. Write a{name}(x) for the inverse function, or 1/{name}(x)."
-        if inverse
-        else f"A negative power of a function has two readings. Write 1/{name}(x)."
-    )
+    message = say("A negative power of a function has two readings. Write 1/{name}(x).", name=name)
+    if inverse:
+        message = say(
+            "This has two readings. Write {inverse}(x) for the inverse function, or 1/{name}(x).",
+            inverse=inverse,
+            name=name,
+        )
     suggestion = inverse and failure.replaced(inverse, whole)
     return error(failure, "function_power", message, suggestion, whole)

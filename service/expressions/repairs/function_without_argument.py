@@ -1,6 +1,7 @@
 """A function without its argument: sin, sin(), sin * q1."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 
 @for_causes("grammar")
@@ -16,8 +17,8 @@ def repair(failure: Failure) -> Repair:
     if failure.terminal() == "MINUS" and failure.terminal(-1) == "NAME":
         start, end = failure.span[0], failure.place(-1)[1]
         suggestion = failure.replaced(f"({failure.source[start:end]})", (span[1], end))
-    message = (
-        f"{quoted(failure.source[slice(*span)])} has no argument. Write it in brackets, as in "
-        "sin(x)."
+    message = say(
+        "{function} has no argument. Write it in brackets, as in sin(x).",
+        function=quoted(failure.source[slice(*span)]),
     )
     return error(failure, "function_without_argument", message, suggestion, span)

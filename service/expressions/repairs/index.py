@@ -3,11 +3,10 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 # A whole number in brackets; then the name before it is unknown, not the index.
 _NUMBERED = re.compile(r"\[\s{0,8}\d+\s{0,8}\]")
-_PLAINLY = "Write the index without brackets."
-_COUNTING = {"[": "Python counts from 0, so", "(": "MATLAB counts from 1, so"}
 
 
 @for_causes("index", "name")
@@ -17,25 +16,58 @@ def repair(failure: Failure) -> Repair:
         return _no_number(failure)
     details, written = failure.details, quoted(failure.written)
     if details["reason"] == "mixed":
-        message = "Two ways to count joints are mixed here. Write each index without brackets."
+        message = say("Two ways to count joints are mixed here. Write each index without brackets.")
         return error(failure, "mixed_index", message)
     if details["reason"] == "no_stem":
-        message = f"{written} may be an index or a factor. Write * before a factor."
+        message = say(
+            "{written} may be an index or a factor. Write * before a factor.", written=written
+        )
         return error(failure, "index", message, failure.replaced(f"*{details['digits']}"))
     run, digits = details["run"], details["digits"]
-    message = f"{_COUNTING[details['style']]} {written} would be {run}{digits}"
     if details["reason"] == "shorthand" and run == "S":
-        message = f"{written} is a number in SymPy, and may be a sine. Write {digits} or s{digits}."
+        message = say(
+            "{written} is a number in SymPy, and may be a sine. Write {number} or s{number}.",
+            written=written,
+            number=digits,
+        )
         return error(failure, "index", message)
+    name = f"{run}{digits}"
     if details["reason"] == "shorthand":
-        message += ". Write the shorthand without brackets."
-        return error(failure, "index", message, failure.replaced(f"{run}{digits}"))
-    message += ", which is no name here. "
+        return error(failure, "index", _of_shorthand(failure, name), failure.replaced(name))
     if details["style"] == "(":
-        return error(failure, "index", message + _PLAINLY)
+        message = say(
+            "MATLAB counts from 1, so {written} would be {name}, which is no name here. "
+            "Write the index without brackets.",
+            written=written,
+            name=name,
+        )
+        return error(failure, "index", message)
     plain = f"{run}{int(digits) - 1}"
-    message += f"If you mean {plain}, write it without brackets."
+    message = say(
+        "Python counts from 0, so {written} would be {name}, which is no name here. "
+        "If you mean {meant}, write it without brackets.",
+        written=written,
+        name=name,
+        meant=plain,
+    )
     return error(failure, "index", message, failure.replaced(plain))
+
+
+def _of_shorthand(failure: Failure, name: str) -> str:
+    """Return the sentence on a shorthand whose index is in brackets: c[1], s(2)."""
+    written = quoted(failure.written)
+    if failure.details["style"] == "[":
+        return say(
+            "Python counts from 0, so {written} would be {name}. "
+            "Write the shorthand without brackets.",
+            written=written,
+            name=name,
+        )
+    return say(
+        "MATLAB counts from 1, so {written} would be {name}. Write the shorthand without brackets.",
+        written=written,
+        name=name,
+    )
 
 
 def _no_number(failure: Failure) -> Repair:
@@ -43,5 +75,5 @@ def _no_number(failure: Failure) -> Repair:
     start, end = failure.span
     if failure.source[end : end + 1] != "[" or _NUMBERED.match(failure.source, end):
         return None
-    message = f"An index must be a positive whole number. {_PLAINLY}"
+    message = say("An index must be a positive whole number. Write the index without brackets.")
     return error(failure, "index", message, span=(start, end + 1))

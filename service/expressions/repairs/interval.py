@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.translations import say
 
 _BETWEEN = re.compile(
     r"[<>≤≥∈]|\.\.+|…|\\(?:leq?|geq?|lt|gt|in)(?![A-Za-z])|\bto\b|(?<=[0-9i])\s*:\s*(?=[-0-9])"
@@ -15,5 +16,5 @@ def repair(failure: Failure) -> Repair:
     match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
     if match is None:
         return None
-    message = "This is a list or a range. Write one value."
+    message = say("This is a list or a range. Write one value.")
     return error(failure, "interval", message, span=match.span())

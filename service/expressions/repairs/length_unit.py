@@ -4,6 +4,7 @@ import re
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _UNIT = re.compile(
     r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
@@ -11,6 +12,7 @@ _UNIT = re.compile(
 _METRES = frozenset({"m", "meter", "meters", "metre", "metres"})
 _QUANTITY = re.compile(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
+_WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise.")
 
 
 @for_causes("name", "quantity")
@@ -20,21 +22,22 @@ def repair(failure: Failure) -> Repair:
         return _quantity(failure)
     if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
         return None
-    message = "Write lengths without a unit, in the unit of the exercise."
     if failure.written not in _METRES:
-        message += f" Convert {failure.written} first."
+        message = say(
+            "Write lengths without a unit, in the unit of the exercise. Convert {unit} first.",
+            unit=failure.written,
+        )
         return error(failure, "length_unit", message)
     start, end = failure.span
     number = failure.source[:start].rstrip() + failure.source[end:]
-    return error(failure, "length_unit", message, number)
+    return error(failure, "length_unit", _WITHOUT_UNIT, number)
 
 
 def _quantity(failure: Failure) -> Repair:
-    message = "Write lengths without a unit, in the unit of the exercise."
     quantity = _QUANTITY.fullmatch(failure.written)
     if quantity is None or quantity[2] not in _METRES:
-        message = (
+        message = say(
             "Write lengths without a unit, in the unit of the exercise. Convert this one first."
         )
         return error(failure, "length_unit", message)
-    return error(failure, "length_unit", message, failure.replaced(quantity[1]))
+    return error(failure, "length_unit", _WITHOUT_UNIT, failure.replaced(quantity[1]))

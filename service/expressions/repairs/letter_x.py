@@ -2,6 +2,7 @@
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 
 @for_causes("name")
@@ -11,5 +12,5 @@ def repair(failure: Failure) -> Repair:
     after = failure.source[end - len(run) + 1 :].strip()
     if run[0] not in "xX" or not after or failure.details["before"] not in OPERAND_ENDS:
         return None
-    message, span = "The letter x is a name. Write * for a product.", (start, start + 1)
+    message, span = say("The letter x is a name. Write * for a product."), (start, start + 1)
     return error(failure, "letter_x", message, failure.replaced("*", span), span)

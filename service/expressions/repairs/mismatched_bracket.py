@@ -3,7 +3,8 @@
 import re
 
 from service.expressions.characters.unicode import CLOSE
-from service.expressions.repairs.failure import Failure, Repair, error, for_causes, position, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 _COMMAND = re.compile(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
 
@@ -14,12 +15,24 @@ def repair(failure: Failure) -> Repair:
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])
     if wanted == CLOSE or failure.span[0] == failure.span[1]:
-        message = f"The {first} at {position(opener)} has no closing bracket."
+        message = say(
+            "The {bracket} at character {place} has no closing bracket.",
+            bracket=first,
+            place=opener[0] + 1,
+        )
         if command := _COMMAND.search(failure.source, 0, opener[0]):
-            message = f"Write braces after `{command[0].rstrip()}`, not {first}."
+            message = say(
+                "Write braces after `{command}`, not {bracket}.",
+                command=command[0].rstrip(),
+                bracket=first,
+            )
         return error(failure, "mismatched_bracket", message, span=opener)
-    message = (
-        f"{first} at {position(opener)} is closed by {quoted(failure.written)} at "
-        f"{position(failure.span)}. Use two brackets of one kind."
+    message = say(
+        "{opening} at character {start} is closed by {closing} at character {end}. "
+        "Use two brackets of one kind.",
+        opening=first,
+        start=opener[0] + 1,
+        closing=quoted(failure.written),
+        end=failure.span[0] + 1,
     )
     return error(failure, "mismatched_bracket", message, failure.replaced(wanted))

@@ -2,6 +2,7 @@
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.repairs.trailing_operator import OPERATORS
+from service.translations import say
 
 _BEFORE_VALUE = OPERATORS | {"LEFT", "OPEN", "COMMA", "TIGHT", "JOIN"}
 
@@ -18,5 +19,7 @@ def repair(failure: Failure) -> Repair:
         suggestion = failure.replaced("", span) if failure.terminal(3) else None
     elif before and (before not in {"LEFT", "COMMA"} or terminal not in OPERATORS):
         span = failure.place(1)
-    message = f"A value is missing next to {quoted(failure.source[slice(*span)])}."
+    message = say(
+        "A value is missing next to {written}.", written=quoted(failure.source[slice(*span)])
+    )
     return error(failure, "missing_operand", message, suggestion, span)

@@ -3,6 +3,7 @@ r"""A number before a fraction, which may be a sum or a product: 2½, 2\frac{1}{
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 _NUMBER = re.compile(r"([0-9.]+)\s*$")
 
@@ -18,8 +19,10 @@ def repair(failure: Failure) -> Repair:
         total = f"{number[1]} + {fraction}"
         alone = not number.start() and end == len(failure.source.rstrip())
         suggestion = failure.replaced(total if alone else f"({total})", (number.start(), end))
-    message = (
-        f"A number with {quoted(failure.written)} after it can mean a sum or a product. "
-        f"Write it out: + {fraction} or *({fraction})."
+    message = say(
+        "A number with {written} after it can mean a sum or a product. "
+        "Write it out: + {fraction} or *({fraction}).",
+        written=quoted(failure.written),
+        fraction=fraction,
     )
     return error(failure, "two_values", message, suggestion)

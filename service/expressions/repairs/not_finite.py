@@ -1,9 +1,10 @@
 """NaN, infinity, or a number too large for a float."""
 
 from service.expressions.repairs.failure import refusal
+from service.translations import say
 
 repair = refusal(
     "not_finite",
     "not_finite",
-    "This number is infinite, undefined or too large. Write a finite number.",
+    say("This number is infinite, undefined or too large. Write a finite number."),
 )

@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _TYPED = re.compile(r"\+\s*/\s*-")
 
@@ -13,5 +14,5 @@ def repair(failure: Failure) -> Repair:
     typed = _TYPED.search(failure.source) if failure.cause == "grammar" else None
     if failure.cause == "grammar" and typed is None:
         return None
-    message = "This sign stands for two values. Write one of them, with + or with -."
+    message = say("This sign stands for two values. Write one of them, with + or with -.")
     return error(failure, "two_values", message, span=typed and typed.span())

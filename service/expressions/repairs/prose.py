@@ -4,6 +4,7 @@ import re
 
 from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.translations import say
 
 _WORD = re.compile(r"[A-Za-zÀ-ÿ]+")
 _FORMULA = re.compile(r"[-+*/^=(){}\[\]_0-9\\]")
@@ -22,7 +23,7 @@ def repair(failure: Failure) -> Repair:
     number = _NUMBERS.get(text)
     if text not in _PHRASES and number is None and not _is_prose(failure):
         return None
-    message = "These are words. Write a number or a formula, such as 0 or theta1."
+    message = say("These are words. Write a number or a formula, such as 0 or theta1.")
     return error(failure, "prose", message, number, (0, len(failure.source)))
 
 

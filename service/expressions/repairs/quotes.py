@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.translations import say
 
 _QUOTED = re.compile(
     r"(?:\b(?:\w+\.)?(?:Symbol|symbols|sym|var|syms)\(\s*)?([\"'“”‘’])([^\"'“”‘’]*)[\"'“”‘’](\s*\))?"
@@ -17,7 +18,7 @@ def repair(failure: Failure) -> Repair:
     if match is None or _BETWEEN_DIGITS.search(failure.source):
         return None
     suggestion = _QUOTED.sub(_inside, failure.source).strip()
-    message = "Write names without quotation marks."
+    message = say("Write names without quotation marks.")
     return error(failure, "quotes", message, suggestion or None, match.span())
 
 

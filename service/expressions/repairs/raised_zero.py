@@ -4,6 +4,7 @@ import re
 
 from service.expressions.errors import Span
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _LETTER = "[oO]"
 _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
@@ -17,11 +18,11 @@ def repair(failure: Failure) -> Repair:
     span = _raised_letter(failure) if failure.cause == "name" else failure.span
     if span is None:
         return None
-    message = "Write degrees as 90° or 90deg."
+    message = say("Write degrees as 90° or 90deg.")
     if failure.details.get("power"):
-        message = (
-            "A raised 0 looks like the sign of degrees. Write 90° or 90deg for degrees, and 1 for "
-            "the power."
+        message = say(
+            "A raised 0 looks like the sign of degrees. Write 90° or 90deg for degrees, "
+            "and 1 for the power."
         )
     return error(failure, "raised_zero", message, failure.replaced("°", span), span)
 

@@ -3,6 +3,7 @@ r"""A subscript that is a formula: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂.
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _FUNCTIONS = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
 # Numbers in a subscript. In s_{1+2} they are joints; in a sum of angles they would be numbers.
@@ -26,9 +27,9 @@ def repair(failure: Failure) -> Repair:
         argument = of_joints or inside
         cosine = f" {_FUNCTIONS[letter]}({argument})"
         suggestion = failure.replaced(cosine, (start - 1, end)).strip()
-    message = (
-        "An index holds letters and digits only, as in c_{12}. "
-        "Write the cosine of a sum as cos(theta1 + theta2)."
+    message = say(
+        "An index holds letters and digits only, as in c_{{12}}. Write the cosine of "
+        "a sum as cos(theta1 + theta2)."
     )
     return error(failure, "subscript", message, suggestion)
 

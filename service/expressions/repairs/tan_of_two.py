@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 _TAN2 = re.compile(
     r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
@@ -19,5 +20,5 @@ def repair(failure: Failure) -> Repair:
         return None
     if failure.cause == "grammar" and failure.terminal() != "COMMA":
         return None
-    message, span = "Write the angle of a point (x, y) as atan2(y, x).", match.span()
+    message, span = say("Write the angle of a point (x, y) as atan2(y, x)."), match.span()
     return error(failure, "tan_of_two", message, failure.replaced("atan2", span), span)

@@ -2,6 +2,7 @@
 
 from service.expressions.parsing.lexing.tokens import END
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
 
@@ -13,5 +14,7 @@ def repair(failure: Failure) -> Repair:
         return None
     start, end = span = failure.place(1)
     operator, before = failure.source[start:end], failure.source[:start].rstrip()
-    message = f"Something is missing after the {quoted(operator)} at the end."
+    message = say(
+        "Something is missing after the {operator} at the end.", operator=quoted(operator)
+    )
     return error(failure, "trailing_operator", message, before or None, span)

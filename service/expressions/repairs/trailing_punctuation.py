@@ -1,6 +1,7 @@
 """A full stop or a comma at the end, as after a formula in a sentence."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 
 @for_causes("grammar", "character")
@@ -10,6 +11,7 @@ def repair(failure: Failure) -> Repair:
     kept = text.rstrip(".,: ")
     if text[-1:] not in {".", ",", ":"} or not kept or failure.span[0] < len(kept):
         return None
-    message, span = f"Leave out the {quoted(text[-1])} at the end.", (len(kept), len(text))
+    message = say("Leave out the {mark} at the end.", mark=quoted(text[-1]))
+    span = (len(kept), len(text))
     suggestion = failure.replaced("", span).rstrip()
     return error(failure, "trailing_punctuation", message, suggestion, span)

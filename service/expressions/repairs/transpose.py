@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 # A mark after a number may be its unit, such as minutes of an angle, so it must not be removed.
 _NUMBER = re.compile(r"(?<![\w.])[0-9.]+\s*$")
@@ -19,7 +20,9 @@ def repair(failure: Failure) -> Repair:
             return None
         span = match.span()
     mark = quoted(failure.source[slice(*span)].strip())
-    message = f"A single value has no transpose and no derivative here. Leave out {mark}."
+    message = say(
+        "A single value has no transpose and no derivative here. Leave out {mark}.", mark=mark
+    )
     before, after = failure.source[: span[0]], failure.source[span[1] :]
     if _NUMBER.search(before) or (before[-1:].isdigit() and after[:1].isdigit()):
         return error(failure, "transpose", message, None, span)

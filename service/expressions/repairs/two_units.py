@@ -1,5 +1,6 @@
 """A value with two units: 90 deg deg, deg(90°)."""
 
 from service.expressions.repairs.failure import refusal
+from service.translations import say
 
-repair = refusal("two_units", "two_units", "This has two units. Write one.")
+repair = refusal("two_units", "two_units", say("This has two units. Write one."))

@@ -1,6 +1,7 @@
 """Two values instead of one: ``2 3``, ``q1, q2``, or a second line."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import say
 
 
 @for_causes("values", "grammar")
@@ -9,5 +10,5 @@ def repair(failure: Failure) -> Repair:
     start, end = failure.span
     if failure.terminal(1) and failure.terminal() != "COMMA":
         start = failure.place(1)[0]
-    message = "Two values stand side by side. Write one value, or an operator between them."
+    message = say("Two values stand side by side. Write one value, or an operator between them.")
     return error(failure, "two_values", message, span=(start, end))

@@ -3,7 +3,8 @@
 from service.expressions.errors import Span
 from service.expressions.parsing.lexing.brackets import PARTNERS
 from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS
-from service.expressions.repairs.failure import Failure, Repair, error, for_causes, position, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}
 
@@ -36,6 +37,15 @@ def _opened(failure: Failure) -> list[Span]:
 
 def _error(failure: Failure, span: Span, suggestion: str) -> Repair:
     bracket = failure.source[slice(*span)]
-    partner = "opening" if bracket in {")", "]", "}"} else "closing"
-    message = f"The {quoted(bracket)} at {position(span)} has no {partner} bracket."
+    message = say(
+        "The {bracket} at character {place} has no closing bracket.",
+        bracket=quoted(bracket),
+        place=span[0] + 1,
+    )
+    if bracket in {")", "]", "}"}:
+        message = say(
+            "The {bracket} at character {place} has no opening bracket.",
+            bracket=quoted(bracket),
+            place=span[0] + 1,
+        )
     return error(failure, "unbalanced_bracket", message, suggestion, span)

@@ -3,6 +3,7 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 _UNITS = {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}
 _IN_DEGREES = {"°", "deg", "degree", "degrees"}
@@ -18,7 +19,7 @@ _BRACKETS = re.compile(r"[(\[{|\\]")
 def repair(failure: Failure) -> Repair:
     """Ask for the unit after the number."""
     name = quoted(failure.source[slice(*failure.details["variable"])])
-    message = f"A unit belongs after a number. Write it there, and not after {name}."
+    message = say("A unit belongs after a number. Write it there, and not after {name}.", name=name)
     return error(failure, "unit_on_variable", message, _repaired(failure))
 
 

@@ -2,6 +2,7 @@
 
 from service.expressions.characters.latex_commands import known_prefix
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.translations import say
 
 
 @for_causes("command", "argument")
@@ -10,12 +11,16 @@ def repair(failure: Failure) -> Repair:
     name = failure.details["name"]
     if failure.cause == "argument":
         example = r"\frac{a}{b}" if "frac" in name else rf"{name.strip()}{{a}}"
-        message = f"The command {quoted(name.strip())} has no argument. Write it as `{example}`."
+        message = say(
+            "The command {command} has no argument. Write it as `{example}`.",
+            command=quoted(name.strip()),
+            example=example,
+        )
         return error(failure, "missing_operand", message)
     prefix = known_prefix(name)
     suggestion = prefix and failure.replaced(f"\\{prefix} {name[len(prefix) :]}")
-    message = (
-        f"The command {quoted(failure.written)} is not known. Write it in plain text: (a)/(b), "
-        "sqrt(x), cos(q1)."
+    message = say(
+        "The command {command} is not known. Write it in plain text: (a)/(b), sqrt(x), cos(q1).",
+        command=quoted(failure.written),
     )
     return error(failure, "unknown_command", message, suggestion)

@@ -11,6 +11,7 @@ from service.expressions.repairs.failure import (
     undeclared,
 )
 from service.expressions.vocabulary.functions import ARITY, REFUSED
+from service.translations import listed, paragraph, say
 
 _RENAMED = {
     "tan2": "atan2", "arctg2": "atan2", "artan2": "atan2", "atang2": "atan2", "atan22": "atan2",
@@ -30,21 +31,24 @@ def repair(failure: Failure) -> Repair:
     name = failure.details["run"].replace("_", "")
     if name in REFUSED:
         written = quoted(failure.written)
-        message = f"{written} is not needed here. The functions are {_listed()}."
+        message = say(
+            "{written} is not needed here. The functions are {functions}.",
+            written=written,
+            functions=listed(list(ARITY)),
+        )
         return error(failure, "unknown_function", message)
     run = failure.details["run"]
     if len(run) == 1 and _OF_NUMBERS.match(failure.source, failure.span[1]):
         if not failure.vocabulary.joints:
             return None
-        message = f"{undeclared(failure)} Write the shorthand without brackets, as in c12."
-        return error(failure, "unknown_function", message)
+        advice = say("Write the shorthand without brackets, as in c12.")
+        return error(failure, "unknown_function", paragraph(undeclared(failure), advice))
     renamed = _RENAMED.get(run)
     if renamed is None or not failure.details["called"]:
         return None
-    message = f"{quoted(failure.written)} is no function here. Did you mean {renamed}?"
+    message = say(
+        "{written} is no function here. Did you mean {function}?",
+        written=quoted(failure.written),
+        function=renamed,
+    )
     return error(failure, "unknown_function", message, failure.replaced(renamed))
-
-
-def _listed() -> str:
-    *most, last = ARITY
-    return f"{', '.join(most)} and {last}"

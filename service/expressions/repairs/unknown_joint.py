@@ -8,6 +8,7 @@ from service.expressions.parsing.lexing.words import split
 from service.expressions.printing.symbol_names import symbol_latex
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
+from service.translations import paragraph, say
 
 _JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
 _STEMS = frozenset({"q", "theta", "θ", "th"})
@@ -29,13 +30,13 @@ def repair(failure: Failure) -> Repair:
     index, span = match["index"], _place(failure, bool(match["rest"]))
     written = failure.source[slice(*span)]
     suggestion = None
-    message = f"{quoted(written)}: {_reason(int(index[:4]), vocabulary)}."
+    message = _reason(quoted(written), int(index[:4]), vocabulary)
     variable = vocabulary.turning.get(int(index[:4]))
     if variable is not None:
         suggestion = failure.replaced(variable.name, span)
     total = _total(index, vocabulary, latex="\\" in written)
     if total is not None:
-        message += f" For the sum of angles write {total}."
+        message = paragraph(message, say("For the sum of angles write {total}.", total=total))
         start, end = span
         alone = failure.source[start - 1 : start] == "(" and failure.source[end : end + 1] == ")"
         suggestion = failure.replaced(total if alone else f"({total})", span)
@@ -63,10 +64,25 @@ def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
     return " + ".join(symbol_latex(part) if latex else part.name for part in turning)
 
 
-def _reason(joint: int, vocabulary: Vocabulary) -> str:
+def _reason(written: str, joint: int, vocabulary: Vocabulary) -> str:
     if joint in vocabulary.sliding:
-        return f"joint {joint} slides, and its variable is {vocabulary.sliding[joint].name}"
+        return say(
+            "{written}: joint {joint} slides, and its variable is {variable}.",
+            written=written,
+            joint=joint,
+            variable=vocabulary.sliding[joint].name,
+        )
     if joint in vocabulary.turning:
-        return f"joint {joint}'s variable is {vocabulary.turning[joint].name} here"
-    known = vocabulary.joints
-    return f"there is no joint {joint}; this robot's joints are {known[0]} to {known[-1]}"
+        return say(
+            "{written}: joint {joint}'s variable is {variable} here.",
+            written=written,
+            joint=joint,
+            variable=vocabulary.turning[joint].name,
+        )
+    return say(
+        "{written}: there is no joint {joint}; this robot's joints are {first} to {last}.",
+        written=written,
+        joint=joint,
+        first=vocabulary.joints[0],
+        last=vocabulary.joints[-1],
+    )

@@ -8,6 +8,7 @@ from service.expressions.parsing.lexing.words import Piece, split
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, normal_form
+from service.translations import paragraph, say
 
 _INDEXED = re.compile(r"([^0-9]+)[0-9]+")
 _STEM = re.compile(r"[^0-9_]+")
@@ -23,13 +24,14 @@ def repair(failure: Failure) -> Repair:
     run, vocabulary = failure.details["run"], failure.vocabulary
     message = undeclared(failure)
     if (product := _product(run, vocabulary)) is not None:
-        message += f" For a product, write {product}."
+        message = paragraph(message, say("For a product, write {product}.", product=product))
         return error(failure, "unknown_symbol", message)
     known = nearest(run, vocabulary, failure.details["called"])
     if known is not None:
-        message += f" Did you mean {known}?"
+        message = paragraph(message, say("Did you mean {name}?", name=known))
         return error(failure, "unknown_symbol", message, failure.replaced(known))
-    return error(failure, "unknown_symbol", message + _listed(normal_form(run), vocabulary))
+    message = paragraph(message, _names(normal_form(run), vocabulary))
+    return error(failure, "unknown_symbol", message)
 
 
 def _product(run: str, vocabulary: Vocabulary) -> str | None:
@@ -43,22 +45,41 @@ def _written(piece: Piece, run: str) -> str:
     return piece.symbols[0].name if piece.kind == "symbol" else run[piece.start : piece.end]
 
 
-def _listed(name: str, vocabulary: Vocabulary) -> str:
+def _names(name: str, vocabulary: Vocabulary) -> str:
     """Return a sentence that lists the names with the same letter, of the same kind, or all."""
     siblings = _siblings(name, vocabulary)
-    has, its = ("There are", "The") if vocabulary.of_books else ("It has", "Its")
     if name in _OF_JOINTS:
         siblings = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]
     if siblings:
-        return f" {has} {_joined(siblings)}."
+        return _all_names(siblings, vocabulary)
     kind = _kind(name)
     named = [symbol for symbol in vocabulary.symbols if symbol.kind == kind]
     constants = [symbol for symbol in named if symbol.joint is None]
-    if constants:
-        return f" {its} {kind}s are {_joined(constants)}."
-    if kind is not None and not named:
-        return f" {has} no {kind}s."
-    return f" {has} {_joined(list(vocabulary.symbols))}." if vocabulary.symbols else ""
+    if kind is not None and (constants or not (named or vocabulary.of_books)):
+        return _names_of_kind(kind, constants, vocabulary)
+    return _all_names(list(vocabulary.symbols), vocabulary) if vocabulary.symbols else ""
+
+
+def _all_names(symbols: list[Symbol], vocabulary: Vocabulary) -> str:
+    names = _joined(symbols)
+    if vocabulary.of_books:
+        # Translators: names of variables, after "There is no `x` here."
+        return say("There are {names}.", names=names)
+    # Translators: names of variables, after "This exercise has no `x`."
+    return say("It has {names}.", names=names)
+
+
+def _names_of_kind(kind: Kind, constants: list[Symbol], vocabulary: Vocabulary) -> str:
+    """Return a sentence on the lengths or the angles that are not joint variables."""
+    names = _joined(constants)
+    if vocabulary.of_books:
+        if kind == "length":
+            return say("The lengths are {names}.", names=names)
+        return say("The angles are {names}.", names=names)
+    # Translators: "its" and "it" are the exercise, as in "This exercise has no `x`."
+    if kind == "length":
+        return say("Its lengths are {names}.", names=names) if names else say("It has no lengths.")
+    return say("Its angles are {names}.", names=names) if names else say("It has no angles.")
 
 
 def _siblings(name: str, vocabulary: Vocabulary) -> list[Symbol]:

@@ -2,6 +2,7 @@
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.repairs.nearest_name import other_case
+from service.translations import say
 
 
 @for_causes("name")
@@ -10,8 +11,9 @@ def repair(failure: Failure) -> Repair:
     known = other_case(failure.details["run"], failure.vocabulary, failure.details["called"])
     if known is None:
         return None
-    message = (
-        f"{quoted(failure.written)} is no name here, but {known} is: "
-        "capital and small letters differ."
+    message = say(
+        "{written} is no name here, but {known} is: capital and small letters differ.",
+        written=quoted(failure.written),
+        known=known,
     )
     return error(failure, "wrong_case", message, failure.replaced(known))

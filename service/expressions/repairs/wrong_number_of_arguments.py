@@ -1,7 +1,7 @@
 """A wrong number of arguments: atan2 of one value, atan(y, x), or cos(0,5) with a decimal comma."""
 
-from service.expressions.errors import counted
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.translations import paragraph, say
 
 
 @for_causes("arguments")
@@ -10,17 +10,37 @@ def repair(failure: Failure) -> Repair:
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]
     if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
-        message = "A comma separates values. Write one number with a point."
-        return error(failure, "decimal_comma", message, point, (places[0][1], places[1][0]))
-    message = f"The function {name} takes {counted(wanted)}, and {counted(len(places))} stand here."
+        comma = say("A comma separates values. Write one number with a point.")
+        return error(failure, "decimal_comma", comma, point, (places[0][1], places[1][0]))
+    message = _counted(name, wanted, len(places))
     suggestion = None
-    if len(places) == 1:
-        message = f"The function {name} takes {counted(wanted)}, and one stands here."
     if name == "atan" and len(places) == 2:
         suggestion = failure.replaced("atan2", failure.details["function"])
     if name == "atan2":
-        message += " Write atan2(y, x)."
+        message = paragraph(message, say("Write atan2(y, x)."))
     return error(failure, "wrong_number_of_arguments", message, suggestion)
+
+
+def _counted(name: str, wanted: int, found: int) -> str:
+    """Return the sentence that compares the number of arguments with that of the function."""
+    if wanted == 1:
+        return say(
+            "The function {name} takes one value, and {found} values stand here.",
+            name=name,
+            found=found,
+        )
+    if found == 1:
+        return say(
+            "The function {name} takes {wanted} values, and one stands here.",
+            name=name,
+            wanted=wanted,
+        )
+    return say(
+        "The function {name} takes {wanted} values, and {found} values stand here.",
+        name=name,
+        wanted=wanted,
+        found=found,
+    )
 
 
 def _with_points(failure: Failure) -> str | None:

@@ -26,6 +26,7 @@ from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.report import Verdict
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 # Notes that a table does not show: textbooks mark every joint variable with a star, and six notes
 # on that would hide the others.
@@ -163,13 +164,13 @@ def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
 
 _TOO_MUCH = reading_error(
     "too_long",
-    "The answers are too long. This place and all after it are not read.",
+    say("The answers are too long. This place and all after it are not read."),
 )
 
 MISSING = Entry(
     None,
     Verdict.MISSING,
-    (reading_error("missing", "Nothing is written here; if the value is zero, write 0."),),
+    (reading_error("missing", say("Nothing is written here; if the value is zero, write 0.")),),
 )
 
 # Several entries may be unreadable for one reason: the first has the message, the others are this.
@@ -182,9 +183,11 @@ def unreadable(finding: Finding) -> Entry:
 
 
 def _wrong_type(raw: object) -> Finding:
-    message = "Write one number or one formula here."
+    message = say("Write one number or one formula here.")
     if isinstance(raw, bool):
-        message = f"The word {str(raw).lower()} stands here. Write a number or a formula."
+        message = say(
+            "The word {word} stands here. Write a number or a formula.", word=str(raw).lower()
+        )
     return reading_error("wrong_type", message)
 
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import reduce
 from typing import Final
 
 from service.grading.feedback import Finding
@@ -19,6 +20,7 @@ from service.grids import (
     read_grids,
     read_robot,
 )
+from service.translations import say
 
 # An index in square brackets: theta[1], l[2].
 _INDEX: Final = re.compile(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
@@ -67,8 +69,13 @@ def _with_indices_from_one(text: str, reader: Reader) -> str:
         name, index = found[0][1].rstrip("_"), int(found[0][2])
         raise GridError(
             "ambiguous_index",
-            f"`{name}[{index}]` is joint {index + 1} in Python and joint {index} in Maple. "
-            f"Write {name}{index + 1} or {name}{index}.",
+            say(
+                "`{name}[{index}]` is joint {next} in Python and joint {index} in Maple. "
+                "Write {name}{next} or {name}{index}.",
+                name=name,
+                index=index,
+                next=index + 1,
+            ),
             found[0].span(),
         )
     return _INDEX.sub(r"\1(\2)", text)
@@ -78,7 +85,9 @@ def _charge(text: str, reader: Reader) -> None:
     if len(text) <= GRID_LIMITS.characters:
         reader.budget.pasted -= len(text)
     if reader.budget.pasted < 0:
-        message = f"The pasted texts have more than {MAX_PASTED:,} characters together."
+        message = say(
+            "The pasted texts have more than {most:,} characters together.", most=MAX_PASTED
+        )
         raise GridError("too_long", message, (0, len(text)))
 
 
@@ -108,4 +117,12 @@ def quoted(text: str) -> str:
     """Return a cell's text, shortened and in quotes, for use in a message."""
     shown = "".join(filter(str.isprintable, text))
     short = shown if len(shown) <= 30 else shown[:29] + "…"
-    return f"`{short}`" if shown == text else f"`{short}` (with an invisible character in it)"
+    if shown == text:
+        return f"`{short}`"
+    # Translators: the text of a cell, as a part of other sentences.
+    return say("`{text}` (with an invisible character in it)", text=short)
+
+
+def side_by_side(names: Sequence[str]) -> str:
+    """Return quoted names with commas between them."""
+    return reduce(lambda first, second: say("{first}, {second}", first=first, second=second), names)

@@ -23,6 +23,7 @@ from service.grading.reading.tables.pasted_table import entries_of, read_pasted_
 from service.grading.work_budget import WorkBudget
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
+from service.translations import say
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,4 +265,4 @@ def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
 _TERM: Final = re.compile(
     r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
 )
-_WORK_LIMIT: Final = "The formulas are too long together: some are shown as text only."
+_WORK_LIMIT: Final = say("The formulas are too long together: some are shown as text only.")

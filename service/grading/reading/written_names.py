@@ -12,6 +12,7 @@ from service.expressions import LIMITS, LeftSide, Vocabulary, left_side
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry
 from service.grading.reading.pasted import quoted
+from service.translations import say
 
 # The places that a name may have, counted from 0; None if the name does not imply a place.
 Places: TypeAlias = tuple[int, ...] | None
@@ -86,16 +87,18 @@ def _is_written(value: object) -> bool:
 
 def misnamed_value(name: LeftSide, asked: str) -> Finding:
     """Return the finding that a value has another name than the expected one."""
-    message = f"This is named {quoted(name.name)}, but {asked} is asked for here."
+    message = say(
+        "This is named {name}, but {asked} is asked for here.", name=quoted(name.name), asked=asked
+    )
     return reading_error("misnamed_value", message, name.span)
 
 
-def with_order_note(entries: Sequence[Entry], what: str) -> tuple[Entry, ...]:
-    """Return reordered entries with a note on the order in place of the notes on equations.
+def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]:
+    """Return reordered entries with the note ``message`` in place of the notes on equations.
 
     The note has no span, so that the report shows it once for all entries.
     """
-    note = reading_note("ordered_by_names", f"{what} were ordered by their names.")
+    note = reading_note("ordered_by_names", message)
     return tuple(
         replace(
             entry,

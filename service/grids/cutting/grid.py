@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from service.expressions.errors import Note, Span, TextError
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.source_text import SourceText
+from service.translations import say
 
 GridCell = SourceText
 Rows = Sequence[Sequence[GridCell]]
@@ -27,8 +28,15 @@ class Grid:
     def size(self) -> str:
         """The size as text: ``4 × 4``, or ``3 × 2 to 4`` if the rows differ in length."""
         shortest, longest = min(map(len, self.rows)), max(map(len, self.rows))
-        columns = str(longest) if shortest == longest else f"{shortest} to {longest}"
-        return f"{len(self.rows)} × {columns}"
+        if shortest == longest:
+            return f"{len(self.rows)} × {longest}"
+        # Translators: the size of a matrix whose rows have different lengths.
+        return say(
+            "{rows} × {shortest} to {longest}",
+            rows=len(self.rows),
+            shortest=shortest,
+            longest=longest,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,14 +53,24 @@ class GridFormat:
 
 def too_many_matrices(whole: Span) -> GridError:
     """Return the error for a text with more matrices than an arm may have links."""
-    message = f"A pasted text has at most {GRID_LIMITS.rows} matrices; yours has more."
+    message = say(
+        "A pasted text has at most {most} matrices; yours has more.", most=GRID_LIMITS.rows
+    )
     return GridError("too_many_matrices", message, whole)
 
 
-def too_many_rows(found: str, whole: Span) -> GridError:
-    """Return the error for a table with too many rows; ``found`` is "14 in all" or "more"."""
-    most = f"A table has at most {GRID_LIMITS.rows - 1} rows below a header"
-    return GridError("too_many_rows", f"{most}; yours has {found}.", whole)
+def too_many_rows(whole: Span, found: int | None = None) -> GridError:
+    """Return the error for a table with too many rows; ``found`` is their number if it is known."""
+    most = GRID_LIMITS.rows - 1
+    if found is None:
+        message = say("A table has at most {most} rows below a header; yours has more.", most=most)
+    else:
+        message = say(
+            "A table has at most {most} rows below a header; yours has {found} in all.",
+            most=most,
+            found=found,
+        )
+    return GridError("too_many_rows", message, whole)
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
@@ -63,13 +81,17 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
     tidied = [[tidy(cell) for cell in row] for row in rows]
     filled = [row for row in tidied if any(cell.text for cell in row)]
     if not filled:
-        raise GridError("empty", "All cells of this table or matrix are empty.", whole)
+        raise GridError("empty", say("All cells of this table or matrix are empty."), whole)
     filled = _without_empty_columns(filled)
     if len(filled) > GRID_LIMITS.rows:
-        raise too_many_rows(f"{len(filled)} in all", whole)
+        raise too_many_rows(whole, len(filled))
     widest = max(map(len, filled))
     if widest > GRID_LIMITS.columns:
-        message = f"A table has at most {GRID_LIMITS.columns} columns; yours has {widest}."
+        message = say(
+            "A table has at most {most} columns; yours has {found}.",
+            most=GRID_LIMITS.columns,
+            found=widest,
+        )
         raise GridError("too_many_columns", message, whole)
     return Grid(name, tuple(map(tuple, filled)), tuple(notes))
 

@@ -7,6 +7,7 @@ from typing import Final
 
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
+from service.translations import say
 
 CLOSES: Final = {"[": "]", "(": ")", "{": "}"}
 _OPENS: Final = {closer: opener for opener, closer in CLOSES.items()}
@@ -53,7 +54,9 @@ def strict_pairs(source: SourceText) -> dict[int, int]:
         if letter in _STRINGS and (i == 0 or text[i - 1].isspace() or text[i - 1] in "[({,;:="):
             string = _STRINGS[letter].match(text, i)
             if string is None:
-                message = "This text has no quotation mark at its end. Add it, or delete this one."
+                message = say(
+                    "This text has no quotation mark at its end. Add it, or delete this one."
+                )
                 raise GridError("unclosed_quote", message, source.span(i, i + 1))
             found[i] = at = string.end()
         elif letter in CLOSES:
@@ -70,15 +73,27 @@ def strict_pairs(source: SourceText) -> dict[int, int]:
 def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
     bracket = source.text[at]
     if bracket in CLOSES:
-        message = f"This {bracket} is never closed; {CLOSES[bracket]} is missing."
+        message = say(
+            "This {bracket} is never closed; {partner} is missing.",
+            bracket=bracket,
+            partner=CLOSES[bracket],
+        )
     elif stack:
         open_one = source.text[stack[-1]]
-        message = (
-            f"This {bracket} does not fit the {open_one} at character "
-            f"{source.span(stack[-1])[0] + 1}; {CLOSES[open_one]} was expected."
+        message = say(
+            "This {bracket} does not fit the {opening} at character {place}; "
+            "{wanted} was expected.",
+            bracket=bracket,
+            opening=open_one,
+            place=source.span(stack[-1])[0] + 1,
+            wanted=CLOSES[open_one],
         )
     else:
-        message = f"This {bracket} was never opened; {_OPENS[bracket]} is missing."
+        message = say(
+            "This {bracket} was never opened; {partner} is missing.",
+            bracket=bracket,
+            partner=_OPENS[bracket],
+        )
     return GridError("unbalanced_bracket", message, source.span(at, at + 1))
 
 

@@ -4,11 +4,12 @@ import itertools
 import re
 from typing import Final
 
-from service.expressions.errors import Note, counted
+from service.expressions.errors import Note
 from service.grids.cutting.blanks import continues, split_blanks
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.data_frame import with_row_numbers
+from service.translations import say
 
 _GAP: Final = re.compile(r"[^\S\r\n]{2,}")
 _DASHES: Final = frozenset("-=_─━═")
@@ -35,12 +36,18 @@ def _parse(source: SourceText) -> Grid:
     if len(readings) == 2 and list(map(len, wide)) != list(map(len, narrow)):
         raise GridError(
             "ambiguous_columns",
-            f"Each line may have {len(wide[0])} or {len(narrow[0])} values: a space may separate "
-            "two values or stand inside one. Write commas between the values.",
+            say(
+                "Each line may have {few} or {many} values: a space may separate two values or "
+                "stand inside one. Write commas between the values.",
+                few=len(wide[0]),
+                many=len(narrow[0]),
+            ),
             lines[0].whole,
         )
     first = readings[0][0]
-    message = f"Spaces were read as separators: each line has {len(first)} values."
+    message = say(
+        "Spaces were read as separators: each line has {number} values.", number=len(first)
+    )
     note = Note("blank_columns", message, first[0].whole)
     return grid("columns", readings[0], source.whole, [note])
 
@@ -62,12 +69,16 @@ def _is_table(rows: list[list[SourceText]]) -> bool:
 
 def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
     at = next((i for i, row in enumerate(rows) if len(row) != len(rows[0])), 0)
-    return GridError(
-        "ambiguous_columns",
-        f"Line 1 seems to have {counted(len(rows[0]))}, line {at + 1} seems to have "
-        f"{counted(len(rows[at]))}. Write commas between the values.",
-        lines[at].whole,
-    )
+    message = say("Each line seems to have one value. Write commas between the values.")
+    if at:
+        message = say(
+            "Lines 1 and {line} seem to have different numbers of values: {first} and {other}. "
+            "Write commas between the values.",
+            line=at + 1,
+            first=len(rows[0]),
+            other=len(rows[at]),
+        )
+    return GridError("ambiguous_columns", message, lines[at].whole)
 
 
 FORMAT: Final = GridFormat(_matches, _parse)

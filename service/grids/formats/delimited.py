@@ -5,6 +5,7 @@ import re
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.pairs import pairs
 from service.grids.cutting.source_text import SourceText, joined
+from service.translations import say
 
 _LINE_ENDS = "\r\n\x85\u2028\u2029"
 
@@ -63,7 +64,7 @@ def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int
     while True:
         close = text.find('"', i)
         if close < 0:
-            message = "This cell has no quotation mark at its end. Add it, or delete this one."
+            message = say("This cell has no quotation mark at its end. Add it, or delete this one.")
             raise GridError("unclosed_quote", message, source.span(start, start + 1))
         if text[close + 1 : close + 2] != '"':
             break
@@ -74,7 +75,7 @@ def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int
     while end < len(text) and text[end].isspace() and text[end] not in stops:
         end += 1
     if end < len(text) and text[end] not in stops:
-        message = (
+        message = say(
             'The cell must end after this quotation mark. Delete the marks, or write "" inside.'
         )
         raise GridError("stray_quote", message, source.span(close, close + 1))

@@ -11,6 +11,7 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
+from service.translations import say
 
 _START: Final = re.compile(r"<(?:table|tbody|thead|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
 _NAME: Final = re.compile(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
@@ -75,7 +76,7 @@ def _after_tag(source: SourceText, start: int) -> int:
             if i < 0:
                 break
         i += 1
-    message = "This tag does not end; > is missing."
+    message = say("This tag does not end; > is missing.")
     raise GridError("unclosed_tag", message, source.span(start, start + 1))
 
 
@@ -102,7 +103,7 @@ def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int
     elif name == "br":
         table.pieces.append(source.cut(start, start + 1).spelled(" "))
     elif name not in _STYLING and name not in _LAYOUT and table.cell_at is not None:
-        message = f"<{name}> cannot be read in a cell. Type its content as plain text."
+        message = say("<{tag}> cannot be read in a cell. Type its content as plain text.", tag=name)
         raise GridError("unread_tag", message, place)
     return end
 
@@ -119,10 +120,10 @@ def _table_tag(table: _Table, place: tuple[int, int], *, closes: bool) -> None:
     table.depth += 1
     table.tables += 1
     if table.depth > 1:
-        message = "One table inside another cannot be read. Write all entries in one."
+        message = say("One table inside another cannot be read. Write all entries in one.")
         raise GridError("nested_table", message, place)
     if table.tables > 1:
-        raise GridError("two_tables", "There are two tables here; paste one of them.", place)
+        raise GridError("two_tables", say("There are two tables here; paste one of them."), place)
 
 
 def _refuse_span(source: SourceText, start: int, end: int) -> None:
@@ -130,8 +131,10 @@ def _refuse_span(source: SourceText, start: int, end: int) -> None:
         if span[1] != "1":
             raise GridError(
                 "spanning_cell",
-                "A cell over several columns or rows cannot be read; "
-                "write each value in a cell of its own.",
+                say(
+                    "A cell over several columns or rows cannot be read; write each value in a "
+                    "cell of its own."
+                ),
                 source.span(*span.span()),
             )
 

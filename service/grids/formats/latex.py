@@ -6,6 +6,7 @@ from typing import Final
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import text_around
+from service.translations import say
 
 # The number of arguments in braces after \begin{…}.
 ARGUMENTS: Final = {
@@ -105,7 +106,9 @@ def _body(source: SourceText) -> SourceText:
         return source.cut(plain.end() + 1, end - 1)
     if not marks:
         if other := next((mark for mark in BEGIN.finditer(text) if "matrix" in mark[2]), None):
-            message = "This is a determinant or another form that is no plain matrix; use bmatrix."
+            message = say(
+                "This is a determinant or another form that is no plain matrix; use bmatrix."
+            )
             raise GridError("not_a_matrix", message, source.span(*other.span()))
         return source
     first = marks[0]
@@ -115,7 +118,9 @@ def _body(source: SourceText) -> SourceText:
         raise never_ended(source, first)
     last = marks[1]
     if last[1] == "begin":
-        message = "One matrix or table inside another cannot be read. Write all entries in one."
+        message = say(
+            "One matrix or table inside another cannot be read. Write all entries in one."
+        )
         raise GridError("nested_table", message, source.span(*last.span()))
     if last[2] != first[2]:
         raise other_end(source, first, last)
@@ -126,19 +131,27 @@ def _body(source: SourceText) -> SourceText:
 
 def never_begun(source: SourceText, mark: re.Match[str]) -> GridError:
     r"""Return the error for an ``\end{…}`` without its ``\begin{…}``."""
-    message = f"This ends a {mark[2]} that has no beginning. Put \\begin{{{mark[2]}}} in front."
+    message = say(
+        "This ends a {environment} that has no beginning. Put {command} in front.",
+        environment=mark[2],
+        command=rf"\begin{{{mark[2]}}}",
+    )
     return GridError("unbalanced_environment", message, source.span(*mark.span()))
 
 
 def never_ended(source: SourceText, mark: re.Match[str]) -> GridError:
     r"""Return the error for a ``\begin{…}`` without its ``\end{…}``."""
-    message = f"This {mark[2]} is never ended; \\end{{{mark[2]}}} is missing."
+    message = say(
+        "This {environment} is never ended; {command} is missing.",
+        environment=mark[2],
+        command=rf"\end{{{mark[2]}}}",
+    )
     return GridError("unbalanced_environment", message, source.span(*mark.span()))
 
 
 def other_end(source: SourceText, begin: re.Match[str], end: re.Match[str]) -> GridError:
     r"""Return the error for an ``\end{…}`` that names another environment than ``\begin{…}``."""
-    message = f"This does not fit \\begin{{{begin[2]}}}."
+    message = say("This does not fit {command}.", command=rf"\begin{{{begin[2]}}}")
     return GridError("unbalanced_environment", message, source.span(*end.span()))
 
 
@@ -193,7 +206,9 @@ def after_brace(source: SourceText, start: int) -> int:
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)
         if depth == 0:
             return i + 1
-    raise GridError("unbalanced_bracket", "This { is never closed.", source.span(start, start + 1))
+    raise GridError(
+        "unbalanced_bracket", say("This {{ is never closed."), source.span(start, start + 1)
+    )
 
 
 def _rows(body: SourceText) -> list[list[SourceText]]:
@@ -218,8 +233,11 @@ def _rows(body: SourceText) -> list[list[SourceText]]:
         elif word in _SPANNING:
             raise GridError(
                 "spanning_cell",
-                f"A cell over several columns or rows ({word}) cannot be read; "
-                "write each value in a cell of its own.",
+                say(
+                    "A cell over several columns or rows ({command}) cannot be read; "
+                    "write each value in a cell of its own.",
+                    command=word,
+                ),
                 body.span(at, i),
             )
         elif depth == 0 and word == "&":

@@ -5,6 +5,7 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
+from service.translations import say
 
 _BARS: Final = "|│┃║"
 _BAR: Final = re.compile(rf"[{_BARS}]")
@@ -25,7 +26,7 @@ def _parse(source: SourceText) -> Grid:
             continue
         cells = _cells(line)
         if len(cells) == 1:
-            message = "This line of the table has no |; paste the table alone."
+            message = say("This line of the table has no |; paste the table alone.")
             raise GridError("text_around", message, line.whole)
         rows.append(cells)
     return grid("Markdown", rows, source.whole)

@@ -9,6 +9,7 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
+from service.translations import say
 
 
 def _matches(text: str) -> bool:
@@ -21,8 +22,10 @@ def _parse(source: SourceText) -> Grid:
     if len(filled) == 1 and any(_holds_several(cell.text.strip()) for cell in filled[0]):
         raise GridError(
             "ambiguous_separators",
-            "The semicolons here may separate rows or values. Put [ ] around a MATLAB matrix, or "
-            "each row on a line of its own.",
+            say(
+                "The semicolons here may separate rows or values. Put [ ] around a MATLAB "
+                "matrix, or each row on a line of its own."
+            ),
             source.whole,
         )
     return grid("CSV with semicolons", rows, source.whole)

@@ -7,6 +7,7 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import lists, matlab
 from service.grids.scripts.program_text import begins_as_matrix, text_around, unwrap
+from service.translations import say
 
 # Functions of MATLAB that may enclose a matrix; "" if there is none.
 _MATLAB_FUNCTIONS: Final = frozenset({"", "sym", "simplify"})
@@ -42,8 +43,10 @@ def _refuse_objects(rows: list[list[SourceText]]) -> None:
             if inner.text.startswith(("{", '"', "'")) and ":" in inner.text:
                 raise GridError(
                     "named_values",
-                    "Values with names (JSON objects, dictionaries) are not read from pasted "
-                    "text; paste a list of rows, or a table with a header line.",
+                    say(
+                        "Values with names (JSON objects, dictionaries) are not read from pasted "
+                        "text; paste a list of rows, or a table with a header line."
+                    ),
                     inner.whole,
                 )
 

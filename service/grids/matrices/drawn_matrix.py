@@ -12,6 +12,7 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import TAIL, after_names
+from service.translations import say
 
 _PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
 _LEFT: Final = "⎡⎢⎣⎛⎜⎝[/|\\"
@@ -59,8 +60,10 @@ def _cells(row: SourceText) -> list[SourceText]:
 def _refusal(line: SourceText) -> GridError:
     return GridError(
         "drawn_matrix",
-        "This drawn matrix cannot be read safely. Paste it as one line of text or as LaTeX, as "
-        "print(T) or latex(T) in SymPy give it.",
+        say(
+            "This drawn matrix cannot be read safely. Paste it as one line of text or as "
+            "LaTeX, as print(T) or latex(T) in SymPy give it."
+        ),
         line.whole,
     )
 

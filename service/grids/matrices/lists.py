@@ -9,6 +9,7 @@ from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import WrittenMatrix
+from service.translations import say
 
 _BETWEEN: Final = " \t\r\n,;"
 # A character in UTF-16, of one or two units, or an escaped punctuation mark.
@@ -34,7 +35,7 @@ def lines_of(content: SourceText) -> list[SourceText] | None:
             if text[i] == "(" and len(split(line, ",")) == 1:
                 return None
             if len(lines) > GRID_LIMITS.rows:
-                raise too_many_rows("more", content.whole)
+                raise too_many_rows(content.whole)
             lines.append(line)
             i = ends[i]
         elif text[i] in _BETWEEN:
@@ -52,7 +53,7 @@ def rows(lines: list[SourceText]) -> list[list[SourceText]]:
     found = []
     for line in lines:
         if line.text.lstrip()[:1] in {"[", "{"} and lines_of(line):
-            message = "This is a list of matrices or tables; paste one of them."
+            message = say("This is a list of matrices or tables; paste one of them.")
             raise GridError("nested_too_deep", message, line.whole)
         found.append(_values(line))
     return found
@@ -70,7 +71,13 @@ def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
     height, width = matrix.shape
     if height * width != len(values):
         count = height * width
-        message = f"A {height} × {width} matrix has {count} values; yours has {len(values)}."
+        message = say(
+            "A {rows} × {columns} matrix has {number} values; yours has {found}.",
+            rows=height,
+            columns=width,
+            number=count,
+            found=len(values),
+        )
         raise GridError("wrong_count", message, content.whole)
     return [values[i * width : (i + 1) * width] for i in range(height)]
 

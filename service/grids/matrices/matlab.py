@@ -1,10 +1,11 @@
 """Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks."""
 
-from service.expressions.errors import Note, counted
+from service.expressions.errors import Note
 from service.grids.cutting.blanks import split_blanks
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.pairs import split
 from service.grids.cutting.source_text import SourceText
+from service.translations import say
 
 
 def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
@@ -22,7 +23,7 @@ def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]
         return by_blanks, _sign_notes(signs)
     if _is_rectangle(by_blanks):
         raise _ambiguous(by_commas, by_blanks)
-    message = (
+    message = say(
         "Commas separate the values here, so spaces inside a value were read as products and sums."
     )
     return by_commas, (Note("commas_separate", message, content.whole),)
@@ -55,9 +56,10 @@ def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
     if not signs:
         return ()
     sign = signs[0]
-    message = (
-        f"The space before {sign.text[:20]} begins a new value, as in MATLAB; a difference has "
-        "spaces on both sides of the sign, or none."
+    message = say(
+        "The space before {value} begins a new value, as in MATLAB; a difference has spaces on "
+        "both sides of the sign, or none.",
+        value=sign.text[:20],
     )
     return (Note("blank_before_sign", message, sign.whole),)
 
@@ -67,7 +69,11 @@ def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceTex
     row, longer = by_commas[at], by_blanks[at]
     return GridError(
         "mixed_separators",
-        f"This row has {counted(len(row))} if only commas separate them, and {len(longer)} if "
-        "spaces do, too. Write commas between all values.",
+        say(
+            "This row has {few} values if only commas separate them, and {many} if spaces do, too. "
+            "Write commas between all values.",
+            few=len(row),
+            many=len(longer),
+        ),
         (row[0].whole[0], row[-1].whole[1]),
     )

@@ -10,6 +10,7 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.pairs import CLOSES
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import TAIL, text_around
+from service.translations import say
 
 # ⓢ and ⒨ are matrices in [ ] and in ( ).
 _MATRIX: Final = re.compile(r"(?:■8?|[ⓢ⒨]|\\[bp]?matrix)[ \t]{0,4}\(")
@@ -56,7 +57,9 @@ def _rows(source: SourceText, start: int) -> tuple[list[list[SourceText]], int]:
                 rows.append([])
             elif letter != "&":
                 break
-    message = "The brackets of this matrix do not belong together. Copy the whole equation again."
+    message = say(
+        "The brackets of this matrix do not belong together. Copy the whole equation again."
+    )
     raise GridError("unbalanced_bracket", message, source.whole)
 
 

@@ -13,6 +13,7 @@ from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import begins_as_matrix, without_remarks
+from service.translations import say
 
 # The value may be a calculation or a call of a function, but not a matrix or a list.
 ASSIGNMENT: Final = re.compile(
@@ -74,8 +75,12 @@ def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Not
         if each.name in read and not each.is_number:
             raise GridError(
                 "given_value",
-                f"`{each.line.text[:40]}` gives {each.name} a value, which is not put in here. "
-                "Write it where the letter stands, or delete this line.",
+                say(
+                    "`{line}` gives {letter} a value, which is not put in here. Write it where the "
+                    "letter stands, or delete this line.",
+                    line=each.line.text[:40],
+                    letter=each.name,
+                ),
                 each.line.whole,
             )
     numbers = [each for each in given if each.is_number]
@@ -83,9 +88,10 @@ def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Not
         return ()
     names = ", ".join(dict.fromkeys(each.name for each in numbers[:_MOST_NAMES]))
     more = ", …" if len(numbers) > _MOST_NAMES else ""
-    message = (
-        f"The script gives numbers to {names}{more}; they were not used. The letters were read as "
-        "the exercise's symbols."
+    message = say(
+        "The script gives numbers to {letters}; they were not used. The letters were read as the "
+        "exercise's symbols.",
+        letters=f"{names}{more}",
     )
     span = numbers[0].line.whole[0], numbers[-1].line.whole[1]
     return (Note("given_numbers", message, span),)

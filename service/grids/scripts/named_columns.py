@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from service.expressions.errors import Note, counted
+from service.expressions.errors import Note
 from service.grids.cutting.grid import grid, too_many_rows
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import strict_pairs
@@ -20,6 +20,7 @@ from service.grids.matrices.lists import unquoted
 from service.grids.scripts.program_text import MAKERS
 from service.grids.scripts.robot_table import RobotTable
 from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
+from service.translations import say, say_count
 
 _DICTIONARY: Final = re.compile(
     r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
@@ -138,8 +139,11 @@ def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
         named = {item.key.text: unquoted(item.value) for item in row}
         if len(named) < len(row) or named.keys() != set(first):
             raise unread_script(
-                f"The rows do not have the same names: the first has {', '.join(first)[:80]}. "
-                "Give each row the same names.",
+                say(
+                    "The rows do not have the same names: the first has {names}. "
+                    "Give each row the same names.",
+                    names=", ".join(first)[:80],
+                ),
                 row[0].key,
             )
         cells.append([named[name] for name in first])
@@ -163,8 +167,15 @@ def _by_column(
     for item, column in zip(items, columns, strict=True):
         if len(column) != len(longest):
             raise unread_script(
-                f"The column {excerpt(item.key)} has {counted(len(column))}, another has "
-                f"{len(longest)}. Write one for each joint.",
+                say_count(
+                    "The column {name} has one value, another has {most}. "
+                    "Write one for each joint.",
+                    "The column {name} has {count} values, another has {most}. "
+                    "Write one for each joint.",
+                    count=len(column),
+                    name=excerpt(item.key),
+                    most=len(longest),
+                ),
                 item.value,
             )
     rows = [[item.key for item in items], *map(list, zip(*columns, strict=True))]
@@ -182,7 +193,7 @@ def _by_index(
     numbers = {index for column, index in keys if column in ("d", "theta")}
     count = max(numbers, default=0)
     if count >= GRID_LIMITS.rows:
-        raise too_many_rows("more", source.whole)
+        raise too_many_rows(source.whole)
     before = {index for column, index in keys if column in ("a", "alpha")}
     shift = 1 if 0 in before else 0
     is_whole = numbers == set(range(1, count + 1)) and len(cells) == len(keys)
@@ -191,10 +202,13 @@ def _by_index(
         return None
     rows = [_indexed_row(cells, i, shift) for i in range(1, count + 1)]
     first, last = items[0].key.whole, items[-1].value.whole
-    message = "The indices say which row a parameter belongs to"
+    message = say("The indices say which row a parameter belongs to.")
     if shift:
-        message += "; those of alpha and a are one less, as in the modified convention"
-    notes = [Note("indexed_parameters", f"{message}.", (first[0], last[1]))]
+        message = say(
+            "The indices say which row a parameter belongs to; those of alpha and a are one less, "
+            "as in the modified convention."
+        )
+    notes = [Note("indexed_parameters", message, (first[0], last[1]))]
     table = grid("dictionary", rows, source.whole, notes)
     return RobotTable(table, "modified" if shift else None)
 

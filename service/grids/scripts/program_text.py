@@ -8,6 +8,7 @@ from service.grids.cutting.grid import GridError, too_many_rows
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import BRACKET, CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
+from service.translations import say
 
 # Functions that make a matrix of their argument without changing its values.
 MAKERS: Final = frozenset(
@@ -95,7 +96,7 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
     source = without_remarks(source)
     head = _head(source.text)
     if head is None:
-        message = "No matrix begins here. Paste the matrix alone, each row in brackets."
+        message = say("No matrix begins here. Paste the matrix alone, each row in brackets.")
         raise GridError("no_grid", message, source.whole)
     start, call = head
     source = _without_forms(source.cut(start, len(source.text)).strip(TAIL))
@@ -210,7 +211,7 @@ def _groups(source: SourceText) -> list[SourceText]:
     while i < len(source.text):
         if source.text[i] in CLOSES:
             if len(groups) > GRID_LIMITS.rows:
-                raise too_many_rows("more", source.whole)
+                raise too_many_rows(source.whole)
             groups.append(source.cut(i + 1, ends[i] - 1))
             i = ends[i]
         elif source.text[i] in TAIL:
@@ -223,10 +224,14 @@ def _groups(source: SourceText) -> list[SourceText]:
 def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> WrittenMatrix:
     name, inside = call[1].rpartition(".")[2], call.end() - call.start(1)
     if name not in MAKERS or not calls:
-        message = f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result."
+        message = say(
+            "`{function}(…)` of a matrix is not worked out here. Paste the result.",
+            function=call[1],
+        )
         if name in _ROBOT_CLASSES:
-            message = (
-                f"`{call[1]}(…)` describes a robot and is no matrix. Paste the matrix, worked out."
+            message = say(
+                "`{function}(…)` describes a robot and is no matrix. Paste the matrix, worked out.",
+                function=call[1],
             )
         raise GridError("unknown_call", message, source.span(0, len(call[1])))
     opened = source.text.index("(")
@@ -255,12 +260,13 @@ def text_around(piece: SourceText) -> GridError:
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
     shown = "".join(filter(str.isprintable, first)).strip()
-    message = "Empty brackets stand next to the matrix. Delete them."
+    message = say("Empty brackets stand next to the matrix. Delete them.")
     if piece.text:
-        message = "An invisible character stands next to the matrix. Delete it."
+        message = say("An invisible character stands next to the matrix. Delete it.")
     if shown:
-        message = (
-            f"`{shown}` stands next to the matrix and may change it. Paste the matrix alone, "
-            "worked out."
+        message = say(
+            "`{text}` stands next to the matrix and may change it. Paste the matrix alone, "
+            "worked out.",
+            text=shown,
         )
     return GridError("text_around", message, piece.span(0, len(piece.text)))

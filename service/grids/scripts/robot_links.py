@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
-from service.expressions.errors import counted
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.script import arguments, excerpt, split_call, unread_script
+from service.translations import say, say_count
 
 PARAMETERS: Final = ("a", "alpha", "d", "theta")
 
@@ -146,8 +146,14 @@ class _Given:
     def of_vector(values: Sequence[SourceText], source: SourceText) -> "_Given":
         if not len(PARAMETERS) <= len(values) <= len(_OF_VECTOR):
             raise unread_script(
-                f"`{excerpt(source)}` has {counted(len(values))}. A link is [theta d a alpha], "
-                "with 0 or 1 for the joint type and an offset behind them.",
+                say_count(
+                    "`{text}` has one value. A link is [theta d a alpha], with 0 or 1 for the "
+                    "joint type and an offset behind them.",
+                    "`{text}` has {count} values. A link is [theta d a alpha], with 0 or 1 for the "
+                    "joint type and an offset behind them.",
+                    count=len(values),
+                    text=excerpt(source),
+                ),
                 source,
             )
         return _Given(dict(zip(_OF_VECTOR, values, strict=False)), has_vector=True)
@@ -196,8 +202,11 @@ def _joint(given: _Given, link: SourceText) -> JointType:
         }
     if len(types) > 1 or (not types and by_name and (named or given.words)):
         raise unread_script(
-            f"`{excerpt(link)}` leaves open whether the joint is revolute or prismatic. Write "
-            "`Revolute(…)` or `Prismatic(…)`.",
+            say(
+                "`{text}` leaves open whether the joint is revolute or prismatic. Write "
+                "`Revolute(…)` or `Prismatic(…)`.",
+                text=excerpt(link),
+            ),
             link,
         )
     return types.pop() if types else JointType.REVOLUTE
@@ -215,8 +224,11 @@ def _truth(named: Mapping[str, SourceText], name: str) -> bool:
 
 def _unknown(source: SourceText) -> GridError:
     return unread_script(
-        f"`{excerpt(source)}` is not understood here. Write a, alpha, d, theta and offset of each "
-        "link, each once.",
+        say(
+            "`{text}` is not understood here. Write a, alpha, d, theta and offset of each link, "
+            "each once.",
+            text=excerpt(source),
+        ),
         source,
     )
 
@@ -231,16 +243,23 @@ def transform_link(
     """
     if len(values) != len(_OF_TRANSFORM):
         raise unread_script(
-            f"`{excerpt(source)}` has {counted(len(values))}. setFixedTransform takes [a alpha d "
-            "theta].",
+            say_count(
+                "`{text}` has one value. setFixedTransform takes [a alpha d theta].",
+                "`{text}` has {count} values. setFixedTransform takes [a alpha d theta].",
+                count=len(values),
+                text=excerpt(source),
+            ),
             source,
         )
     cells = dict(zip(_OF_TRANSFORM, values, strict=True))
     is_written = has_variable(cells["theta"].text) or _JOINT_LENGTH.search(cells["d"].text)
     if joint is None and not is_written:
         raise unread_script(
-            f"`{excerpt(source)}` holds no joint variable. Paste the line with the type of this "
-            "joint, too: `rigidBodyJoint('jnt1', 'revolute')`.",
+            say(
+                "`{text}` holds no joint variable. Paste the line with the type of this joint, "
+                "too: `rigidBodyJoint('jnt1', 'revolute')`.",
+                text=excerpt(source),
+            ),
             source,
         )
     return RobotLink(source, joint, modified, cells)
@@ -282,8 +301,12 @@ def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
     changed = offset is not None or link.flip
     if not has_variable(variable.text) or (changed and not _ALONE.fullmatch(variable.text)):
         raise unread_script(
-            f"The toolbox ignores `{excerpt(variable)}`, for {_SHOWN[column]} is the variable of "
-            "this joint. Write 0 there, and a constant as offset.",
+            say(
+                "The toolbox ignores `{text}`, for {parameter} is the variable of this joint. "
+                "Write 0 there, and a constant as offset.",
+                text=excerpt(variable),
+                parameter=_SHOWN[column],
+            ),
             variable,
         )
     if not changed:

@@ -34,6 +34,7 @@ from service.grids.scripts.script_names import (
     in_order,
     too_many_robots,
 )
+from service.translations import say, say_count
 
 _ROBOTS: Final = frozenset({"SerialLink", "DHRobot"})
 _TRANSFORM: Final = "setFixedTransform"
@@ -102,7 +103,7 @@ def read_script(source: SourceText) -> RobotTable | None:
         added += [row.added] * bool(row.added)
     if len({link.modified for link in links}) > 1:
         raise unread_script(
-            "Some links are standard and some modified. Write all of them in one convention.",
+            say("Some links are standard and some modified. Write all of them in one convention."),
             source,
         )
     read = {name for row in rows for cell in row for name in _NAME.findall(cell.text)}
@@ -116,11 +117,14 @@ def read_script(source: SourceText) -> RobotTable | None:
 
 
 def _note(links: list[RobotLink], added: list[str]) -> Note:
-    message = "Each link of the script was read as a row."
+    message = say("Each link of the script was read as a row.")
     if added:
-        names = ", ".join(added[:_MOST_NAMES])
-        variables = "joint variables" if len(added) > 1 else "joint variable"
-        message = f"Each link of the script was read as a row, with the {variables} {names}."
+        message = say_count(
+            "Each link of the script was read as a row, with the joint variable {names}.",
+            "Each link of the script was read as a row, with the joint variables {names}.",
+            count=len(added),
+            names=", ".join(added[:_MOST_NAMES]),
+        )
     first, last = links[0].source.whole, links[-1].source.whole
     return Note("script_rows", message, (min(first[0], last[0]), max(first[1], last[1])))
 
@@ -149,7 +153,10 @@ class _Script:
         changes = _CHANGE.match(text)
         if self.controlled and (has_call or changes):
             raise unread_script(
-                "Loops, conditions and functions are not run. Write one `Link(…)` for each link.",
+                say(
+                    "Loops, conditions and functions are not run. "
+                    "Write one `Link(…)` for each link."
+                ),
                 statement,
             )
         found = _ASSIGNMENT.match(text)
@@ -248,8 +255,10 @@ class _Script:
             links = self.names.links_of_matrix(first, modified="modified" in words)
         if links is None:
             raise unread_script(
-                f"The links `{excerpt(first)}` are not in this text. Paste the lines that make "
-                "them, too.",
+                say(
+                    "The links `{text}` are not in this text. Paste the lines that make them, too.",
+                    text=excerpt(first),
+                ),
                 first,
             )
         if self.robot is not None and list(map(id, self.robot)) != list(map(id, links)):
@@ -263,14 +272,18 @@ class _Script:
         values = self.names.vector(given[1]) if kind in {"dh", "mdh"} else None
         if values is None:
             raise unread_script(
-                "setFixedTransform is read with [a alpha d theta] and 'dh' or 'mdh'.", statement
+                say("setFixedTransform is read with [a alpha d theta] and 'dh' or 'mdh'."),
+                statement,
             )
         joint = _squeezed(given[0].text)
         if numbered := NUMBERED.fullmatch(joint):
             number = int(numbered[2])
             if number <= self.last_number:
                 raise unread_script(
-                    "The joints are not in the order of their numbers. Put their lines in order.",
+                    say(
+                        "The joints are not in the order of their numbers. "
+                        "Put their lines in order."
+                    ),
                     statement,
                 )
             self.last_number = number
@@ -331,14 +344,20 @@ def _is_declared(name: str, value: str) -> bool:
 
 def _has_frames(source: SourceText) -> GridError:
     return unread_script(
-        f"`{excerpt(source)}` is no link. Delete it, or paste the DH table with a row for it.",
+        say(
+            "`{text}` is no link. Delete it, or paste the DH table with a row for it.",
+            text=excerpt(source),
+        ),
         source,
     )
 
 
 def _unclear(source: SourceText) -> GridError:
     return unread_script(
-        f"`{excerpt(source)}` is not understood here. Write each link as `L(1) = Link(…)`, and the "
-        "robot as `SerialLink(L)`.",
+        say(
+            "`{text}` is not understood here. Write each link as `L(1) = Link(…)`, and the robot "
+            "as `SerialLink(L)`.",
+            text=excerpt(source),
+        ),
         source,
     )

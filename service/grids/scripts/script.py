@@ -10,6 +10,7 @@ from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import without_remarks
 from service.grids.scripts.session import without_prompts
+from service.translations import say
 
 _ENDS: Final = ";,\n\r\x85\u2028\u2029"
 # Lines that begin or end a block comment: %{ and %} in MATLAB, triple quotes in Python.
@@ -29,7 +30,10 @@ def statements(source: SourceText) -> list[SourceText]:
     plain = without_remarks(_without_blocks(without_prompts(source)))
     if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
         raise unread_script(
-            f"This script has more than {GRID_LIMITS.separators:,} brackets. Paste only its links.",
+            say(
+                "This script has more than {most:,} brackets. Paste only its links.",
+                most=GRID_LIMITS.separators,
+            ),
             source,
         )
     pieces = (piece.strip() for piece in split(plain, _ENDS))

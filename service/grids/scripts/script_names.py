@@ -13,6 +13,7 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
 from service.grids.scripts.robot_links import LINK_CLASSES, RobotLink, read_link, vector_link
 from service.grids.scripts.script import excerpt, split_call, unread_script
+from service.translations import say
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
 NAMED: Final = re.compile(
@@ -62,7 +63,11 @@ class ScriptNames:
             value = self._elements[name, number]
             if value is None:
                 raise unread_script(
-                    f"The script gives `{excerpt(cell)}` two values. Write its value here.", cell
+                    say(
+                        "The script gives `{name}` two values. Write its value here.",
+                        name=excerpt(cell),
+                    ),
+                    cell,
                 )
             return value
         rows = self._matrix(cell.cut(0, len(name))) if name in self._values else None
@@ -78,14 +83,17 @@ class ScriptNames:
         first = len(known) + 1 if number == 0 else number or 1
         if known if number is None else first in known or len(links) > 1:
             raise unread_script(
-                f"`{excerpt(statement)}` gives a link a second value. Keep the one that counts.",
+                say(
+                    "`{text}` gives a link a second value. Keep the one that counts.",
+                    text=excerpt(statement),
+                ),
                 statement,
             )
         known.update(enumerate(links, first))
         check_count(known, statement)
         self._count += len(links)
         if self._count > _MOST_LINKS:
-            raise too_many_rows("more", statement.whole)
+            raise too_many_rows(statement.whole)
 
     def links_of(self, source: SourceText) -> list[RobotLink] | None:
         """Return the links that an expression denotes, or None if it denotes no links."""
@@ -180,7 +188,9 @@ def in_order(links: Links, source: SourceText) -> list[RobotLink]:
     """Return the links in the order of their numbers. Raises GridError if one is missing."""
     for number in range(1, len(links) + 1):
         if number not in links:
-            raise unread_script(f"Link {number} is not in this text. Add it.", source)
+            raise unread_script(
+                say("Link {number} is not in this text. Add it.", number=number), source
+            )
     return [links[number] for number in range(1, len(links) + 1)]
 
 
@@ -194,11 +204,11 @@ def _line_of(row: list[SourceText]) -> SourceText:
 def check_count(links: Sized, source: SourceText) -> None:
     """Raise GridError for more links than a table may have rows."""
     if len(links) > _MOST_ROWS:
-        raise too_many_rows("more", source.whole)
+        raise too_many_rows(source.whole)
 
 
 def too_many_robots(source: SourceText) -> GridError:
     """Return the error for a script that may describe several robots."""
     return unread_script(
-        "This may be more than one robot. Paste one, and write its links in one list.", source
+        say("This may be more than one robot. Paste one, and write its links in one list."), source
     )

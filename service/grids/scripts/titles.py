@@ -12,6 +12,7 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
+from service.translations import say
 
 _FENCE: Final = re.compile(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
 _BARS: Final = "|│┃║"
@@ -76,7 +77,7 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
         return source, ()
     for line in around:
         _check_units(line)
-    message = "The sentences before and after the table were ignored."
+    message = say("The sentences before and after the table were ignored.")
     note = Note("text_left_aside", message, around[0].whole)
     return _between(source, lines[first], lines[last]), (note,)
 
@@ -106,8 +107,10 @@ def _check_units(line: SourceText) -> None:
     if _UNIT.search(_FREEDOM.sub("", line.text)):
         raise GridError(
             "text_around",
-            "This line names a unit, but not its columns. Delete the line, and write the units "
-            "into the headers, such as theta [deg].",
+            say(
+                "This line names a unit, but not its columns. Delete the line, and write the "
+                "units into the headers, such as theta [deg]."
+            ),
             line.whole,
         )
 

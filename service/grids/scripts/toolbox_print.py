@@ -13,6 +13,7 @@ from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.robot_table import RobotTable
 from service.grids.scripts.script import unread_script
 from service.grids.scripts.script_names import too_many_robots
+from service.translations import say
 
 _FIRST_LINE: Final = re.compile(
     r"(?:::[ \t]{0,4}|\()(?P<axes>\d{1,2}) axis, [RP]{1,12}, (?P<matlab>std|mod)DH"
@@ -61,17 +62,22 @@ def read_print(source: SourceText) -> RobotTable:
     is_whole = len(rows) - 1 == count > 0 and (bool(found) or _BARS.search(rest) is None)
     if not is_whole or any(columns.count(name) != 1 for name in _COLUMNS):
         raise unread_script(
-            "The table below this line is not complete. Paste it with its line of headers.", source
+            say("The table below this line is not complete. Paste it with its line of headers."),
+            source,
         )
     if _has_frames(rest):
         raise unread_script(
-            "The robot has a base or a tool, which this table does not show. Write the DH table "
-            "with its headers, without the rest.",
+            say(
+                "The robot has a base or a tool, which this table does not show. Write the "
+                "DH table with its headers, without the rest."
+            ),
             source,
         )
     for row in rows[1:]:
         if len(row) != len(columns):
-            raise unread_script("This row is not complete. Copy the whole table again.", row[0])
+            raise unread_script(
+                say("This row is not complete. Copy the whole table again."), row[0]
+            )
     cells = [_cells(row, columns) for row in rows[1:]]
     names = [first["matlab"] or first["python"] for first in found]
     convention = _CONVENTIONS[names[0][:3]] if names else None

@@ -6,6 +6,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading.reading.preview import preview_pasted
+from service.translations import Sentence
 
 TABLE = "\n".join(
     [
@@ -99,3 +100,24 @@ def test_degrees_as_the_submission_says(arm: Exercise) -> None:
 def test_a_part_that_does_not_exist(arm: Exercise) -> None:
     with pytest.raises(LookupError, match="'rrrp' has no part 'tabel'"):
         preview_pasted("1,2", arm, "tabel")
+
+
+@pytest.mark.parametrize(
+    ("part", "text"),
+    [
+        ("table", TABLE),
+        ("table", "a, a, d, theta\n1, 2, 3, 4"),
+        ("table", "a1 0 0 q1 2\na2 0 0"),
+        ("table", "L(1) = Link([0 0 l2 0])"),
+        ("table", "x = {"),
+        ("pose", "[1, 2; 3, 4]]"),
+    ],
+)
+def test_the_messages_can_be_translated(part: str, text: str, arm: Exercise) -> None:
+    shown = preview_pasted(text, arm, part)
+    cells = [cell for row in shown.rows for cell in row]
+    problems = [shown.problem, *(cell.problem for cell in cells)]
+    notes = [*shown.notes, *(note for cell in cells for note in cell.notes)]
+    messages = [each.message for each in (*problems, *notes) if each]
+    assert messages
+    assert all(isinstance(message, Sentence) for message in messages)

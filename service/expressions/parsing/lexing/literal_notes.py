@@ -12,11 +12,11 @@ from service.expressions.errors import Note
 from service.expressions.tree import Binary, Call, Negation, Node, Number, SymbolNode
 from service.expressions.vocabulary.functions import TRIGONOMETRIC
 from service.expressions.vocabulary.symbols import Symbol
+from service.translations import say
 
 # Students hardly mean larger angles (90, 180 or 22.5) in radians.
 _WHOLE_TURN: Final = 2 * math.pi
 _SHORTHAND: Final = re.compile(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
-_WORDS: Final = {"sin": "sine", "cos": "cosine"}
 _DIGIT: Final = re.compile(r"[1-9]")
 
 
@@ -46,10 +46,20 @@ def on_shorthand(
         return None
     if not _SHORTHAND.fullmatch(written):
         return None
-    message = (
-        f"This was read as {written} + {digit}. For the {_WORDS[last.function]} of a sum of joint "
-        f"angles, write {written}{digit}."
-    )
+    if last.function == "sin":
+        message = say(
+            "This was read as {sine} + {digit}. For the sine of a sum of joint angles, write "
+            "{sine}{digit}.",
+            sine=written,
+            digit=digit,
+        )
+    else:
+        message = say(
+            "This was read as {cosine} + {digit}. For the cosine of a sum of joint angles, write "
+            "{cosine}{digit}.",
+            cosine=written,
+            digit=digit,
+        )
     return Note("shorthand", message, (last.start, right.end))
 
 
@@ -62,18 +72,28 @@ def on_call(
         return None
     joint = turning.get(int(number.literal)) if _DIGIT.fullmatch(number.literal) else None
     if joint is not None:
-        unit = "degrees" if degrees else "radians"
-        message = (
-            f"{number.literal} was read as a number of {unit}. For the joint angle, write "
-            f"{function}({joint.name})."
-        )
+        text, formula = number.literal, f"{function}({joint.name})"
+        if degrees:
+            message = say(
+                "{number} was read as a number of degrees. For the joint angle, write {formula}.",
+                number=text,
+                formula=formula,
+            )
+        else:
+            message = say(
+                "{number} was read as a number of radians. For the joint angle, write {formula}.",
+                number=text,
+                formula=formula,
+            )
         return Note("bare_radians", message, (number.start, number.end))
     return _radians(number) if not degrees and _is_large(number) else None
 
 
 def _radians(number: Number) -> Note:
-    text = number.literal
-    message = f"{text} was read as {text} radians. For degrees, write {text}°."
+    message = say(
+        "{number} was read as {number} radians. For degrees, write {number}°.",
+        number=number.literal,
+    )
     return Note("bare_radians", message, (number.start, number.end))
 
 

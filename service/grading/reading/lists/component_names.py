@@ -11,6 +11,7 @@ from service.expressions import Kind, LeftSide, Symbol, Vocabulary
 from service.expressions.characters import greek
 from service.expressions.vocabulary.symbols import normal_form
 from service.grading.reading.written_names import Places
+from service.translations import say
 
 _STYLE: Final = re.compile(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)(?![a-z])|\\begin\{[a-z]+\*?\}"
@@ -120,9 +121,12 @@ def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
         about_y = turns.index("Y")
         others = tuple(i for i in range(3) if i != about_y)
         places |= {"pitch": (about_y,), "roll": others, "yaw": others}
-    labels = tuple(
-        f"the {number} angle, about {axis.lower()},"
-        for number, axis in zip(("first", "second", "third"), turns, strict=True)
+    first, second, third = list(turns.lower())
+    # Translators: a part of "This is named `phi`, but the first angle, about z, is asked for here".
+    labels = (
+        say("the first angle, about {axis},", axis=first),
+        say("the second angle, about {axis},", axis=second),
+        say("the third angle, about {axis},", axis=third),
     )
     coordinates = {} if is_euler else _by_letter(turns.lower())
     return ListNames(labels, ("angle",) * 3, places, coordinates)

@@ -20,6 +20,7 @@ from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
 from service.grading.report import Verdict
 from service.grids import GridCell, GridError
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 LABEL: Final = "frame"
 _BASE_AXES: Final = "xyz"
@@ -280,16 +281,20 @@ def _reading(message: str) -> Finding:
 
 
 _WRONG_SHAPE: Final = _reading(
-    'One row for each frame is asked for: {"axis": …, "z": …, "origin": [x, y, z], "x": …}.'
+    say('One row for each frame is asked for: {{"axis": …, "z": …, "origin": [x, y, z], "x": …}}.')
 )
 _WRONG_TEXT: Final = _reading(
-    "One row for each frame is asked for: its number, joint axis, z, the three coordinates of its "
-    "origin, and x."
+    say(
+        "One row for each frame is asked for: its number, joint axis, z, the three "
+        "coordinates of its origin, and x."
+    )
 )
-_TOO_MANY: Final = _reading("There are more rows than frames on joint axes.")
-_WRONG_LABELS: Final = _reading("Each row must have the number of another asked frame.")
-_NO_JOINT: Final = _reading("Write the number of a joint.")
+_TOO_MANY: Final = _reading(say("There are more rows than frames on joint axes."))
+_WRONG_LABELS: Final = _reading(say("Each row must have the number of another asked frame."))
+_NO_JOINT: Final = _reading(say("Write the number of a joint."))
 _NO_DIRECTION: Final = _reading(
-    "Write a direction of the base frame with its sign, or a vector with three components and "
-    "commas between them."
+    say(
+        "Write a direction of the base frame with its sign, or a vector with three "
+        "components and commas between them."
+    )
 )

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Final
 
 from service.expressions import LIMITS, Expression, Kind, LeftSide
-from service.expressions.errors import counted
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
 from service.grading.reading.lists.component_names import ListNames
@@ -15,6 +14,7 @@ from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
 from service.grading.reading.written_names import arranged, name_of, with_order_note
 from service.grids import GridCell, GridError
 from service.kinematics.transforms import Numbers
+from service.translations import paragraph, say
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,9 @@ def _read(written: Sequence[_Written], names: ListNames, reader: Reader) -> list
         raw, place = written[i]
         wrong = found.misnamed.get(i)
         entries.append(place(unreadable(wrong) if wrong else reader.read(raw, quantity)))
-    return entries if found.misnamed else [*with_order_note(entries, "The values")]
+    if found.misnamed:
+        return entries
+    return [*with_order_note(entries, say("The values were ordered by their names."))]
 
 
 def _as_it_is(entry: Entry) -> Entry:
@@ -292,16 +294,16 @@ _OF_TABLES = {
     "too_many_rows": "",
     "too_many_columns": "",
     "ambiguous_separators": "",
-    "ambiguous_columns": "Here a space may separate two values or stand inside one.",
-    "mixed_separators": "Inside a value, write a*b and a - b, not a b and a -b.",
+    "ambiguous_columns": say("Here a space may separate two values or stand inside one."),
+    "mixed_separators": say("Inside a value, write a*b and a - b, not a b and a -b."),
 }
 
 _LEFT_ASIDE = {
     "0": reading_note(
-        "zero_left_aside", "Only two values are asked for; the third, 0, was ignored."
+        "zero_left_aside", say("Only two values are asked for; the third, 0, was ignored.")
     ),
     "1": reading_note(
-        "homogeneous_one", "The 1 at the end, of homogeneous coordinates, was ignored."
+        "homogeneous_one", say("The 1 at the end, of homogeneous coordinates, was ignored.")
     ),
 }
 
@@ -311,10 +313,14 @@ def _wrong_shape(count: int, found: int) -> Finding:
 
     ``found`` is the number of values if there are too many, else 0.
     """
-    return reading_error(
-        "wrong_shape",
-        f"Write a list of {counted(count)}{f'; yours has {found}' if found else ''}.",
-    )
+    message = say("Write a list of {number} values.", number=count)
+    if count == 1:
+        message = say("Write one number or one formula here.")
+    elif found:
+        message = say(
+            "Write a list of {number} values; yours has {found}.", number=count, found=found
+        )
+    return reading_error("wrong_shape", message)
 
 
 def _from_grid_error(error: GridError, count: int) -> Finding:
@@ -322,8 +328,10 @@ def _from_grid_error(error: GridError, count: int) -> Finding:
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding
-    message = (
-        f"Write a list of {counted(count)}, with commas between them or one on each line. "
-        f"{_OF_TABLES[error.code]}"
+    if count == 1:
+        return _wrong_shape(count, 0)
+    message = say(
+        "Write a list of {number} values, with commas between them or one on each line.",
+        number=count,
     )
-    return replace(finding, hint=message.strip())
+    return replace(finding, hint=paragraph(message, _OF_TABLES[error.code]))

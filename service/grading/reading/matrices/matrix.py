@@ -20,6 +20,7 @@ from service.grading.reading.matrices.matrix_entry_names import misnamed_entry
 from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 Quantities = Sequence[Sequence[Kind]]
 
@@ -112,8 +113,15 @@ def _of_wrong_size(
     found: str, quantities: Quantities, span: tuple[int, int] | None = None
 ) -> Finding:
     """Return the finding on a matrix of the size ``found``, which is "" if there is no matrix."""
-    size = f"; yours is {found}" if found else ""
-    message = f"Write {len(quantities)} rows with {len(quantities[0])} entries each{size}."
+    rows, columns = len(quantities), len(quantities[0])
+    message = say("Write {rows} rows with {columns} entries each.", rows=rows, columns=columns)
+    if found:
+        message = say(
+            "Write {rows} rows with {columns} entries each; yours is {size}.",
+            rows=rows,
+            columns=columns,
+            size=found,
+        )
     return reading_error("wrong_shape", message, span)
 
 
@@ -124,8 +132,11 @@ def _of_wrong_length(
 
     ``found`` is None if the row is not a list.
     """
-    counted = "" if found is None else f"; it has {found}"
-    message = f"Write {wanted} entries in this row{counted}."
+    message = say("Write {wanted} entries in this row.", wanted=wanted)
+    if found is not None:
+        message = say(
+            "Write {wanted} entries in this row; it has {found}.", wanted=wanted, found=found
+        )
     return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
 
 

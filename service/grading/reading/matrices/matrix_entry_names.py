@@ -8,6 +8,7 @@ from service.expressions import LeftSide, Vocabulary
 from service.expressions.vocabulary.symbols import normal_form
 from service.grading.feedback import Finding
 from service.grading.reading.written_names import misnamed_value, name_of
+from service.translations import say
 
 # Letters that name matrices; p_12 and l_12 are not matrix entries. If the index is in brackets, the
 # letter may have frames: T_0^4(1,4).
@@ -34,7 +35,7 @@ def misnamed_entry(
     if place in named or not any(i < size[0] and j < size[1] for i, j in named):
         return None
     row, column = place
-    return misnamed_value(name, f"row {row + 1}, column {column + 1}")
+    return misnamed_value(name, say("row {row}, column {column}", row=row + 1, column=column + 1))
 
 
 def _places_of(name: LeftSide) -> list[tuple[int, int]]:

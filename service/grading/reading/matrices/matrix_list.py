@@ -22,6 +22,7 @@ from service.grading.reading.matrices.matrix_names import (
 )
 from service.grading.reading.pasted import from_grid_error, pasted_grids, quoted
 from service.grids import Grid, GridError, NamedGrid, SourceText, read_grids
+from service.translations import listed, say
 
 
 def read_matrices(
@@ -155,11 +156,12 @@ def _places(
     placed = [place for place in found if place is not None]
     if any(a > b for a, b in pairwise(placed)):
         notes.append(
-            _note("matrix_order", "The matrices were put in the order of their names.", grids[0])
+            _note(
+                "matrix_order", say("The matrices were put in the order of their names."), grids[0]
+            )
         )
     if unusual:
-        message = f"{unusual}; the matrices were read as {asked_for}."
-        notes.append(_note("matrix_names", message, grids[0]))
+        notes.append(_note("matrix_names", say(unusual, matrices=asked_for), grids[0]))
     return found, notes
 
 
@@ -181,16 +183,21 @@ def _is_value(each: NamedGrid, reader: Reader) -> bool:
 
 def _asked_for(labels: Sequence[str]) -> str:
     """Return the names of the expected matrices: "A1 and A2", "A1 to A6"."""
-    between = "and" if len(labels) == 2 else "to"
-    return f"A{labels[0]} {between} A{labels[-1]}"
+    first, last = f"A{labels[0]}", f"A{labels[-1]}"
+    if len(labels) == 2:
+        return listed((first, last))
+    # Translators: matrices or other things in a row, such as "A1 to A6".
+    return say("{first} to {last}", first=first, last=last)
 
 
 def _no_matrices(error: GridError, labels: Sequence[str]) -> Finding:
     if error.code != "no_grid":
         return from_grid_error(error)
-    message = (
-        f"Write {_asked_for(labels)}, each with its name before it, such as A{labels[0]} = […], as "
-        "MATLAB, Python, Mathematica, Maxima or LaTeX write them."
+    message = say(
+        "Write {matrices}, each with its name before it, such as {matrix} = […], as MATLAB, "
+        "Python, Mathematica, Maxima or LaTeX write them.",
+        matrices=_asked_for(labels),
+        matrix=f"A{labels[0]}",
     )
     return reading_error("wrong_shape", message, error.span)
 
@@ -200,20 +207,38 @@ def _note(code: str, message: str, named: NamedGrid) -> Finding:
 
 
 def _left_aside(named: NamedGrid, asked_for: str) -> Finding:
-    name = quoted(named.name.text) if named.name.text else "A matrix without a name"
-    return _note("matrix_left_aside", f"{name} was ignored: {asked_for} are asked for.", named)
+    message = say(
+        "A matrix without a name was ignored: {matrices} are asked for.", matrices=asked_for
+    )
+    if named.name.text:
+        message = say(
+            "{name} was ignored: {matrices} are asked for.",
+            name=quoted(named.name.text),
+            matrices=asked_for,
+        )
+    return _note("matrix_left_aside", message, named)
 
 
 def _same_name(named: NamedGrid, label: str) -> Finding:
-    message = f"Two matrices are called {label}: give each matrix the number of its link."
+    message = say(
+        "Two matrices are called {matrix}: give each matrix the number of its link.", matrix=label
+    )
     return reading_error("duplicate_matrix", message, named.name.whole)
 
 
 def _unknown(named: NamedGrid, count: int, asked_for: str) -> Finding:
     if not named.name.text:
-        message = f"{count} matrices stand here. Give {asked_for} their names."
+        message = say(
+            "{number} matrices stand here. Give {matrices} their names.",
+            number=count,
+            matrices=asked_for,
+        )
         return reading_error("wrong_shape", message, _place(named))
-    message = f"Which link is {quoted(named.name.text)}? Call the matrices {asked_for}."
+    message = say(
+        "Which link is {name}? Call the matrices {matrices}.",
+        name=quoted(named.name.text),
+        matrices=asked_for,
+    )
     return reading_error("unknown_matrix", message, _place(named))
 
 

@@ -4,6 +4,8 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Final
 
+from service.translations import template
+
 _COMMAND: Final = re.compile(r"\\[A-Za-z]{1,20}")
 # The arguments of A_2(q_2), in contrast to the indices of A(2) and A{2}.
 _ARGUMENTS: Final = re.compile(r"\([^()]{0,40}[A-Za-zθ\\][^()]{0,40}\)")
@@ -44,7 +46,9 @@ def is_product(name: str) -> bool:
 
 
 def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...], str]:
-    """Return the places 1 to ``count`` of the names (or None), and a remark on unusual counting.
+    """Return the places 1 to ``count`` of the names (or None), and the note on unusual counting.
+
+    The note is a template with the names of the ``matrices``, or empty.
 
     A name has the number of the link, or the two frames that the link connects. There are several
     ways to count: A0 may be the first link, and 12 the twelfth or the one between frames 1 and 2.
@@ -100,11 +104,14 @@ def _by_last_frame(name: Indices, count: int) -> _Place:
     return _number(pair[1], count) if len(pair) == 2 and pair[0] == "0" else None
 
 
-# Ways to count, the most usual first, each with the text of its note.
+# Ways to count, the most usual first, each with the template of its note.
 _WAYS: Final[tuple[tuple[Callable[[Indices, int], _Place], str], ...]] = (
     (_by_number, ""),
     (_by_frames, ""),
-    (_from_zero, "The names count from 0"),
+    (_from_zero, template("The names count from 0; the matrices were read as {matrices}.")),
     (_by_last_frame, ""),
-    (_from_frame_one, "The names count frames from 1"),
+    (
+        _from_frame_one,
+        template("The names count frames from 1; the matrices were read as {matrices}."),
+    ),
 )

@@ -14,6 +14,7 @@ from service.grading.reading.entry import Reader
 from service.grading.reading.matrices.matrix_names import indices_of, places_of
 from service.grading.reading.pasted import pasted_grid, pasted_grids
 from service.grids import Grid, GridCell, GridError, SourceText
+from service.translations import say
 
 WIDTH: Final = 6
 _HALF: Final = 3
@@ -117,7 +118,7 @@ def _of_columns(grid: Grid) -> Grid:
 def columns_as_axes(grid: Grid) -> Note:
     """Return the note that the columns of a matrix were read as the axes."""
     place = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-    return Note("columns_as_axes", "The columns were read as the axes.", place)
+    return Note("columns_as_axes", say("The columns were read as the axes."), place)
 
 
 def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:

@@ -17,6 +17,7 @@ from service.grading.reading.written_names import (
     with_order_note,
 )
 from service.kinematics.chain import COLUMNS
+from service.translations import say
 
 _LABELS: Final = tuple(SHOWN[column] for column in COLUMNS)
 # The parameters that the modified convention numbers one less than their row.
@@ -68,7 +69,7 @@ def row_entries(
         entries.append(placed(column, unreadable(wrong)) if wrong else entry)
     if found is None or not found.by_name:
         return tuple(entries)
-    return with_order_note(entries, "The cells of a row")
+    return with_order_note(entries, say("The cells of a row were ordered by their names."))
 
 
 def _names_another_row(
@@ -87,4 +88,4 @@ def _names_another_row(
     symbol = vocabulary.by_name.get(normal_form(name.name))
     if symbol is not None and symbol.name in entry.expression.symbols:
         return None
-    return misnamed_value(name, f"{SHOWN[column]} (row {number})")
+    return misnamed_value(name, say("{parameter} (row {row})", parameter=SHOWN[column], row=number))

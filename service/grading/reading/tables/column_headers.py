@@ -34,7 +34,9 @@ _SIGNS: Final = str.maketrans(
 )
 # An accent in LaTeX: \'e. And "n°", a number in French, Spanish and Italian.
 _ACCENT: Final = re.compile(r"\\['`\"^~](?=[a-z{])")
-_NUMERO: Final = re.compile(r"(?<![a-z])n\s?°")
+_NUMERO: Final = re.compile(r"(?<![a-z])n\.?\s?°")
+# The preposition in "n° d'articulation" and "numéro de l'axe" is not d.
+_OF: Final = re.compile(r"(?<=no|ro)\s(?:de\s)?[dl]['’](?=[a-z]{3})")
 _STYLE: Final = re.compile(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf)"
     r"(?![a-z])|\\[,;:! ]"
@@ -152,7 +154,7 @@ def is_wordy(text: str) -> bool:
 def _plain(text: str) -> tuple[str, str]:
     """Return a header in small plain letters, and its unit; ``~`` replaces -1."""
     plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS)
-    plain = _NUMERO.sub("no", _ACCENT.sub("", in_plain_words(plain)))
+    plain = _OF.sub(" ", _NUMERO.sub("no", _ACCENT.sub("", in_plain_words(plain))))
     plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
     plain = plain.replace("α", " alpha ").replace("θ", " theta ")
     for mark in "\\$`*":

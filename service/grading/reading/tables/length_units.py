@@ -11,6 +11,7 @@ from service.grading.numerics.tolerances import EXACT_VALUE, SAME_FACTOR
 from service.grading.reading.entry import Entry, Reader, unreadable
 from service.grading.reading.tables.column_headers import Header
 from service.grading.reading.tables.words import METRES
+from service.translations import say
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
@@ -30,15 +31,21 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
         return entry
     metres = METRES.get(reader.length_unit or "")
     if metres is None or header.metres is None:
-        message = (
-            f"A length in {header.unit} cannot be converted in this exercise. {_without(header)}"
+        message = say(
+            "A length in {unit} cannot be converted in this exercise. Delete `{unit}` from the "
+            "header, and write lengths as the exercise does.",
+            unit=header.unit,
         )
         return unreadable(reading_error("header_unit", message))
     factor = header.metres / metres
     converted = Expression(
         expression.source, _times(expression.tree, factor), expression.notes, expression.symbols
     )
-    message = f"Read as {float(np.max(value)):g} {header.unit}, as the header says."
+    message = say(
+        "Read as {number} {unit}, as the header says.",
+        number=f"{float(np.max(value)):g}",
+        unit=header.unit,
+    )
     note = reading_note("converted_length", message)
     return replace(entry, expression=converted, findings=(*entry.findings, note))
 
@@ -66,11 +73,16 @@ def _checked_formula(entry: Entry, expression: Expression, header: Header, reade
         expected = 2 * np.asarray(once)
     if np.allclose(twice, expected, rtol=EXACT_VALUE, atol=EXACT_VALUE, equal_nan=True):
         return entry
-    unit = reader.length_unit or "the unit of the exercise"
-    message = f"The number here may be in {header.unit} or in {unit}. {_without(header)}"
+    message = say(
+        "The number here may be in {unit} or in the unit of the exercise. Delete `{unit}` from the "
+        "header, and write lengths as the exercise does.",
+        unit=header.unit,
+    )
+    if reader.length_unit:
+        message = say(
+            "The number here may be in {unit} or in {other}. Delete `{unit}` from the header, and "
+            "write lengths as the exercise does.",
+            unit=header.unit,
+            other=reader.length_unit,
+        )
     return unreadable(reading_error("header_unit", message))
-
-
-def _without(header: Header) -> str:
-    """Return the advice to remove the unit from the header."""
-    return f"Delete `{header.unit}` from the header, and write lengths as the exercise does."

@@ -9,6 +9,7 @@ from service.grading.feedback import Finding, reading_error
 from service.grading.report import Verdict
 from service.kinematics.chain import COLUMNS
 from service.kinematics.factors import CellIndex
+from service.translations import say
 
 _NAMES: Final = {
     **{name: column for column, name in enumerate(COLUMNS)},
@@ -86,11 +87,15 @@ def _cells_of(mark: str, labels: Sequence[str]) -> set[CellIndex] | None:
 def _unknown(labels: Sequence[str]) -> Finding:
     return reading_error(
         "unknown_place",
-        f"Write each place as its row and column: {labels[-1]}.alpha. The rows are "
-        f"{', '.join(labels)}, the columns a, alpha, d, theta.",
+        say(
+            "Write each place as its row and column: {row}.alpha. The rows are {rows}, the columns "
+            "a, alpha, d, theta.",
+            row=labels[-1],
+            rows=", ".join(labels),
+        ),
     )
 
 
 _NOT_MARKS: Final = reading_error(
-    "wrong_shape", 'Write the places that are wrong: "2.alpha", or several of them in a list.'
+    "wrong_shape", say('Write the places that are wrong: "2.alpha", or several of them in a list.')
 )

@@ -3,13 +3,21 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import islice
 from typing import Final
 
 from service.expressions.errors import Span
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
-from service.grading.reading.pasted import pasted_grid, pasted_robot, place_of, placed, quoted
+from service.grading.reading.pasted import (
+    pasted_grid,
+    pasted_robot,
+    place_of,
+    placed,
+    quoted,
+    side_by_side,
+)
 from service.grading.reading.tables import column_headers
 from service.grading.reading.tables.cell_names import arranged_row, first_number, row_entries
 from service.grading.reading.tables.column_headers import (
@@ -25,6 +33,7 @@ from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.kinematics.chain import COLUMNS
+from service.translations import listed, say
 
 # A comment of a program, and the separators between the names in it.
 _COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//)[ \t]{0,40}([^\n%#]{7,80})")
@@ -89,7 +98,7 @@ def order_in_comments(text: str) -> Sequence[str] | None:
             if sorted(order) == sorted(COLUMNS):
                 found[order] = comment.span(1)
     if len(found) > 1:
-        message = "Two comments name the columns in two orders. Put headers above the columns."
+        message = say("Two comments name the columns in two orders. Put headers above the columns.")
         raise GridError("unknown_header", message, [*found.values()][1])
     return next(iter(found), None)
 
@@ -114,7 +123,9 @@ def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> Past
     findings = (*findings, *more)
     if not body:
         raise GridError(
-            "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
+            "no_rows",
+            say("There are headers here, but no rows below them."),
+            place_of(grid.rows[0]),
         )
     width = len(grid.rows[0]) if found is not None else max(map(len, body))
     rows = tuple(_row(row, columns, width, reader) for row in body)
@@ -156,7 +167,7 @@ def _has_parameters_in_rows(grid: Grid) -> bool:
 
 def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
     """Return the transposed table, and the note on that."""
-    message = "The parameters stand in rows, so each column was read as the row of a joint."
+    message = say("The parameters stand in rows, so each column was read as the row of a joint.")
     note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
     return replace(grid, rows=tuple(zip(*grid.rows, strict=True))), (note,)
 
@@ -220,34 +231,33 @@ def _columns_by_headers(
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
     unknown = [cell for cell, header in zip(row, found, strict=True) if not header and cell.text]
     if unknown:
-        names = ", ".join(quoted(cell.text) for cell in unknown)
-        raise GridError(
-            "unknown_header",
-            f"Which parameter stands below {names}? Use the headers a, alpha, d and theta, and i "
+        message = say(
+            "Which parameter stands below {names}? Use the headers a, alpha, d and theta, and i "
             "for the number of the row.",
-            place_of(unknown),
+            names=side_by_side([quoted(cell.text) for cell in unknown]),
         )
+        raise GridError("unknown_header", message, place_of(unknown))
     places: dict[str, int] = {}
     for i, header in enumerate(found):
         if header is None or header.column in (column_headers.LABEL, column_headers.ASIDE):
             continue
         if header.column in places:
-            raise GridError(
-                "two_headers",
-                f"Two columns are {SHOWN[header.column]}: "
-                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}. "
-                "Each parameter has one column.",
-                row[i].whole,
+            message = say(
+                "Two columns are {parameter}: {first} and {second}. Each parameter has one column.",
+                parameter=SHOWN[header.column],
+                first=quoted(row[places[header.column]].text),
+                second=quoted(row[i].text),
             )
+            raise GridError("two_headers", message, row[i].whole)
         places[header.column] = i
     _check_names(row, places)
     missing = [SHOWN[column] for column in COLUMNS if column not in places]
     if missing:
-        raise GridError(
-            "missing_header",
-            f"No header is {' or '.join(missing)}. A DH table has the columns a, α, d and θ.",
-            place_of(row),
+        message = say(
+            "No header is {parameters}. A DH table has the columns a, α, d and θ.",
+            parameters=reduce(_either, missing),
         )
+        raise GridError("missing_header", message, place_of(row))
     columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
     for (place, header), column in zip(columns, COLUMNS, strict=True):
         _check_unit(header, column, row[place or 0])
@@ -255,6 +265,10 @@ def _columns_by_headers(
     if labels is None and found[0] is None:
         labels = 0
     return columns, labels, (*_left_aside(row, found), *_convention_hint(row, columns))
+
+
+def _either(first: str, second: str) -> str:
+    return say("{first} or {second}", first=first, second=second)
 
 
 def _check_names(row: Sequence[GridCell], places: Mapping[str, int]) -> None:
@@ -265,8 +279,11 @@ def _check_names(row: Sequence[GridCell], places: Mapping[str, int]) -> None:
         return
     raise GridError(
         "unknown_header",
-        "With the columns α, d, θ, r, some books call the link length d and the offset r, others "
-        "the offset d and the link length r. Use the headers a and d.",
+        say(
+            "With the columns α, d, θ, r, some books call the link length d and the "
+            "offset r, others the offset d and the link length r. Use the headers a and "
+            "d."
+        ),
         name.whole,
     )
 
@@ -282,17 +299,27 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
         return
     is_angle = QUANTITIES[column] == "angle"
     if is_angle != (header.angle_unit is not None):
-        raise GridError(
-            "header_unit",
-            f"{SHOWN[column]} is {'an angle' if is_angle else 'a length'}, but its header says "
-            f"{header.unit}. Correct the header.",
-            cell.whole,
+        message = say(
+            "{parameter} is a length, but its header says {unit}. Correct the header.",
+            parameter=SHOWN[column],
+            unit=header.unit,
         )
+        if is_angle:
+            message = say(
+                "{parameter} is an angle, but its header says {unit}. Correct the header.",
+                parameter=SHOWN[column],
+                unit=header.unit,
+            )
+        raise GridError("header_unit", message, cell.whole)
 
 
 def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
     return tuple(
-        _note("column_left_aside", f"The column {quoted(cell.text)} was ignored.", cell)
+        _note(
+            "column_left_aside",
+            say("The column {name} was ignored.", name=quoted(cell.text)),
+            cell,
+        )
         for cell, header in zip(row, found, strict=True)
         if header and header.column == column_headers.ASIDE
     )
@@ -304,10 +331,10 @@ def _convention_hint(
     shifted = [row[place or 0] for place, header in columns if header.shifted]
     if not shifted:
         return ()
-    names = " and ".join(quoted(cell.text) for cell in shifted)
-    message = (
-        f"Headers such as {names} belong to the modified convention, but they do not decide how "
-        "the table is read. Check which convention the exercise asks for."
+    message = say(
+        "Headers such as {names} belong to the modified convention, but they do not decide how "
+        "the table is read. Check which convention the exercise asks for.",
+        names=listed([quoted(cell.text) for cell in shifted]),
     )
     return (_note("convention_hint", message, shifted[0]),)
 
@@ -321,19 +348,25 @@ def _columns_in_order(
     if width != len(COLUMNS) and not has_labels:
         raise GridError(
             "wrong_shape",
-            "Without headers, a DH table has the columns a, α, d, θ in this order, with or "
-            f"without row numbers before them; yours is {grid.size}.",
+            say(
+                "Without headers, a DH table has the columns a, α, d, θ in this order, with or "
+                "without row numbers before them; yours is {size}.",
+                size=grid.size,
+            ),
             place_of(grid.rows[0]),
         )
     first = 1 if has_labels else 0
     columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
-    message = (
-        "The columns have no headers and were read in the order a, α, d, θ. If yours is different, "
-        "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
+    message = say(
+        "The columns have no headers and were read in the order a, α, d, θ. If yours "
+        "is different, such as θ, d, a, α in the Robotics Toolbox, put headers above "
+        "them."
     )
     if tuple(order) != tuple(COLUMNS):
         shown = ", ".join(SHOWN[column] for column in order)
-        message = f"The columns were read in the order of your comment: {shown}."
+        message = say(
+            "The columns were read in the order of your comment: {parameters}.", parameters=shown
+        )
     finding = _note("column_order", message, grid.rows[0][0])
     return columns, 0 if has_labels else None, (finding,)
 
@@ -342,9 +375,11 @@ def _row(
     row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
 ) -> PastedRow:
     if len(row) != width:
-        message = (
-            f"This row has {len(row)} values, but the table has {width} columns. Write one value "
-            "in each column; where a parameter is 0, write 0."
+        message = say(
+            "This row has {values} values, but the table has {columns} columns. Write one value "
+            "in each column; where a parameter is 0, write 0.",
+            values=len(row),
+            columns=width,
         )
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)

@@ -8,17 +8,23 @@ from typing import Final
 from service.grading.feedback import Finding, reading_note
 from service.grading.reading.tables.words import PLACES, in_plain_words
 from service.grids import GridCell, GridError
+from service.translations import say
 
 LAST: Final = 10_000
 _LONGEST: Final = 30
 _WORDS: Final = "|".join(sorted(PLACES - {"#", "name", "label"}, key=len, reverse=True))
-_NUMBER: Final = re.compile(rf"(?:(?:{_WORDS}|[ijklnta#])[\s.]?)?(\d{{1,2}})\.?")
-# 第1关节, and the numbers of Chinese.
-_ORDINAL: Final = re.compile(r"第\s?(\d{1,2})(?:\s?joint)?")
+# Glied Nr. 1, articulation n° 1.
+_NUMERO: Final = r"(?:n[or°]|num|nummer|number|numero|#)\.?\s?"
+_NUMBER: Final = re.compile(
+    rf"(?:(?:{_WORDS}|[ijklnta#])[\s.]?)?(\d{{1,2}})\.?|(?:{_WORDS})?\s?{_NUMERO}(\d{{1,2}})"
+)
+# 1. Gelenk, 第1关节, and the numbers of Chinese.
+_ORDINAL: Final = re.compile(rf"第\s?(\d{{1,2}})(?:\s?joint)?|(\d{{1,2}})\.\s?(?:{_WORDS})")
 _NUMERALS: Final = str.maketrans("一二三四五六七八九", "123456789")
 _STEP: Final = re.compile(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
 _END: Final = frozenset(
     {"e", "ee", "tool", "tcp", "tip", "end", "effector", "end effector", "end-effector", "n+1"}
+    | {"endeffektor", "werkzeug", "effecteur", "outil", "efector final", "herramienta"}
 )
 
 
@@ -38,7 +44,7 @@ def label_place(text: str) -> int | None:
     if step := _STEP.fullmatch(plain):
         return int(step[2]) if int(step[2]) == int(step[1]) + 1 else None
     number = _NUMBER.fullmatch(plain) or _ORDINAL.fullmatch(plain)
-    return int(number[1]) if number else None
+    return int(number[number.lastindex or 1]) if number else None
 
 
 def is_label(text: str) -> bool:
@@ -58,7 +64,7 @@ def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]
         if not any(label.text for label in labels):
             return typed, ()
         unknown = next(i for i in typed if places[i] is None)
-        message = (
+        message = say(
             "Not all rows have a number, so the rows were read in the order in which they stand."
         )
         return typed, (reading_note("row_labels", message, labels[unknown].whole),)
@@ -66,12 +72,15 @@ def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]
         again = next(i for i in typed if known[i] in known[:i])
         raise GridError(
             "duplicate_row",
-            f"Two rows have the label {labels[again].text[:_LONGEST]}. Give each row its own.",
+            say(
+                "Two rows have the label {label}. Give each row its own.",
+                label=labels[again].text[:_LONGEST],
+            ),
             labels[again].whole,
         )
     order = sorted(typed, key=known.__getitem__)
     if order == typed:
         return typed, ()
     moved = next(i for i in typed if order[i] != i)
-    message = "The rows were put in the order of their labels."
+    message = say("The rows were put in the order of their labels.")
     return order, (reading_note("rows_reordered", message, labels[moved].whole),)

@@ -33,6 +33,7 @@ from service.grading.work_budget import MAX_SYMBOLS_AGAIN, WorkBudget
 from service.grids import GridError
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
+from service.translations import say
 
 IS_ANGLE = np.array([QUANTITIES[column] == "angle" for column in COLUMNS])
 MAX_ROWS = 12
@@ -246,7 +247,7 @@ EMPTY = Entry(
     Verdict.MISSING,
     (
         reading_error(
-            "missing", "Empty cells and dashes have no value: write 0 where a parameter is 0."
+            "missing", say("Empty cells and dashes have no value: write 0 where a parameter is 0.")
         ),
     ),
 )
@@ -255,7 +256,7 @@ ZERO = Entry(
     findings=(
         Finding(
             "empty_cells",
-            "Empty cells and dashes were read as 0.",
+            say("Empty cells and dashes were read as 0."),
             severity=Severity.INFO,
             reading=True,
         ),
@@ -285,7 +286,7 @@ def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
 
 
 def _too_many_rows(found: int) -> Finding:
-    message = f"A table has at most {MAX_ROWS} rows; yours has {found}."
+    message = say("A table has at most {most} rows; yours has {found}.", most=MAX_ROWS, found=found)
     return reading_error("too_many_rows", message)
 
 
@@ -297,7 +298,7 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
         return CONVENTION_NAMES[name], ()
     unknown = Finding(
         "unknown_convention",
-        'This convention is not known, so it was ignored. Write "standard" or "modified".',
+        say('This convention is not known, so it was ignored. Write "standard" or "modified".'),
         severity=Severity.WARNING,
         reading=True,
     )
@@ -332,13 +333,16 @@ def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tup
 
 # The message for a JSON object shows the expected object; the one for a list or a value uses words.
 _NO_TABLE = reading_error(
-    "wrong_shape", 'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.'
+    "wrong_shape",
+    say('A DH table is written {{"rows": [{{"a": …, "alpha": …, "d": …, "theta": …}}, …]}}.'),
 )
 _NOT_ROWS = reading_error(
-    "wrong_shape", "Write the rows of the table, each with its four values a, α, d, θ."
+    "wrong_shape", say("Write the rows of the table, each with its four values a, α, d, θ.")
 )
-_NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
-_NOT_VALUES = reading_error("wrong_shape", "Write the four values a, α, d, θ in this row.")
+_NO_ROW = reading_error(
+    "wrong_shape", say('A row is written {{"a": …, "alpha": …, "d": …, "theta": …}}.')
+)
+_NOT_VALUES = reading_error("wrong_shape", say("Write the four values a, α, d, θ in this row."))
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:

@@ -29,7 +29,8 @@ TERMS: Final[Mapping[str, str]] = {
 }  # fmt: skip
 PLACES: Final = frozenset(
     {"link", "joint", "row", "frame", "axis", "index", "no", "nr", "number", "name", "label", "#"}
-    | {"gelenk", "glied", "achse", "arm", "armteil", "zeile", "nummer"}
+    | {"gelenk", "glied", "achse", "arm", "armteil", "zeile", "reihe", "korper", "nummer"}
+    | {"gelenknummer", "gliednummer", "achsnummer", "zeilennummer"}
     | {"articulacion", "eslabon", "eje", "fila", "numero", "num", "indice"}
     | {"articulation", "liaison", "segment", "corps", "axe", "ligne"}
     | {"giunto", "braccio", "asse", "membro", "riga"}
@@ -71,6 +72,8 @@ _CHINESE: Final = {
     **dict.fromkeys(("连杆偏距", "连杆偏置", "关节偏距", "关节偏置", "偏距", "偏置"), "offset"),
     **dict.fromkeys(("关节角度", "关节转角", "关节角"), "angle"),
     **dict.fromkeys(("关节", "连杆", "杆件", "坐标系", "序号", "编号", "关节号", "轴"), "joint"),
+    **dict.fromkeys(("连杆号", "轴号", "行号", "行"), "row"),
+    **dict.fromkeys(("末端执行器", "末端", "工具"), "tool"),
     **dict.fromkeys(("关节变量", "变量", "关节类型", "类型", "备注", "说明", "关节范围"), "aside"),
     **dict.fromkeys(("运动范围", "变量范围", "范围"), "aside"),
     **dict.fromkeys(("距离", "转角", "角度", "角", "参数"), "value"),

@@ -29,7 +29,10 @@ SPELLINGS = {
     "label": [
         "i", "j", "n", "k", "#", "link", "Link", "joint", "Joint", "Link i", "joint i", "Joint #",
         "link no.", "No.", "no", "row", "frame", "$i$", "i (link)", "joint number", "link number",
-        "index", "axis",
+        "index", "axis", "Glied", "Gelenk Nr.", "Glied-Nr.", "Gelenknummer", "Zeile", "Reihe",
+        "Körper", "Articulation", "N° d'articulation", "numéro de l’axe", "Segment", "Liaison",
+        "Corps", "Articulación", "Eslabón", "N.º de eslabón", "连杆", "关节", "连杆 i",
+        "连杆号", "行",
     ],
     "aside": ["type", "Joint type", "variable", "joint variable", "comment", "limits", "home"],
 }  # fmt: skip

@@ -184,6 +184,33 @@ def test_labels(labels: list[str], notes: list[str], catalogue: Mapping[str, Exe
     assert infos(report) == notes
 
 
+@together(
+    ("header", "label"),
+    [
+        ("Glied", "Glied {}"), ("Gelenk", "{}. Gelenk"), ("Zeile", "Zeile {}"),
+        ("Glied-Nr.", "Glied Nr. {}"), ("Articulation", "Articulation {}"),
+        ("N° d'articulation", "articulation n° {}"), ("Segment", "Segment {}"),
+        ("Liaison", "Liaison {}"), ("Corps", "Corps {}"), ("Articulación", "Articulación {}"),
+        ("Eslabón", "Eslabón {}"), ("连杆", "连杆 {}"), ("关节", "关节{}"),
+    ],
+)  # fmt: skip
+def test_rows_may_have_labels_in_the_language_of_the_student(
+    header: str, label: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    rows = [(label.format(i + 1), *line.split(", ")) for i, line in enumerate(RRRP_LINES)]
+    head = (header, "a", "alpha", "d", "theta")
+    exercise = catalogue[RRRP.exercise]
+    for separator in (", ", "\t", ";"):
+        in_order, turned = (
+            "\n".join(map(separator.join, (head, *each))) for each in (rows, rows[::-1])
+        )
+        assert full_marks(pasted(exercise, in_order))
+        assert "row_labels" not in infos(pasted(exercise, in_order))
+        report = pasted(exercise, turned)
+        assert full_marks(report)
+        assert "rows_reordered" in infos(report)
+
+
 def test_indices_of_headers_do_not_decide_the_convention(
     catalogue: Mapping[str, Exercise],
 ) -> None:
