@@ -90,14 +90,6 @@ def paragraph(*sentences: str) -> str:
     return say("{first} {second}", first=paragraph(*said[:-1]), second=said[-1])
 
 
-def paragraph(*sentences: str) -> str:
-    """Return complete sentences one after the other; empty ones are left out."""
-    said = [each for each in sentences if each]
-    if len(said) < 2:
-        return said[0] if said else ""
-    return say("{first} {second}", first=paragraph(*said[:-1]), second=said[-1])
-
-
 def told(text: str, translation: Translation | None) -> str:
     """Return a sentence in a language; None is English. A text without a template stays."""
     if translation is None or not isinstance(text, Sentence):
