@@ -9,10 +9,12 @@ catalogue from such a JSON file.
 
 import argparse
 import json
+import re
 import sys
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from string import Formatter
 from typing import Any, Final
 
 from babel.messages.catalog import Catalog
@@ -30,6 +32,9 @@ _KEYWORDS: Final[dict[str, dict[str, Any]]] = {
     "javascript": {"worded": None, "wordedFor": (1, 2)},
 }
 DOMAINS: Final = ("sentences", "pages")
+# What a text quotes: a name or a piece of a formula.
+_IN_PAGES: Final = re.compile(r"%\(\w+\)s")
+_QUOTED: Final = re.compile(r"`[^`]+`")
 
 
 def extracted(domain: str) -> Catalog:
@@ -123,6 +128,33 @@ def write(code: str, domain: str, found: Catalog) -> None:
     (FOLDER / code / f"{domain}.mo").write_bytes(compiled)
 
 
+def faults(found: Catalog) -> Iterator[str]:
+    """Yield what is wrong with the translations of a catalogue, a line for each sentence.
+
+    A translation has the places of its sentence, the same texts between backticks, and blanks
+    where the sentence begins and ends with them.
+    """
+    for message in found:
+        sources = _texts(message.id)
+        for text in filter(None, _texts(message.string) if message.id else ()):
+            for what, of in (("places", _places), ("quotations", _quotations), ("ends", _ends)):
+                if of(text) not in map(of, sources):
+                    yield f"{what} of {text!r} differ from those of {sources[-1]!r}"
+
+
+def _places(text: str) -> set[str | None]:
+    # Those of templates of pages look like %(name)s.
+    return {name for _, name, _, _ in Formatter().parse(text)} | set(_IN_PAGES.findall(text))
+
+
+def _quotations(text: str) -> list[str]:
+    return sorted(_QUOTED.findall(text))
+
+
+def _ends(text: str) -> tuple[bool, bool]:
+    return text[:1].isspace(), text[-1:].isspace()
+
+
 def _missing(code: str, domain: str) -> list[dict[str, Any]]:
     """Return the sentences without a translation, each with an empty one to be filled in."""
     plurals = catalogue(code, domain).num_plurals
@@ -151,6 +183,7 @@ def _fill(code: str, domain: str, file: Path) -> None:
             text = each["text"]
             message.string = tuple(text) if isinstance(text, list) else text
     write(code, domain, found)
+    sys.stderr.writelines(f"{fault}\n" for fault in faults(found))
 
 
 def _main() -> None:

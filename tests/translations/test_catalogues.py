@@ -1,0 +1,68 @@
+"""The catalogues of all languages fit the sentences in the source."""
+
+from io import BytesIO
+
+import pytest
+from babel.messages.catalog import Catalog
+from babel.messages.pofile import read_po
+
+from tests.translations.catalogues import (
+    CODES,
+    DOMAINS,
+    FOLDER,
+    as_mo,
+    as_po,
+    catalogue,
+    faults,
+    updated,
+)
+
+COMMITTED = [
+    (code, domain)
+    for code in CODES
+    for domain in DOMAINS
+    if (FOLDER / code / f"{domain}.po").is_file()
+]
+
+
+@pytest.mark.parametrize(("code", "domain"), COMMITTED)
+def test_a_catalogue_has_exactly_the_sentences_of_the_source(code: str, domain: str) -> None:
+    old, new = catalogue(code, domain), updated(code, domain)
+    assert {each.id for each in old} == {each.id for each in new}
+
+
+@pytest.mark.parametrize(("code", "domain"), COMMITTED)
+def test_every_sentence_is_translated(code: str, domain: str) -> None:
+    missing = [
+        each.id
+        for each in catalogue(code, domain)
+        if each.id and (each.fuzzy or not all(_texts(each.string)))
+    ]
+    assert missing == []
+
+
+@pytest.mark.parametrize(("code", "domain"), COMMITTED)
+def test_translations_have_the_places_and_quotations_of_their_sentences(
+    code: str, domain: str
+) -> None:
+    assert list(faults(catalogue(code, domain))) == []
+
+
+@pytest.mark.parametrize(("code", "domain"), COMMITTED)
+def test_the_compiled_catalogue_is_that_of_the_text(code: str, domain: str) -> None:
+    text = (FOLDER / code / f"{domain}.po").read_bytes()
+    compiled = as_mo(read_po(BytesIO(text), locale=code, domain=domain))
+    assert (FOLDER / code / f"{domain}.mo").read_bytes() == compiled
+
+
+def test_a_translation_without_a_place_is_a_fault() -> None:
+    found = Catalog(locale="de")
+    found.add("Write `{name}` in row {row}.", "Schreiben Sie `{name}` in Zeile {zeile}.")
+    found.add("Write `pi`.", "Schreiben Sie `π`.")
+    found.add("Check the sign.", "Prüfen Sie das Vorzeichen.")
+    assert [fault.split()[0] for fault in faults(found)] == ["places", "quotations"]
+    assert b"Vorzeichen" in as_po(found)
+
+
+def _texts(string: object) -> tuple[str, ...]:
+    return tuple(string) if isinstance(string, tuple | list) else (str(string),)
