@@ -17,6 +17,7 @@ from service.grading.report import (
     Severity,
     Verdict,
 )
+from service.translations import say
 
 # In a counterexample, what the entry gives, and the right number, which only a tutor is told.
 YOURS = "yours"
@@ -83,7 +84,7 @@ class UnreadableAnswerError(Exception):
 
 ROUNDED = Finding(
     "rounded",
-    "Accepted, but rounded. Write the exact number: a fraction, a root or a multiple of π.",
+    say("Accepted, but rounded. Write the exact number: a fraction, a root or a multiple of π."),
     severity=Severity.INFO,
 )
 

@@ -20,6 +20,7 @@ from service.grading.report import Severity
 from service.kinematics.jacobian import rank
 from service.kinematics.screws import exponential, sliding_axis, turning_axis
 from service.kinematics.transforms import Matrices, Numbers, inverse, is_rigid
+from service.translations import say
 
 _Quantities = Sequence[Kind] | Sequence[Sequence[Kind]]
 
@@ -96,8 +97,10 @@ def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> 
 
 STANDS_STILL = Finding(
     "no_joint_variable",
-    "No joint variable has any effect in this answer, so it describes an arm that cannot move: it "
-    "earns nothing.",
+    say(
+        "No joint variable has any effect in this answer, so it describes an arm that cannot move: "
+        "it earns nothing."
+    ),
 )
 
 
@@ -105,7 +108,10 @@ def follows_from(earlier: PartSpec) -> Finding:
     """Return the message that the points were earned by following from an earlier answer."""
     return Finding(
         "follow_through",
-        f"This earns its points, for it follows from your answer to {earlier.title!r}. That answer "
-        f"is wrong: check it first.",
+        say(
+            "This earns its points, for it follows from your answer to {part}. That answer is "
+            "wrong: check it first.",
+            part=repr(earlier.title),
+        ),
         severity=Severity.INFO,
     )

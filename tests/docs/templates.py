@@ -1,8 +1,8 @@
 """Find the sentences of all messages of the program, by reading its source.
 
 A template is a string of at least two words in the code that reads, judges or explains. Each value
-in an f-string is a gap. Texts for programmers (docstrings, patterns, the text of a ValueError) are
-no templates.
+in an f-string is a gap, and so is each ``{name}`` in the template of a sentence. Texts for
+programmers (docstrings, patterns, the text of a ValueError) are no templates.
 """
 
 import ast
@@ -10,11 +10,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from string import Formatter
 from typing import Final
 
 GAP: Final = "…"
 # Exceptions whose texts are not for students.
 _FOR_PROGRAMMERS: Final = {"ValueError", "TypeError", "RuntimeError", "UnknownPartError"}
+# The functions that take templates of sentences, where a brace is written twice.
+_OF_SENTENCES: Final = {"say", "say_count", "template"}
 # What is registered by these is on the pages of codes and in no message.
 _RECORDS: Final = {"misconception", "check", "register"}
 _PATTERN: Final = re.compile(r"\\|\(\?|\[\^|\]\+|\)\*|\[A-Z|</?m|[\[(|].*\|")
@@ -90,19 +93,47 @@ def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
                 continue
             case ast.Call(func=ast.Name(name)) if name in _RECORDS:
                 continue
+            case ast.Call(func=ast.Name(name)) if name in _OF_SENTENCES:
+                yield from _of_call(node)
+                continue
             case ast.Constant(value=str(text)):
                 yield _with_gaps([text])
-            case ast.JoinedStr(values=values):
-                pieces = [""]
-                for value in values:
-                    if isinstance(value, ast.Constant):
-                        pieces[-1] += str(value.value)
-                    else:
-                        pieces.append("")
-                        yield from _pieces(value)
-                yield _with_gaps(pieces)
+            case ast.JoinedStr():
+                yield from _of_joined(node)
                 continue
         yield from _pieces(node)
+
+
+def _of_joined(node: ast.JoinedStr) -> Iterator[tuple[str, ...]]:
+    """Yield the pieces of an f-string, after those of the strings in its values."""
+    pieces = [""]
+    for value in node.values:
+        if isinstance(value, ast.Constant):
+            pieces[-1] += str(value.value)
+        else:
+            pieces.append("")
+            yield from _pieces(value)
+    yield _with_gaps(pieces)
+
+
+def _of_call(call: ast.Call) -> Iterator[tuple[str, ...]]:
+    """Yield the pieces of the templates of ``say``, and of the strings in their values."""
+    for each in call.args:
+        if isinstance(each, ast.Constant):
+            yield _of_sentence(str(each.value))
+    for value in (*call.args, *(keyword.value for keyword in call.keywords)):
+        if not isinstance(value, ast.Constant):
+            yield from _pieces(ast.Expression(value))
+
+
+def _of_sentence(template: str) -> tuple[str, ...]:
+    """Return the pieces of a template of ``say`` between its gaps."""
+    pieces = [""]
+    for text, name, _, _ in Formatter().parse(template):
+        pieces[-1] += text
+        if name is not None:
+            pieces.append("")
+    return tuple(GAP.join(pieces).split(GAP))
 
 
 def _with_gaps(pieces: Iterable[str]) -> tuple[str, ...]:

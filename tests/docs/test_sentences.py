@@ -27,6 +27,13 @@ def test_the_page_is_up_to_date() -> None:
         ),
         ('M = "This was read as {name} here."', ["This was read as … here."]),
         ('f("one", "two words")', ["two words"]),
+        ('say("Joint {joint} turns about {z}.", joint=3, z=z)', ["Joint … turns about …."]),
+        (
+            'say(\'Write {{"a": …}} here.\', x=say("two words"))',
+            ['Write {"a": …} here.', "two words"],
+        ),
+        ('say_count("one row", "{count} of the rows", count=n)', ["one row", "… of the rows"]),
+        ('SIGN = template("The sign of {name} is wrong.")', ["The sign of … is wrong."]),
         ('"""A docstring of some words."""', []),
         ('def f():\n    """A docstring of some words."""', []),
         ('raise ValueError("a text for programmers")', []),

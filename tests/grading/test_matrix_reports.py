@@ -194,7 +194,7 @@ SLIPS: dict[str, Slip] = {
         STANFORD,
         with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]),
         ["distance_left_out"],
-        "The offset d along the axis of joint 6 is left out",
+        "d, the offset along the axis of joint 6, is left out",
         POSITION,
     ),
     "rotation of another frame": (

@@ -63,7 +63,7 @@ SAID = [
             ["0", "0", "0", "1"],
         ],
         "joint_variable_sign",
-        "Joint 4 counts the wrong way: check the sign of its variable. Its axis points",
+        "Joint 4 moves the wrong way: check the sign of its variable. Its axis points",
     ),
 ]
 

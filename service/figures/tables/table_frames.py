@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from service.catalogue import Joint
 from service.expressions import AngleUnit, Expression, evaluate_all
 from service.figures.tables.scope import DrawingScope
-from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding, reading_error
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.reading.entry import Reader
@@ -19,6 +18,7 @@ from service.kinematics.chain import COLUMNS, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import coincident, rank, space_jacobian
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import listed
 
 # The number of random configurations that represent a generic one.
 _GENERIC = 4

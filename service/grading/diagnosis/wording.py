@@ -1,16 +1,12 @@
 """Words that several messages share."""
 
-from collections.abc import Sequence
+from service.kinematics.chain import ALPHA, THETA
+from service.translations import Sentence, listed, say
 
+__all__ = ["AXES", "SYMBOLS", "axes_of_row", "change_every_sign", "wrong_throughout"]
 # The symbol of each table column, and the axis along or about which it is measured.
 SYMBOLS = ("a", "α", "d", "θ")
-MEASURED = ("along x", "about x", "along z", "about z")
-POSITIVE = ("in the direction of the axis", "by the right-hand rule") * 2
-
-
-def listed(words: Sequence[str]) -> str:
-    """Return the words with commas between them and "and" before the last."""
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+AXES = ("x", "x", "z", "z")
 
 
 def axes_of_row(axis: str, label: str, last: int) -> str:
@@ -20,5 +16,30 @@ def axes_of_row(axis: str, label: str, last: int) -> str:
     label, and the second row after the last joint, have axes without names.
     """
     if label.isdecimal():
-        return f"{axis}{int(label) - 1} and {axis}{label}"
-    return f"{axis}{last} and the last {axis} axis" if label == "e" else f"the two {axis} axes"
+        return listed([f"{axis}{int(label) - 1}", f"{axis}{label}"])
+    if label == "e":
+        return say("{first} and the last {axis} axis", first=f"{axis}{last}", axis=axis)
+    return say("the two {axis} axes", axis=axis)
+
+
+def wrong_throughout(column: int) -> Sentence:
+    """Return the message that a column of a table has the wrong sign in all rows."""
+    symbol, axis = SYMBOLS[column], AXES[column]
+    if column in (ALPHA, THETA):
+        return say(
+            "{symbol} has the wrong sign throughout: it is measured about {axis}, positive by the "
+            "right-hand rule.",
+            symbol=symbol,
+            axis=axis,
+        )
+    return say(
+        "{symbol} has the wrong sign throughout: it is measured along {axis}, positive in the "
+        "direction of the axis.",
+        symbol=symbol,
+        axis=axis,
+    )
+
+
+def change_every_sign(column: int) -> Sentence:
+    """Return the correction of such a column."""
+    return say("Change the sign of every {symbol}.", symbol=SYMBOLS[column])

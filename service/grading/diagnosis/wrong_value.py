@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from service.catalogue import Joint
 from service.expressions import Expression
 from service.expressions.printing.spelling import PLAIN, Spelling
-from service.grading.diagnosis.wording import MEASURED, SYMBOLS
+from service.grading.diagnosis.wording import AXES, SYMBOLS
 from service.grading.feedback import EXPECTED, YOURS, Finding
 from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written, check
 from service.grading.numerics.comparison import (
@@ -25,6 +25,7 @@ from service.grading.numerics.samples import Samples
 from service.grading.numerics.tolerances import PRINTED_NUMBER
 from service.grading.report import Correction
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 Mask = NDArray[np.bool_]
 Hypotheses = Iterator[Hypothesis[Numbers]]
@@ -117,9 +118,9 @@ class WrongCell(WrongValue):
         return SYMBOLS[self.column]
 
     @property
-    def measured(self) -> str:
-        """The direction in which that parameter is measured: along or about x or z."""
-        return MEASURED[self.column]
+    def axis(self) -> str:
+        """The axis along or about which that parameter is measured: x or z."""
+        return AXES[self.column]
 
     def name(self, joint: Joint) -> str:
         """Return the joint's variable as the student writes it."""
@@ -203,13 +204,21 @@ def undefined(case: WrongValue) -> Finding | None:
     if not bad.size:
         return None
     at = case.samples.at(int(bad[0]), case.expression.symbols)
-    where = ", ".join(f"{name} = {number:g}" for name, number in at.items())
-    return finding_on(
-        case,
-        f"{case.expression.text()} has no value{' at ' if where else ''}{where}: check for a "
-        f"division by zero, a root of a negative number, or a number that is too large.",
-        {**at},
+    formula = case.expression.text()
+    values = ", ".join(f"{name} = {number:g}" for name, number in at.items())
+    hint = say(
+        "{formula} has no value: check for a division by zero, a root of a negative number, or a "
+        "number that is too large.",
+        formula=formula,
     )
+    if values:
+        hint = say(
+            "{formula} has no value at {values}: check for a division by zero, a root of a "
+            "negative number, or a number that is too large.",
+            formula=formula,
+            values=values,
+        )
+    return finding_on(case, hint, {**at})
 
 
 def differs(case: WrongValue, hint: str) -> Finding:

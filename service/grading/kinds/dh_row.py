@@ -34,6 +34,7 @@ from service.grading.report import CellReport, Verdict, row_report
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import say
 
 LABEL = "1"
 NONE = "none"
@@ -231,16 +232,22 @@ _NOT_SAID: tuple[object, ...] = (None, False, "")
 
 _WRONG_SHAPE = reading_error(
     "wrong_shape",
-    'One row is asked for: {"a": …, "alpha": …, "d": …, "theta": …}, or {"none": true} where there '
-    "is none.",
+    say(
+        'One row is asked for: {{"a": …, "alpha": …, "d": …, "theta": …}}, or {{"none": true}} '
+        "where there is none."
+    ),
 )
 _WRONG_TEXT = reading_error(
     "wrong_shape",
-    "One row is asked for: write a, α, d, θ in this order with commas between them, or by name as "
-    "in a = …, d = …. Write none where there is no row.",
+    say(
+        "One row is asked for: write a, α, d, θ in this order with commas between them, or by name "
+        "as in a = …, d = …. Write none where there is no row."
+    ),
 )
 _CONTRADICTION = reading_error(
     "contradiction",
-    'The answer says that there is no row, and gives one: write {"none": true} alone, or the row '
-    "alone.",
+    say(
+        'The answer says that there is no row, and gives one: write {{"none": true}} alone, or the '
+        "row alone."
+    ),
 )

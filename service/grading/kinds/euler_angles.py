@@ -43,11 +43,14 @@ from service.kinematics.rotations import (
     to_angles,
 )
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import say
 
 SINGULAR = Finding(
     "singular_orientation",
-    "Here the first and the third axis lie in one line. Only the sum or the difference of the "
-    "outer angles counts: any pair that fits is right.",
+    say(
+        "Here the first and the third axis lie in one line. Only the sum or the difference of the "
+        "outer angles counts: any pair that fits is right."
+    ),
     severity=Severity.INFO,
 )
 

@@ -36,6 +36,7 @@ from service.kinematics.chain import COLUMNS
 from service.kinematics.factors import CellIndex
 from service.learning.find_slip import DrawnSlip, NoSlipError, TableBlame, drawn_slip
 from service.learning.table_texts import TableTexts, as_rows
+from service.translations import say
 
 MARKED: Final = "marked"
 TABLE: Final = "table"
@@ -280,13 +281,15 @@ def _meaning(slip: str) -> str:
 
 
 def _named(slip: str) -> Finding:
-    return Finding("slip_found", f"This was the slip: {_meaning(slip)}.", severity=Severity.INFO)
+    hint = say("This was the slip: {meaning}.", meaning=say(_meaning(slip)))
+    return Finding("slip_found", hint, severity=Severity.INFO)
 
 
 _NOT_THERE: Final = Finding(
     "slip_elsewhere",
-    "The slip is not here, or not only here. Mark the wrong cells and no others.",
+    say("The slip is not here, or not only here. Mark the wrong cells and no others."),
 )
 _WRONG_SHAPE: Final = reading_error(
-    "wrong_shape", 'The answer is written {"marked": "2.alpha", "table": {"rows": […]}}.'
+    "wrong_shape",
+    say('The answer is written {{"marked": "2.alpha", "table": {{"rows": […]}}}}.'),
 )

@@ -51,6 +51,7 @@ from service.grading.report import CellReport, Correction, RowReport, Severity, 
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, Table, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import say
 
 # The share of the points that frames of the other convention cost, regardless of their number.
 COST: Final = 0.5
@@ -328,11 +329,11 @@ def _cell_text(values: Numbers, constant: Numbers, angle: bool, grading: Grading
 
 _TABLE: Final = Finding(
     "table_of_frames",
-    "These frames lead to one DH table.",
+    say("These frames lead to one DH table."),
     severity=Severity.INFO,
 )
 _OTHER_CONVENTION: Final = Finding(
     "frames_of_other_convention",
-    "These are right frames of the other convention.",
-    "Put z of each frame along the axis that this convention takes.",
+    say("These are right frames of the other convention."),
+    say("Put z of each frame along the axis that this convention takes."),
 )

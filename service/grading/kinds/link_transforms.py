@@ -30,6 +30,7 @@ from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row
 from service.kinematics.transforms import Matrices, Numbers, inverse
+from service.translations import say
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,9 +195,17 @@ def _row(matrix: Matrices, part: LinkTransformsSpec) -> StudentRow | None:
 
 
 def _wrong_shape(labels: tuple[str, ...]) -> Finding:
-    between = "and" if len(labels) == 2 else "to"
-    message = (
-        f"Write {len(labels)} matrices, A{labels[0]} {between} A{labels[-1]}, each with 4 rows of "
-        "4 entries."
+    first, last = f"A{labels[0]}", f"A{labels[-1]}"
+    message = say(
+        "Write {number} matrices, {first} to {last}, each with 4 rows of 4 entries.",
+        number=len(labels),
+        first=first,
+        last=last,
     )
+    if len(labels) == 2:
+        message = say(
+            "Write 2 matrices, {first} and {last}, each with 4 rows of 4 entries.",
+            first=first,
+            last=last,
+        )
     return reading_error("wrong_shape", message)

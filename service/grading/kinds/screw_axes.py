@@ -41,6 +41,7 @@ from service.grading.report import Feedback, Place, Severity
 from service.grids import GridError
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse
+from service.translations import say
 
 # The share of the points that a slip in all axes costs, regardless of the number of axes.
 COST = 0.25
@@ -199,8 +200,10 @@ def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
 
 REVERSED = Finding(
     "own_direction",
-    "Your axis points the opposite way. This is valid if the joint variable also has the opposite "
-    "sign.",
+    say(
+        "Your axis points the opposite way. This is valid if the joint variable also has the "
+        "opposite sign."
+    ),
     severity=Severity.INFO,
 )
 

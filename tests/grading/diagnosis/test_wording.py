@@ -2,15 +2,7 @@
 
 import pytest
 
-from service.grading.diagnosis.wording import axes_of_row, listed
-
-
-@pytest.mark.parametrize(
-    ("words", "text"),
-    [(["1"], "1"), (["1", "2"], "1 and 2"), (["1", "2", "3"], "1, 2 and 3"), ([], "")],
-)
-def test_words_are_listed_with_commas_and_and(words: list[str], text: str) -> None:
-    assert listed(words) == text
+from service.grading.diagnosis.wording import axes_of_row
 
 
 @pytest.mark.parametrize(

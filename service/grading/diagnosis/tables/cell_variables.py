@@ -7,14 +7,14 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.grading.diagnosis.formulas.quantity import quantity_of
-from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import WrongCell, finding_on
 from service.grading.feedback import Finding
 from service.grading.misconception import check
 from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.kinematics.transforms import Numbers
+from service.translations import listed, say, template
 
-CONVERTED = (
+CONVERTED = say(
     "The joint variable was converted between degrees and radians. Leave out the factor: a joint "
     "variable is already an angle."
 )
@@ -25,7 +25,9 @@ CONVERTED = (
     rank=2,
     code="unknown_symbol",
     rule="of_column",
-    means="the cell contains a length that the exercise does not have: d1 although joint 1 turns",
+    means=template(
+        "the cell contains a length that the exercise does not have: d1 although joint 1 turns"
+    ),
     example=("stanford-arm", "table", {"1/d": "d1"}),
     unlike={"6/d": "0"},
 )
@@ -35,8 +37,12 @@ def unknown_length(case: WrongCell) -> Finding | None:
     if joint is None or joint.prismatic:
         return None
     lengths = [name for name in case.samples.values if re.fullmatch(r"d_?\d+", name)]
-    has = f" It has {', '.join(lengths)}." if lengths else ""
-    return finding_on(case, f"This exercise has no {name}.{has}")
+    hint = say("This exercise has no {name}.", name=name)
+    if lengths:
+        hint = say(
+            "This exercise has no {name}. It has {lengths}.", name=name, lengths=", ".join(lengths)
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -44,8 +50,10 @@ def unknown_length(case: WrongCell) -> Finding | None:
     rank=4,
     code="joint_variable_absent",
     rule="joint_variable",
-    means="the cell contains a joint variable that the robot does not have: θ0, or θ3 if "
-    "joint 3 slides",
+    means=template(
+        "the cell contains a joint variable that the robot does not have: θ0, or θ3 if "
+        "joint 3 slides"
+    ),
     example=("stanford-arm", "table", {"3/theta": "theta3"}),
     unlike={"3/theta": "d3"},
 )
@@ -54,11 +62,24 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
     name, joint = _absent(case)
     if not name:
         return None
-    indices = [each.index for each in case.joints]
-    why = f"its joints are {min(indices)} to {max(indices)}"
-    if joint is not None:
-        why = f"joint {joint.index} {_motion(joint)}, and its variable is {case.name(joint)}"
-    return finding_on(case, f"This robot has no {name}: {why}.")
+    if joint is None:
+        indices = [each.index for each in case.joints]
+        hint = say(
+            "This robot has no {name}: its joints are {first} to {last}.",
+            name=name,
+            first=min(indices),
+            last=max(indices),
+        )
+    else:
+        # A turning joint has no variable d, which is a length that the exercise does not have.
+        hint = say(
+            "This robot has no {name}: joint {joint} slides along z, and its variable is "
+            "{variable}.",
+            name=name,
+            joint=joint.index,
+            variable=case.name(joint),
+        )
+    return finding_on(case, hint)
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
@@ -78,7 +99,7 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
     rank=20,
     code="joint_variable_missing",
     rule="joint_variable",
-    means="the joint's variable is missing, so the table describes only the drawn pose",
+    means=template("the joint's variable is missing, so the table describes only the drawn pose"),
     example=("stanford-arm", "table", {"1/theta": "0"}),
     unlike={"1/theta": "-theta1"},
 )
@@ -86,14 +107,13 @@ def joint_variable_missing(case: WrongCell) -> Finding | None:
     """The joint variable is missing, as if the table described the drawn pose."""
     if case.joint is None or not case.required or case.contained != {}:
         return None
-    return finding_on(
-        case,
-        f"Joint {case.joint.index} {_motion(case.joint)}, so this cell must contain its variable.",
-    )
-
-
-def _motion(joint: Joint) -> str:
-    return "slides along z" if joint.prismatic else "turns about z"
+    joint = case.joint.index
+    hint = say("Joint {joint} turns about z, so this cell must contain its variable.", joint=joint)
+    if case.joint.prismatic:
+        hint = say(
+            "Joint {joint} slides along z, so this cell must contain its variable.", joint=joint
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -101,7 +121,7 @@ def _motion(joint: Joint) -> str:
     rank=25,
     code="joint_variable_sign",
     rule="joint_variable",
-    means="the joint variable has the wrong sign",
+    means=template("the joint variable has the wrong sign"),
     example=("stanford-arm", "table", {"3/d": "-d3"}),
     unlike={"6/d": "0"},
 )
@@ -110,11 +130,16 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     opposite = {joint: -count for joint, count in case.required.items()}
     if case.joint is None or not opposite or case.contained != opposite:
         return None
-    return finding_on(
-        case,
-        f"The sign of the joint variable is wrong: check which way z points along this joint's "
-        f"axis, and in which sense the joint {_motion(case.joint)}.",
+    hint = say(
+        "The sign of the joint variable is wrong: check which way z points along this joint's "
+        "axis, and in which sense the joint turns about z."
     )
+    if case.joint.prismatic:
+        hint = say(
+            "The sign of the joint variable is wrong: check which way z points along this joint's "
+            "axis, and in which sense the joint slides along z."
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -122,7 +147,7 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     rank=30,
     code="joint_variable_index",
     rule="joint_variable",
-    means="the cell contains the variable of another joint",
+    means=template("the cell contains the variable of another joint"),
     example=("stanford-arm", "table", {"2/theta": "theta1"}),
     unlike={"2/theta": "2*theta2"},
 )
@@ -133,8 +158,13 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
         return None
     return finding_on(
         case,
-        f"This is the row of joint {case.joint.index}, but the cell contains {case.name(other)}, "
-        f"the variable of joint {other.index}.",
+        say(
+            "This is the row of joint {joint}, but the cell contains {variable}, the variable of "
+            "joint {other}.",
+            joint=case.joint.index,
+            variable=case.name(other),
+            other=other.index,
+        ),
     )
 
 
@@ -143,7 +173,7 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     rank=35,
     code="joint_variable_doubled",
     rule="joint_variable",
-    means="the joint variable counts more than once",
+    means=template("the joint variable counts more than once"),
     example=("three-link-cylindrical", "table", {"3/d": "2*d3"}),
     unlike={"1/d": "2*d1"},
 )
@@ -152,11 +182,16 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     joint, count = case.contained_alone
     if joint is None or joint != case.joint or joint not in case.required or abs(count) < 2:
         return None
-    return finding_on(
-        case,
-        f"The joint variable has a wrong factor: check how far the joint "
-        f"{'slides' if joint.prismatic else 'turns'} when the variable grows by 1.",
+    hint = say(
+        "The joint variable has a wrong factor: check how far the joint turns when the variable "
+        "grows by 1."
     )
+    if joint.prismatic:
+        hint = say(
+            "The joint variable has a wrong factor: check how far the joint slides when the "
+            "variable grows by 1."
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -164,7 +199,7 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     rank=40,
     code="degrees_as_radians",
     rule="angle_unit",
-    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
+    means=template("a number of degrees is read in radians, or a variable is multiplied by 180/π"),
     example=("planar-rr", "table", {"1/theta": "180*theta1/pi"}),
     unlike={"1/d": "1"},
 )
@@ -178,7 +213,7 @@ def cell_in_degrees(case: WrongCell) -> Finding | None:
     rank=45,
     code="radians_as_degrees",
     rule="angle_unit",
-    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
+    means=template("a number of radians is read in degrees, or a variable is multiplied by π/180"),
     example=("planar-rr", "table", {"1/theta": "pi*theta1/180"}),
     unlike={"1/d": "1"},
 )
@@ -200,7 +235,9 @@ def _is_converted(case: WrongCell, convert: Callable[[Numbers], Numbers]) -> boo
     rank=50,
     code="joint_variable_column",
     rule="joint_variable",
-    means="the joint variable is in a column that must be constant: θ if the joint slides",
+    means=template(
+        "the joint variable is in a column that must be constant: θ if the joint slides"
+    ),
     example=("stanford-arm", "table", {"3/theta": "d3"}),
     unlike={"6/d": "0"},
 )
@@ -209,12 +246,18 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     joint, _ = case.contained_alone
     if joint is None or joint != case.joint or case.required:
         return None
-    moves, column = ("slides", "d") if joint.prismatic else ("turns", "θ")
-    return finding_on(
-        case,
-        f"Joint {joint.index} {moves}, so its variable belongs in {column}; {case.symbol} is "
-        f"constant here.",
+    hint = say(
+        "Joint {joint} turns, so its variable belongs in θ; {symbol} is constant here.",
+        joint=joint.index,
+        symbol=case.symbol,
     )
+    if joint.prismatic:
+        hint = say(
+            "Joint {joint} slides, so its variable belongs in d; {symbol} is constant here.",
+            joint=joint.index,
+            symbol=case.symbol,
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -222,7 +265,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     rank=55,
     code="joint_variable_extra",
     rule="joint_variable",
-    means="the cell contains a joint variable that it must not depend on",
+    means=template("the cell contains a joint variable that it must not depend on"),
     example=("stanford-arm", "table", {"2/d": "d2 + d3"}),
     unlike={"2/d": "d6"},
 )
@@ -231,11 +274,18 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None
-    return finding_on(
-        case,
-        f"The cell contains {listed(extra)}: check whether {case.symbol} changes with "
-        f"{'it' if len(extra) == 1 else 'them'}.",
+    hint = say(
+        "The cell contains {variables}: check whether {symbol} changes with them.",
+        variables=listed(extra),
+        symbol=case.symbol,
     )
+    if len(extra) == 1:
+        hint = say(
+            "The cell contains {variable}: check whether {symbol} changes with it.",
+            variable=extra[0],
+            symbol=case.symbol,
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -243,7 +293,7 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     rank=60,
     code="wrong_quantity",
     rule="of_column",
-    means="the cell is an angle but must be a length, or a length but must be an angle",
+    means=template("the cell is an angle but must be a length, or a length but must be an angle"),
     example=("stanford-arm", "table", {"2/d": "90deg"}),
     unlike={"2/d": "d6"},
 )
@@ -252,5 +302,7 @@ def wrong_quantity(case: WrongCell) -> Finding | None:
     found = quantity_of(case.expression.tree)
     if found not in ("angle", "length") or (found == "angle") == case.angle:
         return None
-    asked, written = ("an angle", "a length") if case.angle else ("a length", "an angle")
-    return finding_on(case, f"{case.symbol} is {asked}, but {written} is written here.")
+    hint = say("{symbol} is a length, but an angle is written here.", symbol=case.symbol)
+    if case.angle:
+        hint = say("{symbol} is an angle, but a length is written here.", symbol=case.symbol)
+    return finding_on(case, hint)

@@ -24,6 +24,7 @@ from service.grading.part import Grading
 from service.grading.reading.tables.table import IS_ANGLE, StudentRow, StudentTable, values_of
 from service.grading.report import Verdict
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
+from service.translations import paragraph, say
 
 # For each written column, from left to right, the column that it is meant to be.
 Order = tuple[int, ...]
@@ -166,13 +167,13 @@ def _moved(intended: StudentTable, table: StudentTable) -> frozenset[tuple[int, 
 
 def _finding(order: Order, *, named: bool) -> Finding:
     written = ", ".join(SYMBOLS[column] for column in order)
-    advice = (
+    advice = say(
         "A table without headers has the order a, α, d, θ: put headers above the columns, or "
         "change their order."
     )
     if named:
-        advice = "Write each parameter under its own header: a, α, d, θ."
+        advice = say("Write each parameter under its own header: a, α, d, θ.")
     return _PERMUTED.finding(
-        f"The columns stand in the order {written}. {advice}",
-        "Write the columns in the order a, α, d, θ.",
+        paragraph(say("The columns stand in the order {order}.", order=written), advice),
+        say("Write the columns in the order a, α, d, θ."),
     )

@@ -15,6 +15,7 @@ from service.kinematics.chain import A
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import dh1_residual, dh2_residual, row
 from service.kinematics.transforms import Matrices, Numbers, inverse
+from service.translations import say
 
 
 @dataclass(frozen=True)
@@ -44,16 +45,19 @@ class WrongRow(WrongNumbers):
 )
 def exchanged_parameters(case: WrongRow) -> Hypotheses:
     """The student's row has a and d, or α and θ, in each other's places."""
-    for names, order in (
-        ("a and d", [2, 1, 0, 3]),
-        ("α and θ", [0, 3, 2, 1]),
-        ("a and d, and α and θ", [2, 3, 0, 1]),
-    ):
-        finding = says(
-            f"{names} are exchanged: a and α are measured along and about x, d and θ along and "
-            f"about z.",
+    for first, last, order in (("a", "d", [2, 1, 0, 3]), ("α", "θ", [0, 3, 2, 1])):
+        hint = say(
+            "{first} and {last} are exchanged: a and α are measured along and about x, d and θ "
+            "along and about z.",
+            first=first,
+            last=last,
         )
-        yield Written(case.expected[order], finding)
+        yield Written(case.expected[order], says(hint))
+    both = say(
+        "a and d, and α and θ are exchanged: a and α are measured along and about x, d and θ along "
+        "and about z."
+    )
+    yield Written(case.expected[[2, 3, 0, 1]], says(both))
 
 
 @misconception(
@@ -68,13 +72,12 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
 def other_convention(case: WrongRow) -> Hypotheses:
     """The row is that of the other convention."""
     other = case.convention.other
-    finding = says(
-        f"This is the row of the {other.value} convention; the {case.convention.value} one is "
-        f"asked for.",
-    )
+    hint = say("This is the row of the modified convention; the standard one is asked for.")
+    if other is Convention.STANDARD:
+        hint = say("This is the row of the standard convention; the modified one is asked for.")
     found = case.row_of(case.transform, other)
     if found is not None:
-        yield Written(found, finding)
+        yield Written(found, says(hint))
 
 
 @misconception(
@@ -89,7 +92,9 @@ def other_convention(case: WrongRow) -> Hypotheses:
 def inverse_row(case: WrongRow) -> Hypotheses:
     """The row is that of the inverse transform."""
     finding = says(
-        "This is the row of the inverse: the transform describes the second frame in the first.",
+        say(
+            "This is the row of the inverse: the transform describes the second frame in the first."
+        ),
     )
     found = case.row_of(inverse(case.transform), case.convention)
     if found is not None:
@@ -133,13 +138,19 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = _NOT_PERPENDICULAR.finding(
-        f"Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
-        f"{row_of_entry}, column {column}.",
-        f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
+        say(
+            "Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
+            "{row}, column {column}.",
+            x=x,
+            z=z,
+            row=row_of_entry,
+            column=column,
+        ),
+        say("It is not 0, so that {x} is not perpendicular to {z} and there is no row.", x=x, z=z),
     )
     intersecting = _NOT_INTERSECTING.finding(
-        f"Check the second DH condition: does the line of {x} meet the line of {z}?",
-        f"It passes {z} at a distance, so that there is no row.",
+        say("Check the second DH condition: does the line of {x} meet the line of {z}?", x=x, z=z),
+        say("It passes {z} at a distance, so that there is no row.", z=z),
     )
     conditions = (
         (perpendicular, dh1_residual, EXACT_VALUE),
@@ -156,7 +167,11 @@ def has_a_row(convention: Convention) -> Finding:
     """Return the finding for the answer "none" to a transform that has a row."""
     x, z = axes_named(convention)
     return _ROW_EXISTS.finding(
-        f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "
-        f"line of {z}?",
-        "Both hold, so that there is a row.",
+        say(
+            "Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet "
+            "the line of {z}?",
+            x=x,
+            z=z,
+        ),
+        say("Both hold, so that there is a row."),
     )

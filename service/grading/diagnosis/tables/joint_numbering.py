@@ -12,6 +12,7 @@ from service.grading.misconception import register
 from service.grading.part import Grading
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.tables.table import StudentRow, StudentTable, table_values
+from service.translations import say, template
 
 # Maps the names under a numbering to the joint variables that they mean.
 Meanings = Mapping[str, str]
@@ -19,7 +20,7 @@ _NUMBERED = register(
     of=StudentTable,
     code="joint_numbering",
     rule="joint_variable",
-    means="the joint numbers start at another number: θ0, θ1, θ2 for θ1, θ2, θ3",
+    means=template("the joint numbers start at another number: θ0, θ1, θ2 for θ1, θ2, θ3"),
     example=("planar-rr", "table", {"1/theta": "theta0"}),
     unlike={"1/a": "0", "1/d": "a1"},
 )
@@ -27,7 +28,9 @@ _NUMBERED_BY_KIND = register(
     of=StudentTable,
     code="joint_numbering_by_kind",
     rule="joint_variable",
-    means="turning and sliding joints are numbered separately: θ1, θ2, d3, θ3 for θ1, θ2, d3, θ4",
+    means=template(
+        "turning and sliding joints are numbered separately: θ1, θ2, d3, θ3 for θ1, θ2, d3, θ4"
+    ),
     example=(
         "stanford-arm",
         "table",
@@ -135,16 +138,25 @@ def _name(index: int, joints: Mapping[int, Joint], slides: bool) -> str:
 def _numbered_from(start: int, first: Joint, spelling: Spelling) -> Finding:
     variable = spelling.names.get(first.variable, first.variable)
     return _NUMBERED.finding(
-        f"The joint variables are numbered from {start}. This robot's joints are numbered from "
-        f"{first.index}: the variable of its first joint is {variable}.",
-        f"Add {first.index - start} to the index of each joint variable.",
+        say(
+            "The joint variables are numbered from {start}. This robot's joints are numbered from "
+            "{first}: the variable of its first joint is {variable}.",
+            start=start,
+            first=first.index,
+            variable=variable,
+        ),
+        say("Add {number} to the index of each joint variable.", number=first.index - start),
     )
 
 
 def _numbered_by_kind(joint: Joint, spelling: Spelling) -> Finding:
     variable = spelling.names.get(joint.variable, joint.variable)
     return _NUMBERED_BY_KIND.finding(
-        f"Turning and sliding joints are numbered separately. Number all joints together, from the "
-        f"base to the end effector: the variable of joint {joint.index} is {variable}.",
-        "Number turning and sliding joints together.",
+        say(
+            "Turning and sliding joints are numbered separately. Number all joints together, from "
+            "the base to the end effector: the variable of joint {joint} is {variable}.",
+            joint=joint.index,
+            variable=variable,
+        ),
+        say("Number turning and sliding joints together."),
     )

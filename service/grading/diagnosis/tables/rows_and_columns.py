@@ -5,12 +5,13 @@ They change the numbers of the table but no symbols, so they are the same in any
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 
 import numpy as np
 
 from service.catalogue import Joint
-from service.grading.diagnosis.upstream.slip import CellChange, Slip
+from service.grading.diagnosis.upstream.slip import CellChange, Names, Slip, SlipWords
 from service.grading.diagnosis.upstream.slip_kinds import (
     COLUMNS_SWAPPED,
     MISSING_LINK,
@@ -18,17 +19,17 @@ from service.grading.diagnosis.upstream.slip_kinds import (
     PARAMETER_SIGN,
     ROW_ORDER,
 )
-from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
+from service.grading.diagnosis.wording import (
+    SYMBOLS,
+    change_every_sign,
+    wrong_throughout,
+)
 from service.grading.numerics.tolerances import CONSTANT
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
-
-PLURALS = ("lengths a", "twists α", "offsets d", "angles θ")
-CHECK_ROWS = "check which joint each row of the table belongs to."
-ONE_CONVENTION = "use the same convention for both."
-MOVE_COLUMNS = "In the other convention a and α stand one row higher or lower."
+from service.translations import say
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,26 +71,38 @@ def exchanged_in_row(
 
     If its joint ``slides``, its variable stays or moves along.
     """
+
+    def words(_: Names) -> SlipWords:
+        return SlipWords(
+            say("the length a and the offset d are exchanged in row {row}", row=label),
+            say(
+                "The length a and the offset d are exchanged in row {row}: a is measured along x, "
+                "d along z.",
+                row=label,
+            ),
+            say("Exchange a and d in row {row}.", row=label),
+        )
+
     ways = [False] if abs(constants[A] - constants[D]) > CONSTANT else []
     for moving in [*ways, True] if slides else ways:
-        yield Slip(
-            COLUMNS_SWAPPED,
-            f"the length a and the offset d are exchanged in row {label}",
-            f"a is measured {MEASURED[A]}, d {MEASURED[D]}.",
-            f"Exchange a and d in row {label}.",
-            cells=_exchanged(row, moving=moving),
-        )
+        yield Slip(COLUMNS_SWAPPED, words, cells=_exchanged(row, moving=moving))
 
 
 def exchanged_throughout(rows: TableRows) -> Iterator[Slip]:
     """Yield the exchange of a and d in all rows."""
-    yield Slip(
-        COLUMNS_SWAPPED,
-        "the lengths a and the offsets d are exchanged throughout",
-        f"a is measured {MEASURED[A]}, d {MEASURED[D]}.",
-        "Exchange a and d in every row.",
-        cells=tuple(cell for i in range(len(rows.constants)) for cell in _exchanged(i)),
-    )
+
+    def words(_: Names) -> SlipWords:
+        return SlipWords(
+            say("the lengths a and the offsets d are exchanged throughout"),
+            say(
+                "The lengths a and the offsets d are exchanged throughout: a is measured along x, "
+                "d along z."
+            ),
+            say("Exchange a and d in every row."),
+        )
+
+    cells = tuple(cell for i in range(len(rows.constants)) for cell in _exchanged(i))
+    yield Slip(COLUMNS_SWAPPED, words, cells=cells)
 
 
 def _exchanged(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
@@ -114,13 +127,12 @@ def negated_columns(rows: TableRows) -> Iterator[Slip]:
 
 
 def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
-    return Slip(
-        PARAMETER_SIGN,
-        f"all {PLURALS[column]} have the wrong sign",
-        f"they are measured {MEASURED[column]}, positive {POSITIVE[column]}.",
-        f"Change the sign of every {SYMBOLS[column]}.",
-        cells=tuple(CellChange(i, column, -1.0, moving=moving) for i in rows),
-    )
+    def words(_: Names) -> SlipWords:
+        clause = say("{symbol} has the wrong sign throughout", symbol=SYMBOLS[column])
+        return SlipWords(clause, wrong_throughout(column), change_every_sign(column))
+
+    cells = tuple(CellChange(i, column, -1.0, moving=moving) for i in rows)
+    return Slip(PARAMETER_SIGN, words, cells=cells)
 
 
 def other_table(rows: TableRows) -> Iterator[Slip]:
@@ -150,13 +162,36 @@ def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
 
 
 def _other_table(convention: Convention, cells: tuple[CellChange, ...]) -> Slip:
-    return Slip(
-        OTHER_CONVENTION,
-        f"a table of the {convention.other} convention is multiplied with the link transform of "
-        f"the {convention} one",
-        ONE_CONVENTION,
-        MOVE_COLUMNS,
-        cells=cells,
+    is_standard = convention is Convention.STANDARD
+    words = _modified_table_multiplied if is_standard else _standard_table_multiplied
+    return Slip(OTHER_CONVENTION, words, cells=cells)
+
+
+def _modified_table_multiplied(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "a table of the modified convention is multiplied with the link transform of the "
+            "standard one"
+        ),
+        say(
+            "A table of the modified convention is multiplied with the link transform of the "
+            "standard one: use the same convention for both."
+        ),
+        say("In the other convention a and α stand one row higher or lower."),
+    )
+
+
+def _standard_table_multiplied(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "a table of the standard convention is multiplied with the link transform of the "
+            "modified one"
+        ),
+        say(
+            "A table of the standard convention is multiplied with the link transform of the "
+            "modified one: use the same convention for both."
+        ),
+        say("In the other convention a and α stand one row higher or lower."),
     )
 
 
@@ -168,13 +203,34 @@ def other_formula(rows: TableRows) -> Iterator[Slip]:
     has_twists = (np.cos(rows.constants[:, ALPHA]) < 1 - CONSTANT).any()
     if rows.convention is Convention.STANDARD and not has_twists:
         return
-    yield Slip(
-        OTHER_CONVENTION,
-        f"the link transform of the {rows.convention.other} convention is used with a table of the "
-        f"{rows.convention} one",
-        ONE_CONVENTION,
-        f"Use the link transform of the {rows.convention} convention.",
-        misread=True,
+    is_standard = rows.convention is Convention.STANDARD
+    words = _modified_formula if is_standard else _standard_formula
+    yield Slip(OTHER_CONVENTION, words, misread=True)
+
+
+def _modified_formula(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "the link transform of the modified convention is used with a table of the standard one"
+        ),
+        say(
+            "The link transform of the modified convention is used with a table of the standard "
+            "one: use the same convention for both."
+        ),
+        say("Use the link transform of the standard convention."),
+    )
+
+
+def _standard_formula(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "the link transform of the standard convention is used with a table of the modified one"
+        ),
+        say(
+            "The link transform of the standard convention is used with a table of the modified "
+            "one: use the same convention for both."
+        ),
+        say("Use the link transform of the modified convention."),
     )
 
 
@@ -183,14 +239,44 @@ def exchanged_rows(rows: TableRows) -> Iterator[Slip]:
     count = len(rows.constants)
     kinds = [joint.prismatic for joint in rows.joints]
     for i, j in combinations(range(count), 2):
-        labels = f"{rows.labels[i]} and {rows.labels[j]}"
+        labels = rows.labels[i], rows.labels[j]
         # The reverse order of all links is a slip of the product.
         if not (rows.multiplied and i == 0 and j == count - 1 <= 2):
-            clause = f"rows {labels}, or their link transforms, are exchanged"
-            yield Slip(ROW_ORDER, clause, CHECK_ROWS, cells=_rows_exchanged(i, j, moving=True))
+            words = partial(_rows_or_links, *labels)
+            yield Slip(ROW_ORDER, words, cells=_rows_exchanged(i, j, moving=True))
         if j < len(kinds) and kinds[i] == kinds[j] and not rows.home:
-            clause = f"rows {labels} are exchanged, but for their joint variables"
-            yield Slip(ROW_ORDER, clause, CHECK_ROWS, cells=_rows_exchanged(i, j, moving=False))
+            words = partial(_rows_but_variables, *labels)
+            yield Slip(ROW_ORDER, words, cells=_rows_exchanged(i, j, moving=False))
+
+
+def _rows_or_links(one: str, other: str, _: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "rows {one} and {other}, or their link transforms, are exchanged", one=one, other=other
+        ),
+        say(
+            "Rows {one} and {other}, or their link transforms, are exchanged: check which joint "
+            "each row of the table belongs to.",
+            one=one,
+            other=other,
+        ),
+    )
+
+
+def _rows_but_variables(one: str, other: str, _: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "rows {one} and {other} are exchanged, but for their joint variables",
+            one=one,
+            other=other,
+        ),
+        say(
+            "Rows {one} and {other} are exchanged, but for their joint variables: check which "
+            "joint each row of the table belongs to.",
+            one=one,
+            other=other,
+        ),
+    )
 
 
 def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, ...]:
@@ -207,11 +293,10 @@ def missing_links(rows: TableRows) -> Iterator[Slip]:
     It is only listed together with exchanged rows, so it has no advice.
     """
     for row in range(1, len(rows.constants) - 1):
-        yield Slip(
-            MISSING_LINK,
-            f"A{rows.labels[row]} is missing in the product",
-            "",
-            cells=tuple(
-                CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS))
-            ),
-        )
+        cells = tuple(CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS)))
+        yield Slip(MISSING_LINK, partial(_missing_link, f"A{rows.labels[row]}"), cells=cells)
+
+
+def _missing_link(link: str, _: Names) -> SlipWords:
+    clause = say("{link} is missing in the product", link=link)
+    return SlipWords(clause, clause)

@@ -7,7 +7,7 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
-from service.grading.diagnosis.wording import POSITIVE, axes_of_row
+from service.grading.diagnosis.wording import axes_of_row
 from service.grading.diagnosis.wrong_value import (
     UNEXPLAINED,
     Hypotheses,
@@ -26,8 +26,9 @@ from service.grading.part import Grading
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import THETA, D
 from service.kinematics.factors import CellIndex
+from service.translations import Sentence, paragraph, say, template
 
-SUM_COUNTS = (
+SUM_COUNTS = say(
     "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
 )
 
@@ -42,18 +43,26 @@ ROUNDED_TURN = ROUNDED_VALUE * np.pi
     rank=100,
     code="sign",
     rule="of_column",
-    means="a length or an angle has the wrong sign",
+    means=template("a length or an angle has the wrong sign"),
     example=("stanford-arm", "table", {"1/alpha": "pi/2"}),
     unlike={"1/alpha": "0"},
 )
 def sign(case: WrongCell) -> Hypotheses:
     """The constant has the right size and the wrong sign."""
-    finding = finding_on(
-        case,
-        f"The sign of {case.symbol} is wrong: it must be measured {case.measured}, positive "
-        f"{POSITIVE[case.column]}.",
+    hint = say(
+        "The sign of {symbol} is wrong: it must be measured along {axis}, positive in the "
+        "direction of the axis.",
+        symbol=case.symbol,
+        axis=case.axis,
     )
-    yield Written(-case.constants[1], finding)
+    if case.angle:
+        hint = say(
+            "The sign of {symbol} is wrong: it must be measured about {axis}, positive by the "
+            "right-hand rule.",
+            symbol=case.symbol,
+            axis=case.axis,
+        )
+    yield Written(-case.constants[1], finding_on(case, hint))
 
 
 @misconception(
@@ -62,18 +71,25 @@ def sign(case: WrongCell) -> Hypotheses:
     code="distance_left_out",
     rule="of_column",
     when=lambda case: not case.angle,
-    means="a distance between two frames is missing",
+    means=template("a distance between two frames is missing"),
     example=("stanford-arm", "table", {"6/d": "0"}),
     unlike={"2/d": "d6"},
 )
 def distance_left_out(case: WrongCell) -> Hypotheses:
     """A distance between the frames is missing."""
-    finding = finding_on(
-        case,
-        f"A distance is left out of {case.symbol}{_beside(case)}: the two frames are apart "
-        f"{case.measured}.",
+    hint = say(
+        "A distance is left out of {symbol}: the two frames are apart along {axis}.",
+        symbol=case.symbol,
+        axis=case.axis,
     )
-    yield Written(0 * case.actual, finding)
+    if case.required:
+        hint = say(
+            "A distance is left out of {symbol} beside the joint variable: the two frames are "
+            "apart along {axis}.",
+            symbol=case.symbol,
+            axis=case.axis,
+        )
+    yield Written(0 * case.actual, finding_on(case, hint))
 
 
 @misconception(
@@ -82,22 +98,24 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
     code="distance_extra",
     rule="of_column",
     when=lambda case: not case.angle,
-    means="the cell contains a distance that does not belong there",
+    means=template("the cell contains a distance that does not belong there"),
     example=("stanford-arm", "table", {"1/a": "d2"}),
     unlike={"2/d": "d6"},
 )
 def distance_extra(case: WrongCell) -> Hypotheses:
     """The cell contains a distance that belongs in another cell or in none."""
-    finding = finding_on(
-        case,
-        f"Check whether the distance in {case.symbol}{_beside(case)} belongs there: it may lie "
-        "along another axis, or stand in another cell already.",
+    hint = say(
+        "Check whether the distance in {symbol} belongs there: it may lie along another axis, or "
+        "stand in another cell already.",
+        symbol=case.symbol,
     )
-    yield Repaired(0 * case.actual, finding)
-
-
-def _beside(case: WrongCell) -> str:
-    return " beside the joint variable" if case.required else ""
+    if case.required:
+        hint = say(
+            "Check whether the distance in {symbol} beside the joint variable belongs there: it "
+            "may lie along another axis, or stand in another cell already.",
+            symbol=case.symbol,
+        )
+    yield Repaired(0 * case.actual, finding_on(case, hint))
 
 
 @misconception(
@@ -106,19 +124,19 @@ def _beside(case: WrongCell) -> str:
     code="degrees_as_radians",
     rule="angle_unit",
     when=lambda case: case.angle,
-    means="a number of degrees is read in radians, or a variable is multiplied by 180/π",
+    means=template("a number of degrees is read in radians, or a variable is multiplied by 180/π"),
     example=("stanford-arm", "table", {"1/alpha": "-90"}),
     unlike={"1/alpha": "-91"},
 )
 def degrees_as_radians(case: WrongCell) -> Hypotheses:
     """A number was written in degrees, but is read in radians."""
-    hint = (
+    hint = say(
         "This number was read in radians, but it fits in degrees: write the unit behind it "
         "(deg or °)."
     )
     in_degrees = np.radians(case.constants[0])
-    for value, also in ((in_degrees, ""), (-in_degrees, " The sign is wrong, too.")):
-        yield Repaired(value, finding_on(case, hint + also))
+    for value, also in ((in_degrees, ""), (-in_degrees, say("The sign is wrong, too."))):
+        yield Repaired(value, finding_on(case, paragraph(hint, also)))
 
 
 @misconception(
@@ -127,7 +145,7 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
     code="radians_as_degrees",
     rule="angle_unit",
     when=lambda case: case.angle,
-    means="a number of radians is read in degrees, or a variable is multiplied by π/180",
+    means=template("a number of radians is read in degrees, or a variable is multiplied by π/180"),
     example=(
         "stanford-arm",
         "table",
@@ -143,7 +161,10 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
     """A number was written in radians, but is read in degrees."""
     finding = finding_on(
         case,
-        "This number was read in degrees, but it fits in radians: write the unit behind it (rad).",
+        say(
+            "This number was read in degrees, but it fits in radians: write the unit behind it "
+            "(rad)."
+        ),
     )
     yield Repaired(np.degrees(case.constants[0]), finding)
 
@@ -154,7 +175,7 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
     code="quarter_turn",
     rule="of_column",
     when=lambda case: case.angle,
-    means="an angle is off by 90°",
+    means=template("an angle is off by 90°"),
     example=("stanford-arm", "table", {"2/theta": "theta2 + pi/2"}),
     unlike={"2/theta": "theta2 + pi"},
 )
@@ -163,19 +184,22 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         _compare_axes(case),
-        otherwise="It is off by a quarter turn (90°).",
+        otherwise=say("It is off by a quarter turn (90°)."),
     )
     for turn in (np.pi / 2, -np.pi / 2):
         yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_TURN)
 
 
-def _compare_axes(case: WrongCell) -> str:
-    axis, where = "z", ""
-    if case.column == THETA:
-        axis, where = "x", " in the home position" if case.joint else ""
+def _compare_axes(case: WrongCell) -> Sentence:
     last = max((joint.index for joint in case.joints), default=0)
-    axes = axes_of_row(axis, case.label, last)
-    return f"{case.symbol} is not right: compare {axes}{where}."
+    axes = axes_of_row("x" if case.column == THETA else "z", case.label, last)
+    if case.column == THETA and case.joint:
+        return say(
+            "{symbol} is not right: compare {axes} in the home position.",
+            symbol=case.symbol,
+            axes=axes,
+        )
+    return say("{symbol} is not right: compare {axes}.", symbol=case.symbol, axes=axes)
 
 
 @misconception(
@@ -184,7 +208,7 @@ def _compare_axes(case: WrongCell) -> str:
     code="half_turn",
     rule="of_column",
     when=lambda case: case.angle,
-    means="an angle is off by 180°, because an axis points the opposite way",
+    means=template("an angle is off by 180°, because an axis points the opposite way"),
     example=("stanford-arm", "table", {"3/alpha": "180°"}),
     unlike={"6/d": "0"},
 )
@@ -193,7 +217,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         _compare_axes(case),
-        otherwise="It is off by half a turn (180°).",
+        otherwise=say("It is off by half a turn (180°)."),
     )
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
@@ -215,11 +239,18 @@ CELL_WORK = 1.2
 )
 def unexplained(case: WrongCell) -> Finding:
     """No misconception explains the cell."""
-    return differs(
-        case,
-        f"{case.symbol} is not right: check the {'angle' if case.angle else 'distance'} "
-        f"{case.measured}.{_too_large(case)}{_in_symbols(case)}",
+    hint = say(
+        "{symbol} is not right: check the distance along {axis}.",
+        symbol=case.symbol,
+        axis=case.axis,
     )
+    if case.angle:
+        hint = say(
+            "{symbol} is not right: check the angle about {axis}.",
+            symbol=case.symbol,
+            axis=case.axis,
+        )
+    return differs(case, paragraph(hint, _too_large(case), _in_symbols(case)))
 
 
 def diagnose(case: WrongCell) -> Finding:
@@ -227,14 +258,14 @@ def diagnose(case: WrongCell) -> Finding:
     finding = diagnosed(case)
     assert finding is not None
     if case.column == D and case.shared and case.same_motion:
-        return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
+        return replace(finding, hint=paragraph(finding.hint, SUM_COUNTS))
     return finding
 
 
 def _too_large(case: WrongCell) -> str:
     if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
         return ""
-    return " It was read in radians: write the unit behind it (deg or °) if degrees were meant."
+    return say("It was read in radians: write the unit behind it (deg or °) if degrees were meant.")
 
 
 def _in_symbols(case: WrongCell) -> str:
@@ -244,7 +275,7 @@ def _in_symbols(case: WrongCell) -> str:
         return ""
     if case.equal(expected, np.full_like(expected, expected[0])):
         return ""
-    return " Give it in the exercise's symbols."
+    return say("Give it in the exercise's symbols.")
 
 
 def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise, Joint
-from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding
 from service.grading.misconception import register
 from service.grading.numerics.joint_motion import changes
@@ -22,6 +21,7 @@ from service.kinematics.chain import THETA, D, Table
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
 from service.kinematics.tolerances import SAME_SCREW
+from service.translations import Sentence, listed, say
 
 # The samples of each half at which the rank is computed.
 POSTURES = 2
@@ -115,8 +115,12 @@ def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[F
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
     first, *_, last = np.flatnonzero(involved).tolist()
     finding = _LOST.finding(
-        f"The axes of joints {listed(names)} leave the arm fewer degrees of freedom than the robot "
-        f"has: check a and α of {_rows_between(first, last, written, convention)}.",
+        say(
+            "The axes of joints {joints} leave the arm fewer degrees of freedom than the robot "
+            "has: check a and α of {rows}.",
+            joints=listed(names),
+            rows=_rows_between(first, last, written, convention),
+        ),
     )
     return (finding,)
 
@@ -125,31 +129,60 @@ def _one_axis(
     together: list[int], written: _Arm, intended: _Arm, convention: Convention
 ) -> Finding:
     first, last = together[0], together[-1]
-    motion = "turn about one and the same line"
-    if written.joints[first].prismatic:
-        motion = "slide along one and the same direction"
+    slide = written.joints[first].prismatic
     named = listed([str(written.joints[k].index) for k in together])
-    lost, columns, correction = "degrees", "a and α", ""
-    if len(together) == 2:
-        parallel, right = _lie(intended.directions(first), intended.directions(last))
-        lost, columns = "a degree", "a" if parallel else "α"
-        correction = f"The axes of these joints are {right}."
-    return _LOST.finding(
-        f"Joints {named} {motion}, so the arm has lost {lost} of freedom: check {columns} of "
-        f"{_rows_between(first, last, written, convention)}.",
-        correction,
+    rows = _rows_between(first, last, written, convention)
+    if len(together) > 2:
+        return _LOST.finding(_lost_degrees(named, rows, slide=slide))
+    parallel, right = _lie(intended.directions(first), intended.directions(last))
+    return _LOST.finding(_lost_degree(named, "a" if parallel else "α", rows, slide=slide), right)
+
+
+def _lost_degree(joints: str, column: str, rows: str, *, slide: bool) -> Sentence:
+    if slide:
+        return say(
+            "Joints {joints} slide along one and the same direction, so the arm has lost a degree "
+            "of freedom: check {column} of {rows}.",
+            joints=joints,
+            column=column,
+            rows=rows,
+        )
+    return say(
+        "Joints {joints} turn about one and the same line, so the arm has lost a degree of "
+        "freedom: check {column} of {rows}.",
+        joints=joints,
+        column=column,
+        rows=rows,
     )
 
 
-def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, str]:
-    """Return True if two axes ``(samples, 3)`` are parallel, and in words how they lie."""
+def _lost_degrees(joints: str, rows: str, *, slide: bool) -> Sentence:
+    if slide:
+        return say(
+            "Joints {joints} slide along one and the same direction, so the arm has lost degrees "
+            "of freedom: check a and α of {rows}.",
+            joints=joints,
+            rows=rows,
+        )
+    return say(
+        "Joints {joints} turn about one and the same line, so the arm has lost degrees of "
+        "freedom: check a and α of {rows}.",
+        joints=joints,
+        rows=rows,
+    )
+
+
+def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Sentence]:
+    """Return True if two axes ``(samples, 3)`` are parallel, and the sentence how they lie."""
     if np.abs(np.cross(one, other)).max() < SAME_SCREW:
-        return True, "parallel, but apart"
+        return True, say("The axes of these joints are parallel, but apart.")
     cosines = np.abs(np.sum(one * other, axis=-1))
     if np.ptp(cosines) > SAME_SCREW:
-        return False, "not parallel"
+        return False, say("The axes of these joints are not parallel.")
+    if cosines[0] < SAME_SCREW:
+        return False, say("The axes of these joints are at right angles.")
     angle = np.degrees(np.arccos(min(cosines[0], 1.0)))
-    return False, "at right angles" if cosines[0] < SAME_SCREW else f"at an angle of {angle:.4g}°"
+    return False, say("The axes of these joints are at an angle of {angle}°.", angle=f"{angle:.4g}")
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
@@ -157,4 +190,6 @@ def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
     # In a standard row, a and α come after its joint; in a modified one, before it.
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
-    return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"
+    if len(labels) == 1:
+        return say("row {row}", row=labels[0])
+    return say("rows {rows}", rows=listed(labels))

@@ -12,7 +12,11 @@ from itertools import chain, combinations, islice
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
+from service.grading.diagnosis.wording import (
+    SYMBOLS,
+    change_every_sign,
+    wrong_throughout,
+)
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.written_table import RepairedTable, Rereadable, WrittenTable
 from service.grading.misconception import (
@@ -28,6 +32,7 @@ from service.grading.misconception import (
 from service.grading.numerics.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
+from service.translations import listed, paragraph, say, template
 
 _OF_LINK = slice(A, ALPHA + 1)
 
@@ -67,7 +72,7 @@ class WrongTable:
     rank=50,
     code="link_columns_shifted",
     rule="convention",
-    means="the columns a and α, or one of them, are one row too early or too late",
+    means=template("the columns a and α, or one of them, are one row too early or too late"),
     example=("three-link-cylindrical", "table", {"1/alpha": "-90deg", "2/alpha": "0"}),
     unlike={"2/a": "d3", "3/d": "0"},
 )
@@ -83,7 +88,7 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
         for late, order, end in ((True, up, -1), (False, down, 0)):
             of_other = late == (table.convention is Convention.STANDARD)
             other = table.convention.other if of_other and columns == _OF_LINK else None
-            finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late, other)
+            finding = partial(_shifted, listed(SYMBOLS[columns]), late, other)
             constants = table.constants.copy()
             constants[:, columns] = table.constants[order, columns]
             yield Repaired(table.changed(constants), finding)
@@ -97,12 +102,22 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
 
 def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     """Return the finding; ``other`` is the convention in which the columns are there, or None."""
-    in_other = f" In the {other} convention they stand there." if other else ""
-    return says(
-        f"{named} stand one row too {'late' if late else 'early'}: check which link each of them "
-        f"describes.{in_other}",
-        f"Move {named} {'up' if late else 'down'} by one row.",
+    in_other = ""
+    if other is Convention.STANDARD:
+        in_other = say("In the standard convention they stand there.")
+    elif other is Convention.MODIFIED:
+        in_other = say("In the modified convention they stand there.")
+    if late:
+        hint = say(
+            "{columns} stand one row too late: check which link each of them describes.",
+            columns=named,
+        )
+        return says(paragraph(hint, in_other), say("Move {columns} up by one row.", columns=named))
+    hint = say(
+        "{columns} stand one row too early: check which link each of them describes.",
+        columns=named,
     )
+    return says(paragraph(hint, in_other), say("Move {columns} down by one row.", columns=named))
 
 
 @misconception(
@@ -110,7 +125,7 @@ def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     rank=60,
     code="column_sign",
     rule="of_column",
-    means="one of a, α, d, θ has the wrong sign in every row",
+    means=template("one of a, α, d, θ has the wrong sign in every row"),
     example=("rrrp", "table", "-l2, 0, l1, q1 ↵ -l3, 180°, 0, q2 ↵ 0, 0, l4, q3 ↵ 0, 0, q4, 0"),
     unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
 )
@@ -124,11 +139,7 @@ def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
 
 
 def _turned_sign(column: int) -> Finding:
-    return says(
-        f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {MEASURED[column]}, "
-        f"positive {POSITIVE[column]}.",
-        f"Change the sign of every {SYMBOLS[column]}.",
-    )
+    return says(wrong_throughout(column), change_every_sign(column))
 
 
 @misconception(
@@ -136,7 +147,7 @@ def _turned_sign(column: int) -> Finding:
     rank=70,
     code="columns_swapped",
     rule="of_column",
-    means="a and d, or α and θ, are exchanged, throughout or in one row",
+    means=template("a and d, or α and θ, are exchanged, throughout or in one row"),
     example=("planar-rr", "table", {"1/a": "0", "1/d": "a1"}),
     unlike={"2/d": "90°"},
 )
@@ -167,13 +178,11 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
 
 def exchanged_columns(one: int, other: int) -> Finding:
     """Return the finding that two columns are in each other's places, throughout or in a row."""
-    names = SYMBOLS[one], SYMBOLS[other]
-    return Finding(
-        "columns_swapped",
-        f"{names[0]} and {names[1]} are exchanged: {names[0]} is measured {MEASURED[one]}, "
-        f"{names[1]} {MEASURED[other]}.",
-        f"Exchange {names[0]} and {names[1]}.",
-    )
+    hint = say("a and d are exchanged: a is measured along x, d along z.")
+    if one == ALPHA:
+        hint = say("α and θ are exchanged: α is measured about x, θ about z.")
+    names = {"one": SYMBOLS[one], "other": SYMBOLS[other]}
+    return Finding("columns_swapped", hint, say("Exchange {one} and {other}.", **names))
 
 
 @misconception(
@@ -181,7 +190,7 @@ def exchanged_columns(one: int, other: int) -> Finding:
     rank=80,
     code="row_order",
     rule="rows",
-    means="two rows are exchanged, or all rows are in reverse order",
+    means=template("two rows are exchanged, or all rows are in reverse order"),
     example=(
         "planar-rr",
         "table",
@@ -202,8 +211,11 @@ def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
 def _reordered(order: list[int]) -> Finding:
     moved = [str(i + 1) for i, row in enumerate(order) if row != i]
     return says(
-        f"Rows {' and '.join(moved) if len(moved) == 2 else ', '.join(moved)} stand in the wrong "
-        f"order: row i belongs to joint i, counted from the base.",
+        say(
+            "Rows {rows} stand in the wrong order: row i belongs to joint i, counted from the "
+            "base.",
+            rows=listed(moved) if len(moved) == 2 else ", ".join(moved),
+        ),
     )
 
 
@@ -212,7 +224,7 @@ def _reordered(order: list[int]) -> Finding:
     rank=40,
     code="lengths_exchanged",
     rule="of_column",
-    means="two lengths are exchanged: a1 for a2, and a2 for a1",
+    means=template("two lengths are exchanged: a1 for a2, and a2 for a1"),
     example=("spatial-rrr", "table", {"1/a": "L2", "3/a": "R"}),
     unlike={"3/a": "0", "3/d": "L2"},
 )
@@ -225,8 +237,12 @@ def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
 
 def _exchanged_lengths(one: str, other: str) -> Finding:
     return says(
-        f"{one} and {other} are exchanged: check which length each of them is.",
-        f"Exchange {one} and {other}.",
+        say(
+            "{one} and {other} are exchanged: check which length each of them is.",
+            one=one,
+            other=other,
+        ),
+        say("Exchange {one} and {other}.", one=one, other=other),
     )
 
 

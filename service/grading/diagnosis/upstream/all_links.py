@@ -9,7 +9,7 @@ from service.grading.diagnosis.tables.rows_and_columns import (
     TableRows,
     slips_of_rows,
 )
-from service.grading.diagnosis.upstream.joint_slips import length_slips
+from service.grading.diagnosis.upstream.length_slips import length_slips
 from service.grading.diagnosis.upstream.slip import Change, change_cells
 from service.grading.diagnosis.upstream.slip_search import SlipSearch
 from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers, slipped_tables

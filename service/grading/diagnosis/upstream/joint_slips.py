@@ -1,34 +1,28 @@
 """Slips in the joints and lengths of a robot that is given by a table or by screws."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
-from itertools import combinations
 
 import numpy as np
 
 from service.catalogue import Exercise, Joint
-from service.grading.diagnosis.upstream.slip import CellChange, Slip, SymbolChange
+from service.grading.diagnosis.upstream.slip import CellChange, Names, Slip, SlipWords, SymbolChange
 from service.grading.diagnosis.upstream.slip_kinds import (
-    DISTANCE_LEFT_OUT,
     HALF_TURN,
     HOME_POSITION,
     JOINT_VARIABLE_DOUBLED,
     JOINT_VARIABLE_INDEX,
     JOINT_VARIABLE_MISSING,
     JOINT_VARIABLE_SIGN,
-    LENGTHS_EXCHANGED,
-    OTHER_LENGTH,
     QUARTER_TURN,
-    SIGN,
 )
 from service.grading.misconception import Record
 from service.grading.numerics.samples import Samples
 from service.grading.numerics.tolerances import SAME_MOTION
 from service.kinematics.transforms import Numbers
+from service.translations import Sentence, paragraph, say
 
-Axis = Callable[[Joint], str]
-# Robots have a handful of lengths. With more, pairs are not tried.
-MAX_LENGTHS = 12
+Axis = Callable[[Joint], Sentence]
 
 
 def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> Iterator[Slip]:
@@ -50,135 +44,127 @@ def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> 
 
 def joint_variable_sign(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
     """Return the slip: the joint moves in the negative sense of its axis."""
-    verb = "slides" if joint.prismatic else "counts"
-    return Slip(
-        JOINT_VARIABLE_SIGN,
-        f"joint {joint.index} {verb} the wrong way",
-        f"check the sign of its variable. {axis(joint)}",
-        f"Change the sign of {{{joint.variable}}} throughout.",
-        symbols=(SymbolChange(joint.variable, joint.variable, -1.0),),
-        cells=cells,
-    )
+
+    def words(names: Names) -> SlipWords:
+        hint = say(
+            "Joint {joint} moves the wrong way: check the sign of its variable.", joint=joint.index
+        )
+        return SlipWords(
+            say("joint {joint} moves the wrong way", joint=joint.index),
+            paragraph(hint, axis(joint)),
+            say("Change the sign of {name} throughout.", name=names.name(joint.variable)),
+        )
+
+    symbols = (SymbolChange(joint.variable, joint.variable, -1.0),)
+    return Slip(JOINT_VARIABLE_SIGN, words, symbols=symbols, cells=cells)
 
 
 def joint_variable_missing(joint: Joint, *cells: CellChange) -> Slip:
     """Return the slip: the joint's variable is left out, as if the joint could not move."""
-    verb = "moves" if joint.prismatic else "turns"
-    return Slip(
-        JOINT_VARIABLE_MISSING,
-        f"joint {joint.index} stands still",
-        f"check what must change with {{{joint.variable}:its variable}}.",
-        f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
-        symbols=(SymbolChange(joint.variable, joint.variable, 0.0),),
-        cells=cells,
-    )
+
+    def words(names: Names) -> SlipWords:
+        index, name = joint.index, names.shown(joint.variable)
+        hint = say(
+            "Joint {joint} stands still: check what must change with its variable.", joint=index
+        )
+        if name:
+            hint = say(
+                "Joint {joint} stands still: check what must change with {name}.",
+                joint=index,
+                name=name,
+            )
+        correction = _moves_with(joint, names.name(joint.variable))
+        return SlipWords(say("joint {joint} stands still", joint=index), hint, correction)
+
+    symbols = (SymbolChange(joint.variable, joint.variable, 0.0),)
+    return Slip(JOINT_VARIABLE_MISSING, words, symbols=symbols, cells=cells)
+
+
+def _moves_with(joint: Joint, name: str) -> Sentence:
+    return say("Joint {joint} moves with {name}.", joint=joint.index, name=name)
 
 
 def _joint_variable_index(joint: Joint, other: Joint) -> Slip:
     """Return the slip: the joint moves by the variable of another joint."""
-    verb = "moves" if joint.prismatic else "turns"
-    return Slip(
-        JOINT_VARIABLE_INDEX,
-        f"joint {joint.index} {verb} with {{{other.variable}:another variable}}",
-        f"that is the variable of joint {other.index}.",
-        f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
-        symbols=(SymbolChange(joint.variable, other.variable),),
-    )
+
+    def words(names: Names) -> SlipWords:
+        # The student wrote this variable, so its name gives nothing away.
+        index, name = joint.index, names.name(other.variable)
+        clause = say("joint {joint} moves with {name}", joint=index, name=name)
+        hint = say(
+            "Joint {joint} moves with {name}: that is the variable of joint {other}.",
+            joint=index,
+            name=name,
+            other=other.index,
+        )
+        return SlipWords(clause, hint, _moves_with(joint, names.name(joint.variable)))
+
+    symbols = (SymbolChange(joint.variable, other.variable),)
+    return Slip(JOINT_VARIABLE_INDEX, words, symbols=symbols)
 
 
 def _joint_variable_doubled(joint: Joint) -> Slip:
     """Return the slip: the joint variable is counted twice."""
-    verb = "moves" if joint.prismatic else "turns"
-    return Slip(
-        JOINT_VARIABLE_DOUBLED,
-        f"joint {joint.index} {verb} twice as far as {{{joint.variable}:its variable}}",
-        "count each joint variable once.",
-        f"Joint {joint.index} {verb} by {{{joint.variable}}}.",
-        symbols=(SymbolChange(joint.variable, joint.variable, 2.0),),
-    )
+
+    def words(names: Names) -> SlipWords:
+        index, name = joint.index, names.shown(joint.variable)
+        clause = say("joint {joint} moves twice as far as its variable", joint=index)
+        hint = say(
+            "Joint {joint} moves twice as far as its variable: count each joint variable once.",
+            joint=index,
+        )
+        if name:
+            clause = say("joint {joint} moves twice as far as {name}", joint=index, name=name)
+            hint = say(
+                "Joint {joint} moves twice as far as {name}: count each joint variable once.",
+                joint=index,
+                name=name,
+            )
+        correction = say(
+            "Joint {joint} moves by {name}.", joint=index, name=names.name(joint.variable)
+        )
+        return SlipWords(clause, hint, correction)
+
+    symbols = (SymbolChange(joint.variable, joint.variable, 2.0),)
+    return Slip(JOINT_VARIABLE_DOUBLED, words, symbols=symbols)
 
 
 def _zero_position(joint: Joint) -> Iterator[Slip]:
     """Yield the slips: the joint's angle is measured from another zero position."""
-    yield _turned_joint(joint, QUARTER_TURN, np.pi / 2, "a quarter turn (90°)")
-    yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2, "a quarter turn (90°)")
-    yield _turned_joint(joint, HALF_TURN, np.pi, "half a turn (180°)")
+    yield _turned_joint(joint, QUARTER_TURN, np.pi / 2)
+    yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2)
+    yield _turned_joint(joint, HALF_TURN, np.pi)
 
 
-def _turned_joint(joint: Joint, kind: Record, turn: float, error: str) -> Slip:
-    return Slip(
-        kind,
-        f"joint {joint.index} starts from another position",
-        f"check how the link lies when {{{joint.variable}:its variable}} is 0.",
-        f"{{{joint.variable}}} is off by {error}.",
-        symbols=(SymbolChange(joint.variable, joint.variable, 1.0, turn),),
-    )
+def _turned_joint(joint: Joint, kind: Record, turn: float) -> Slip:
+    def words(names: Names) -> SlipWords:
+        hint = say(
+            "Joint {joint} starts from another position: check how the link lies when its variable "
+            "is 0.",
+            joint=joint.index,
+        )
+        variable = names.name(joint.variable)
+        correction = say("{name} is off by a quarter turn (90°).", name=variable)
+        if kind is HALF_TURN:
+            correction = say("{name} is off by half a turn (180°).", name=variable)
+        clause = say("joint {joint} starts from another position", joint=joint.index)
+        return SlipWords(clause, hint, correction)
+
+    symbols = (SymbolChange(joint.variable, joint.variable, 1.0, turn),)
+    return Slip(kind, words, symbols=symbols)
 
 
 def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
     """Yield the slip of an answer for the home position."""
     if len(joints) > 1:
-        yield Slip(
-            HOME_POSITION,
-            "all joints stand in their home position",
-            "the answer must change with the joints.",
-            symbols=tuple(SymbolChange(each.variable, each.variable, 0.0) for each in joints),
-        )
+        symbols = tuple(SymbolChange(each.variable, each.variable, 0.0) for each in joints)
+        yield Slip(HOME_POSITION, _at_home, symbols=symbols)
 
 
-def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
-    """Yield the slips in these lengths.
-
-    If a length is ``alone`` in its cell, its sign and its omission are slips of the cell.
-    """
-    in_cells = set(alone)
-    for length in lengths:
-        if length not in in_cells:
-            yield _length_sign(length)
-            yield _length_left_out(length)
-    if len(lengths) <= MAX_LENGTHS:
-        for one, other in combinations(lengths, 2):
-            yield _exchanged(one, other)
-            yield _other_length(one, other)
-            yield _other_length(other, one)
-
-
-def _length_sign(length: str) -> Slip:
-    return Slip(
-        SIGN,
-        f"the length {{{length}:of one link}} has the wrong sign",
-        "check along which axis it is measured, and which way.",
-        f"Change the sign of {{{length}}} throughout.",
-        symbols=(SymbolChange(length, length, -1.0),),
-    )
-
-
-def _length_left_out(length: str) -> Slip:
-    return Slip(
-        DISTANCE_LEFT_OUT,
-        f"the length {{{length}:of one link}} is left out",
-        "check which frames it lies between.",
-        symbols=(SymbolChange(length, length, 0.0),),
-    )
-
-
-def _exchanged(one: str, other: str) -> Slip:
-    return Slip(
-        LENGTHS_EXCHANGED,
-        f"the lengths {{{one}:of one link}} and {{{other}:of another}} are exchanged",
-        "check which link each of them belongs to.",
-        f"Write {{{one}}} for {{{other}}}, and {{{other}}} for {{{one}}}.",
-        symbols=(SymbolChange(one, other), SymbolChange(other, one)),
-    )
-
-
-def _other_length(right: str, written: str) -> Slip:
-    return Slip(
-        OTHER_LENGTH,
-        f"the length {{{written}:of one link}} stands where another length belongs",
-        "check which link it belongs to.",
-        f"It is {{{right}}}.",
-        symbols=(SymbolChange(right, written),),
+def _at_home(_: Names) -> SlipWords:
+    return SlipWords(
+        say("all joints stand in their home position"),
+        say("All joints stand in their home position: the answer must change with the joints."),
     )
 
 
@@ -190,14 +176,14 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
         assert exercise.reference is not None
         return exercise.reference.screws(samples.values, samples.count)[:, 0]
 
-    def direction(joint: Joint) -> str:
+    def direction(joint: Joint) -> Sentence:
         first = exercise.joints[0].index - 1
         screw = screws()[exercise.joints.index(joint)]
         cosine = screw[5] if joint.prismatic else screw[2]
         if cosine < -1 + SAME_MOTION:
-            return f"Its axis points opposite to z{first}."
+            return say("Its axis points opposite to {axis}.", axis=f"z{first}")
         if cosine > 1 - SAME_MOTION:
-            return f"Its axis points along z{first}."
-        return "Check which way its axis points."
+            return say("Its axis points along {axis}.", axis=f"z{first}")
+        return say("Check which way its axis points.")
 
     return direction

@@ -11,18 +11,18 @@ from service.expressions.evaluation.samples import SymbolValues
 from service.grading.diagnosis.formulas.formula_repair import WrongEntry
 from service.grading.diagnosis.upstream.slip import Change, SymbolChange
 from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers
-from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Mask, differs, finding_on
 from service.grading.feedback import Finding
 from service.grading.misconception import check
 from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.samples import Samples
 from service.kinematics.transforms import Numbers
+from service.translations import listed, say
 
 # A change that has an effect on every entry: not a whole turn, and not a multiple of a length.
 PROBE = 0.37
 TWICE = 2.0
-NOT_ZERO = "This must not be 0: check which lengths have a part here."
+NOT_ZERO = say("This must not be 0: check which lengths have a part here.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,8 @@ def constant(entry: Dependence) -> Finding | None:
     """A number was written for a quantity that changes with a joint."""
     if entry.written or not entry.joints:
         return None
-    return finding_on(entry.case, "This is a constant, but it must change with the joints.")
+    hint = say("This is a constant, but it must change with the joints.")
+    return finding_on(entry.case, hint)
 
 
 @check(
@@ -171,10 +172,10 @@ def quantity(entry: Dependence) -> Finding | None:
     if _same(case, twice, (1 + required.grows) * once):
         return None
     if required.grows == 0:
-        return finding_on(case, "A plain number is asked for, but this contains a length.")
+        return finding_on(case, say("A plain number is asked for, but this contains a length."))
     if _same(case, twice, once):
-        return finding_on(case, "A length is asked for, but this contains none.")
-    return finding_on(case, "A length is asked for, but not every term here is a length.")
+        return finding_on(case, say("A length is asked for, but this contains none."))
+    return finding_on(case, say("A length is asked for, but not every term here is a length."))
 
 
 @check(
@@ -192,8 +193,16 @@ def missing_joints(entry: Dependence) -> Finding | None:
     case, names = entry.case, entry.joints
     if not names or any(_is_whole(case, name) for name in names):
         return None
-    advice = "Check what this joint moves." if len(names) == 1 else "Check what these joints move."
-    return finding_on(case, f"Nothing here depends on {_named(case, names)}. {advice}")
+    hint = say(
+        "Nothing here depends on {variables}. Check what these joints move.",
+        variables=_named(case, names),
+    )
+    if len(names) == 1:
+        hint = say(
+            "Nothing here depends on {variable}. Check what this joint moves.",
+            variable=_named(case, names),
+        )
+    return finding_on(case, hint)
 
 
 @check(
@@ -220,7 +229,10 @@ def extra_joints(entry: Dependence) -> Finding | None:
     ]
     if not moving:
         return None
-    hint = f"This must not change with {_named(case, moving)}: check which joints move it."
+    hint = say(
+        "This must not change with {variables}: check which joints move it.",
+        variables=_named(case, moving),
+    )
     return finding_on(case, hint)
 
 
@@ -240,7 +252,7 @@ def missing_length(entry: Dependence) -> Finding | None:
     assert required is not None
     if not required.symbols & required.lengths - entry.written - set(required.joints):
         return None
-    hint = "A length is missing here: check which lengths have a part in this."
+    hint = say("A length is missing here: check which lengths have a part in this.")
     return finding_on(entry.case, hint)
 
 
@@ -255,7 +267,7 @@ def missing_length(entry: Dependence) -> Finding | None:
 )
 def unexplained(entry: Dependence) -> Finding:
     """No misconception explains the entry."""
-    hint = "This is not right. Check each term: its factor, length, angle and sign."
+    hint = say("This is not right. Check each term: its factor, length, angle and sign.")
     return differs(entry.case, hint)
 
 

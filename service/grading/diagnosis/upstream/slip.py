@@ -5,7 +5,7 @@ instead. So many slips can be tried at once: the right answer is computed from t
 of all of them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from service.expressions.evaluation.samples import SymbolValues
 from service.grading.misconception import Record
 from service.kinematics.chain import Table
 from service.kinematics.transforms import Numbers
+from service.translations import Sentence
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,19 +56,42 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class Names:
+    """The names of symbols in a message: ``name`` returns the student's name of a symbol.
+
+    ``gives_away`` is True for a symbol whose name would give an entry away.
+    """
+
+    name: Callable[[str], str]
+    gives_away: Callable[[str], bool]
+
+    def shown(self, symbol: str) -> str | None:
+        """Return the name of a symbol in a hint, or None if it would give an entry away."""
+        return None if self.gives_away(symbol) else self.name(symbol)
+
+
+@dataclass(frozen=True, slots=True)
+class SlipWords:
+    """The sentences about a slip.
+
+    ``clause`` says in a clause what is wrong, so that several slips can be listed. ``hint`` is the
+    message on this slip alone: it says what is wrong and what to check.
+    """
+
+    clause: Sentence
+    hint: str
+    correction: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Slip(Change):
     """A slip of some kind (``slip_kinds``), with the change that it makes.
 
-    ``clause`` says in a clause what is wrong, so that several slips can be listed. ``advice`` says
-    what to check. ``correction`` is a field of its own in reports. In these texts a symbol is in
-    braces, because the student may have another name for it. The words after the colon replace a
-    name that would give an entry away: "nothing moves with {d3:its variable}".
+    ``words`` returns the sentences about it, with the student's names of symbols.
     """
 
     kind: Record
-    clause: str
-    advice: str
-    correction: str = ""
+    words: Callable[[Names], SlipWords]
 
     @property
     def code(self) -> str:

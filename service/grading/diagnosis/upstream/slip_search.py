@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from service.grading.diagnosis.upstream.slip import Slip
+from service.grading.diagnosis.upstream.slip import Names, Slip
 from service.grading.diagnosis.upstream.slip_kinds import HOME_POSITION
 from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wrong_value import Mask
@@ -16,6 +16,7 @@ from service.grading.misconception import Explained, Hypothesis, says
 from service.grading.numerics.comparison import nearly_equal
 from service.grading.numerics.samples import HALF, Samples
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 # These slips change several entries. If only one is wrong, its sign or a term is the cause.
 OF_SEVERAL_ENTRIES = {"quarter_turn", "half_turn", "parameter_sign"}
@@ -54,7 +55,7 @@ class SlipSearch:
     def explanation(self, entries: Mask) -> Explained | None:
         """Return the finding on the slips that explain these entries, or None."""
         slips = self.explaining(entries)
-        finding = _finding(slips, self.name, self._gives_away)
+        finding = _finding(slips, Names(self.name, self._gives_away))
         return None if finding is None else Hypothesis(None, finding, entries, record=slips[0].kind)
 
     def _gives_away(self, symbol: str) -> bool:
@@ -119,39 +120,25 @@ def _certain(slips: list[Slip]) -> list[Slip]:
     return [slip for slip in slips if slip.code not in covered]
 
 
-def _finding(
-    slips: Sequence[Slip], name: Callable[[str], str], gives_away: Callable[[str], bool]
-) -> Finding | None:
+def _finding(slips: Sequence[Slip], names: Names) -> Finding | None:
     """Return the finding on slips that all lead to the same answer."""
-    clauses = list(dict.fromkeys(slip.clause for slip in slips))
-    if not clauses or len(clauses) > MAX_LISTED:
+    # Slips with the same clause are the same to a student.
+    plain = Names(names.name, lambda _: False)
+    different: dict[str, Slip] = {}
+    for slip in slips:
+        different.setdefault(slip.words(plain).clause, slip)
+    if not different or len(different) > MAX_LISTED:
         return None
-    likeliest, correction = slips[0], ""
-    hint = f"One of these slips explains it: {'; '.join(clauses[:-1])}; or {clauses[-1]}. "
-    hint += "Check each of them."
-    if len(clauses) == 1:
-        hint = f"{clauses[0]}: {likeliest.advice}"
-        correction = likeliest.correction.format_map(_Names(name, lambda _: False))
-    hint = hint.format_map(_Names(name, gives_away))
-    return says(f"{hint[0].upper()}{hint[1:]}", correction)
-
-
-class _Names(dict[str, "_Name"]):
-    """The names of symbols, each looked up on demand."""
-
-    def __init__(self, name: Callable[[str], str], gives_away: Callable[[str], bool]) -> None:
-        self._name, self._gives_away = name, gives_away
-
-    def __missing__(self, symbol: str) -> "_Name":
-        return _Name(self._name(symbol), self._gives_away(symbol))
-
-
-@dataclass(frozen=True, slots=True)
-class _Name:
-    """A symbol's name, formatted as other words if it would give an entry away."""
-
-    name: str
-    gives_away: bool
-
-    def __format__(self, otherwise: str) -> str:
-        return otherwise if self.gives_away else self.name
+    if len(different) == 1:
+        hint = slips[0].words(names).hint
+        return says(hint, slips[0].words(plain).correction)
+    *clauses, last = [slip.words(names).clause for slip in different.values()]
+    listed: str = clauses[0]
+    for each in clauses[1:]:
+        listed = say("{first}; {second}", first=listed, second=each)
+    hint = say(
+        "One of these slips explains it: {slips}; or {last}. Check each of them.",
+        slips=listed,
+        last=last,
+    )
+    return says(hint)

@@ -13,8 +13,8 @@ from service.grading.diagnosis.upstream.joint_slips import (
     axis_direction,
     home_slip,
     joint_slips,
-    length_slips,
 )
+from service.grading.diagnosis.upstream.length_slips import length_slips
 from service.grading.diagnosis.upstream.slip import Change, Slip, change_cells, changed_values
 from service.grading.diagnosis.upstream.table_slips import table_slips
 from service.grading.judging.expected import as_entries

@@ -7,7 +7,8 @@ import numpy as np
 from service.catalogue import Joint, ReferenceTable
 from service.catalogue.robots.robot import at_home
 from service.expressions.evaluation.samples import SymbolValues
-from service.grading.diagnosis.upstream.joint_slips import axis_direction, joint_slips, length_slips
+from service.grading.diagnosis.upstream.joint_slips import axis_direction, joint_slips
+from service.grading.diagnosis.upstream.length_slips import length_slips
 from service.grading.diagnosis.upstream.slip import Change, change_cells, changed_values
 from service.grading.diagnosis.upstream.slipped_answers import (
     AnswersAt,

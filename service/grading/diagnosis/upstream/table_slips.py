@@ -20,9 +20,9 @@ from service.grading.diagnosis.upstream.joint_slips import (
     joint_slips,
     joint_variable_missing,
     joint_variable_sign,
-    length_slips,
 )
-from service.grading.diagnosis.upstream.slip import CellChange, Slip
+from service.grading.diagnosis.upstream.length_slips import length_slips
+from service.grading.diagnosis.upstream.slip import CellChange, Names, Slip, SlipWords
 from service.grading.diagnosis.upstream.slip_kinds import (
     ANGLE_LEFT_OUT,
     DISTANCE_LEFT_OUT,
@@ -30,30 +30,63 @@ from service.grading.diagnosis.upstream.slip_kinds import (
     QUARTER_TURN,
     SIGN,
 )
-from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS, axes_of_row
+from service.grading.diagnosis.wording import AXES, SYMBOLS, axes_of_row
 from service.grading.misconception import Record
 from service.grading.numerics.tolerances import CONSTANT
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
+from service.translations import Sentence, paragraph, say
 
 QUARTER = np.pi / 2
-NOUNS = ("length", "twist", "offset", "angle")
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell of a table: its place, and in words its parameter, its link and the right formula.
+    """A cell of a table, and the words about it.
 
-    ``axes`` are the two axes that an angle lies between.
+    With ``own_frames``, the right cell is not that of the table.
     """
 
+    table: ReferenceTable
     row: int
     column: int
-    parameter: str
-    link: str
-    axes: str
-    correction: str = ""
+    own_frames: bool
+
+    @property
+    def label(self) -> str:
+        """The label of its row."""
+        return self.table.labels[self.row]
+
+    @property
+    def axes(self) -> str:
+        """The two axes that an angle lies between."""
+        axis = "z" if self.column == ALPHA else "x"
+        return axes_of_row(axis, self.label, self.table.joints[-1].index)
+
+    @property
+    def correction(self) -> str:
+        """The right formula in a sentence, or "" if it is unknown."""
+        if self.own_frames:
+            return ""
+        return say(
+            "{symbol} in row {row} is {formula}.",
+            symbol=SYMBOLS[self.column],
+            row=self.label,
+            formula=self.table.rows[self.row][self.column].text(),
+        )
+
+    @property
+    def parameter(self) -> Sentence:
+        """The parameter in words, such as "the offset along the axis of joint 2"."""
+        return _parameter(self.table, self.row, self.column)
+
+    def name(self, names: Names) -> str:
+        """Return the student's name of the only constant in the cell, or a, α, d or θ."""
+        letters = _letters(self.table, self.row, self.column)
+        if len(letters) == 1 and not self.own_frames:
+            return names.shown(min(letters)) or SYMBOLS[self.column]
+        return SYMBOLS[self.column]
 
 
 def table_slips(
@@ -103,7 +136,7 @@ def row_slips(
     """
     joint = table.joints[row] if row < len(table.joints) and not home else None
     for column in (A, ALPHA, D, THETA):
-        cell, constant = _cell(table, row, column, own_frames=own_frames), constants[column]
+        cell, constant = Cell(table, row, column, own_frames), constants[column]
         moves = joint is not None and column == (D if joint.prismatic else THETA)
         if IS_ANGLE[column]:
             yield from _angle_slips(cell, constant, moves=moves)
@@ -127,51 +160,67 @@ def _angle_slips(cell: Cell, constant: float, *, moves: bool) -> Iterator[Slip]:
         yield _left_out(cell, ANGLE_LEFT_OUT)
     # For a joint's angle, ``joint_slips`` has these slips.
     if not moves:
-        yield _turned(cell, QUARTER_TURN, QUARTER, "a quarter turn (90°)")
-        yield _turned(cell, QUARTER_TURN, -QUARTER, "a quarter turn (90°)")
+        yield _turned(cell, QUARTER_TURN, QUARTER)
+        yield _turned(cell, QUARTER_TURN, -QUARTER)
         if not is_quarter:
-            yield _turned(cell, HALF_TURN, np.pi, "half a turn (180°)")
+            yield _turned(cell, HALF_TURN, np.pi)
 
 
 def _sign(cell: Cell) -> Slip:
-    column = cell.column
-    return Slip(
-        SIGN,
-        f"{cell.parameter} has the wrong sign",
-        f"it is measured {MEASURED[column]}, positive {POSITIVE[column]}.",
-        cell.correction,
-        cells=(CellChange(cell.row, column, -1.0),),
-    )
+    def words(names: Names) -> SlipWords:
+        name, axis = cell.name(names), AXES[cell.column]
+        clause = say("{name}, {parameter}, has the wrong sign", name=name, parameter=cell.parameter)
+        hint = say(
+            "{name}, {parameter}, has the wrong sign: it is measured along {axis}, positive in the "
+            "direction of the axis.",
+            name=name,
+            parameter=cell.parameter,
+            axis=axis,
+        )
+        if IS_ANGLE[cell.column]:
+            hint = say(
+                "{name}, {parameter}, has the wrong sign: it is measured about {axis}, positive by "
+                "the right-hand rule.",
+                name=name,
+                parameter=cell.parameter,
+                axis=axis,
+            )
+        return SlipWords(clause, hint, cell.correction)
+
+    return Slip(SIGN, words, cells=(CellChange(cell.row, cell.column, -1.0),))
 
 
 def _left_out(cell: Cell, kind: Record) -> Slip:
-    return Slip(
-        kind,
-        f"{cell.parameter} is left out",
-        f"check {cell.link}.",
-        cell.correction,
-        cells=(CellChange(cell.row, cell.column, 0.0),),
-    )
+    def words(names: Names) -> SlipWords:
+        name = cell.name(names)
+        clause = say("{name}, {parameter}, is left out", name=name, parameter=cell.parameter)
+        hint = say(
+            "{name}, {parameter}, is left out: check {link}.",
+            name=name,
+            parameter=cell.parameter,
+            link=f"A{cell.label}",
+        )
+        return SlipWords(clause, hint, cell.correction)
+
+    return Slip(kind, words, cells=(CellChange(cell.row, cell.column, 0.0),))
 
 
-def _turned(cell: Cell, kind: Record, turn: float, error: str) -> Slip:
-    return Slip(
-        kind,
-        f"{cell.parameter} is not right",
-        f"compare {cell.axes} in the home position.",
-        f"{cell.correction} It is off by {error}.".strip(),
-        cells=(CellChange(cell.row, cell.column, 1.0, turn),),
-    )
+def _turned(cell: Cell, kind: Record, turn: float) -> Slip:
+    def words(names: Names) -> SlipWords:
+        name = cell.name(names)
+        clause = say("{name}, {parameter}, is not right", name=name, parameter=cell.parameter)
+        hint = say(
+            "{name}, {parameter}, is not right: compare {axes} in the home position.",
+            name=name,
+            parameter=cell.parameter,
+            axes=cell.axes,
+        )
+        error = say("It is off by a quarter turn (90°).")
+        if kind is HALF_TURN:
+            error = say("It is off by half a turn (180°).")
+        return SlipWords(clause, hint, paragraph(cell.correction, error))
 
-
-def _cell(table: ReferenceTable, row: int, column: int, *, own_frames: bool) -> Cell:
-    symbol, label = SYMBOLS[column], table.labels[row]
-    letters = _letters(table, row, column)
-    letter = f"{{{min(letters)}:{symbol}}}" if len(letters) == 1 and not own_frames else symbol
-    right = f"{symbol} in row {label} is {table.rows[row][column].text()}."
-    parameter = f"the {NOUNS[column]} {letter} {_place(table, row, column)}"
-    axes = axes_of_row("z" if column == ALPHA else "x", label, table.joints[-1].index)
-    return Cell(row, column, parameter, f"A{label}", axes, "" if own_frames else right)
+    return Slip(kind, words, cells=(CellChange(cell.row, cell.column, 1.0, turn),))
 
 
 def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:
@@ -180,17 +229,51 @@ def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:
     return table.rows[row][column].symbols - variables
 
 
-def _place(table: ReferenceTable, row: int, column: int) -> str:
+def _parameter(table: ReferenceTable, row: int, column: int) -> Sentence:
+    """Return in words which parameter is in a cell: "the offset along the axis of joint 2"."""
     joints = [joint.index for joint in table.joints]
-    along = MEASURED[column].split()[0]
-    if column in (D, THETA) and row < len(joints):
-        return f"{along} the axis of joint {joints[row]}"
+    if row < len(joints) and column == D:
+        return say("the offset along the axis of joint {joint}", joint=joints[row])
+    if row < len(joints) and column == THETA:
+        return say("the angle about the axis of joint {joint}", joint=joints[row])
     # The number of joints before the x axis along which a and α are measured.
     before = row + (table.convention is Convention.STANDARD)
     if column in (D, THETA) or before > len(joints):
-        return f"{MEASURED[column]} in row {table.labels[row]}"
+        return say("the parameter in row {row}", row=table.labels[row])
+    return _length(joints, before) if column == A else _twist(joints, before)
+
+
+def _length(joints: Sequence[int], before: int) -> Sentence:
     if before == 0:
-        return f"between z{joints[0] - 1} and the axis of joint {joints[0]}"
+        return say(
+            "the length between {axis} and the axis of joint {joint}",
+            axis=f"z{joints[0] - 1}",
+            joint=joints[0],
+        )
     if before == len(joints):
-        return f"between the axis of joint {joints[-1]} and the last z axis"
-    return f"between the axes of joints {joints[before - 1]} and {joints[before]}"
+        return say(
+            "the length between the axis of joint {joint} and the last z axis", joint=joints[-1]
+        )
+    return say(
+        "the length between the axes of joints {joint} and {next}",
+        joint=joints[before - 1],
+        next=joints[before],
+    )
+
+
+def _twist(joints: Sequence[int], before: int) -> Sentence:
+    if before == 0:
+        return say(
+            "the twist between {axis} and the axis of joint {joint}",
+            axis=f"z{joints[0] - 1}",
+            joint=joints[0],
+        )
+    if before == len(joints):
+        return say(
+            "the twist between the axis of joint {joint} and the last z axis", joint=joints[-1]
+        )
+    return say(
+        "the twist between the axes of joints {joint} and {next}",
+        joint=joints[before - 1],
+        next=joints[before],
+    )

@@ -12,7 +12,7 @@ from service.grading.numerics.samples import Samples
 from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
-from service.translations import say
+from service.translations import say, template
 
 
 class Rereadable:
@@ -84,8 +84,10 @@ def written_table(
     rank=10,
     code="other_convention",
     rule="convention",
-    means="the table follows the other convention: standard instead of modified, or modified "
-    "instead of standard",
+    means=template(
+        "the table follows the other convention: standard instead of modified, or modified "
+        "instead of standard"
+    ),
     example=("three-link-cartesian", "table", {"1/alpha": "0", "3/alpha": "-90deg"}, "degrees"),
     unlike={"3/d": "0", "3/theta": "d3"},
 )
@@ -116,7 +118,7 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     rank=20,
     code="degrees_as_radians",
     rule="angle_unit",
-    means="all angles are numbers of degrees, but were read in radians",
+    means=template("all angles are numbers of degrees, but were read in radians"),
     example=(
         "stanford-arm",
         "table",
@@ -145,7 +147,7 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     rank=30,
     code="radians_as_degrees",
     rule="angle_unit",
-    means="all angles are numbers of radians, but were read in degrees",
+    means=template("all angles are numbers of radians, but were read in degrees"),
     example=(
         "stanford-arm",
         "table",

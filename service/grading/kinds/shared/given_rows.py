@@ -16,6 +16,7 @@ from service.grading.reading.entry import Entry
 from service.grading.reading.tables.table import IS_ANGLE, StudentRow, StudentTable
 from service.grading.report import Severity, Verdict
 from service.kinematics.chain import Table
+from service.translations import say
 
 _CHANGED = register(
     of=StudentTable,
@@ -118,7 +119,10 @@ def _text(entry: Entry) -> str | None:
 
 def _changed(label: str) -> Finding:
     return _CHANGED.finding(
-        f"Row {label} is given, and your answer has something else there. It was graded as it is "
-        f"given: take it over as it stands, and look at the other rows.",
+        say(
+            "Row {row} is given, and your answer has something else there. It was graded as it is "
+            "given: take it over as it stands, and look at the other rows.",
+            row=label,
+        ),
         severity=Severity.WARNING,
     )

@@ -46,7 +46,7 @@ def said(table: Table, kind: str = "transform", arm: Arm = ARM) -> tuple[tuple[s
             ((NONE, UP, *ROW1[2:]), (ROW2[0], DOWN, *ROW2[2:]), ROW3, (ROW4[0], DOWN, *ROW4[2:])),
             "parameter_sign",
             (
-                "All twists α have the wrong sign: they are measured about x, positive by the "
+                "α has the wrong sign throughout: it is measured about x, positive by the "
                 "right-hand rule."
             ),
         ),

@@ -30,7 +30,7 @@ def said(table: Table, convention: str = STANDARD) -> tuple[tuple[str, str], ...
 @pytest.mark.parametrize(
     ("table", "convention", "code", "words"),
     [
-        (NEGATED, STANDARD, "parameter_sign", "All twists α have the wrong sign: "),
+        (NEGATED, STANDARD, "parameter_sign", "α has the wrong sign throughout: "),
         (
             (ROWS[2], ROWS[1], ROWS[0]),
             STANDARD,
@@ -59,7 +59,7 @@ def test_a_slip_in_all_links_gets_one_message(
 def test_one_wrong_link_has_the_slip_of_its_row() -> None:
     [(code, message)] = said((ROWS[0], (*ROWS[1][:1], DOWN, *ROWS[1][2:]), ROWS[2]))
     assert code == "sign"
-    assert message.startswith("The twist α between the axes of joints 2 and 3 has the wrong sign")
+    assert message.startswith("α, the twist between the axes of joints 2 and 3, has the wrong sign")
 
 
 def test_a_slip_in_the_frames_of_the_exercise_is_named_if_frames_are_free() -> None:

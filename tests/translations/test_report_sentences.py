@@ -1,0 +1,135 @@
+"""Every message of a report is a sentence, so that it can be told in another language."""
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from string import Formatter
+from unicodedata import lookup
+
+from service.grading import FeedbackLevel, Submission, grade
+from service.grading.report import PartReport, messages_of
+from service.translations import Sentence, told
+from tests.docs.sentences import (
+    answers,
+    formulas,
+    pasted_texts,
+    said_of_formulas,
+    said_of_pasted,
+)
+from tests.grading.diagnosis.traces import exercises
+
+# The names of values that quote a text of an author or a student.
+QUOTED = {"part"}
+_WORDS = re.compile(r"[^\W\d_]{3,} [^\W\d_]{2,}")
+
+
+class Pseudo:
+    """A language that is English in capital letters."""
+
+    def gettext(self, message: str, /) -> str:
+        """Return the template in capital letters, with its values as they are."""
+        pieces = []
+        for text, name, _, _ in Formatter().parse(message):
+            pieces.append(text.upper().replace("{", "{{").replace("}", "}}"))
+            pieces.append("" if name is None else f"{{{name}}}")
+        return "".join(pieces)
+
+    def ngettext(self, one: str, many: str, count: int, /) -> str:
+        """Return the template for this count in capital letters."""
+        return self.gettext(one if count == 1 else many)
+
+
+@cache
+def reports() -> tuple[PartReport, ...]:
+    """Return the reports on the answers of docs/sentences.md."""
+    catalogue = exercises()
+    return tuple(
+        part
+        for each in answers(catalogue)
+        for part in grade(
+            catalogue[each.exercise],
+            Submission(each.answers, each.angle_unit, FeedbackLevel.FULL),
+        ).parts
+    )
+
+
+def said_of(part: PartReport) -> Iterator[tuple[str, str]]:
+    """Yield the sentences of a report on a part with their codes."""
+    for message, _, _ in messages_of(part):
+        yield message.message, message.code
+        for correction in (message.correction, *(each.correction for each in message.places or ())):
+            # A direction such as +x is a value, not an instruction.
+            if correction and correction.latex is None and _WORDS.search(correction.text):
+                yield correction.text, message.code
+    for lost in part.lost:
+        # A row of its own has only a label.
+        if lost.message != lost.row:
+            yield lost.message, lost.code
+    if part.little_worth:
+        yield part.little_worth.message, "little_worth"
+
+
+@cache
+def texts() -> Mapping[str, str]:
+    """Return the texts of all examples of docs/sentences.md, messages and corrections, with codes.
+
+    A plain text replaces an equal sentence.
+    """
+    given = [*said_of_formulas(formulas())]
+    given += said_of_pasted(pasted_texts(), exercises()["planar-rr"])
+    said = [(each.sentence, each.code) for each in given]
+    said += [each for part in reports() for each in said_of(part)]
+    said.sort(key=lambda each: isinstance(each[0], Sentence))
+    found: dict[str, str] = {}
+    for text, code in said:
+        found.setdefault(text, code)
+    return found
+
+
+def sentences() -> list[Sentence]:
+    """Return the texts that are sentences."""
+    return [each for each in texts() if isinstance(each, Sentence)]
+
+
+def leaves(sentence: Sentence) -> Iterator[tuple[str, str]]:
+    """Yield the values that a sentence and the sentences in it show, with their names."""
+    is_plural = sentence.plural and sentence.values["count"] != 1
+    template = sentence.plural if is_plural else sentence.template
+    for name, value in sentence.values.items():
+        if isinstance(value, Sentence):
+            yield from leaves(value)
+        elif f"{{{name}}}" in template:
+            yield name, str(value)
+
+
+def is_prose(value: str) -> bool:
+    """True if a value has English words; the names of characters are those of Unicode."""
+    try:
+        lookup(value)
+    except KeyError:
+        return _WORDS.search(value) is not None
+    return False
+
+
+def test_every_message_and_correction_is_a_sentence() -> None:
+    assert [text for text in texts() if not isinstance(text, Sentence)] == []
+
+
+def test_another_language_keeps_the_values_and_no_english_words() -> None:
+    for sentence in sentences():
+        values = [value for _, value in leaves(sentence)]
+        text = told(sentence, Pseudo())
+        assert all(value in text for value in values), sentence
+        for value in sorted(values, key=len, reverse=True):
+            text = text.replace(value, "")
+        assert not re.search(r"[a-z]{2}", text), sentence
+
+
+def test_a_value_is_no_prose() -> None:
+    found = {
+        (sentence.template, value)
+        for sentence in sentences()
+        for name, value in leaves(sentence)
+        if name not in QUOTED and is_prose(value)
+    }
+    assert found == set()
