@@ -62,4 +62,4 @@ def test_a_message_on_the_home_pose_does_not_mention_joint_starts(
     pose = "[1, 0, 0, 1.037165; 0, 1, 0, 0; 0, 0, 1, 0.19135; 0, 0, 0, 1]"
     [message] = report(catalogue["baxter-left-arm"], "home", pose).feedback
     assert "joint 2 starts" not in message.message
-    assert "the angle θ about the axis of joint 2" in message.message
+    assert "θ, the angle about the axis of joint 2, is not right" in message.message
