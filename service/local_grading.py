@@ -4,19 +4,22 @@ import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from service.catalogue import Exercise
+from service.catalogue import Exercise, in_language
 from service.formats.shared.graded import (
     AnsweredExercise,
     GradedFile,
     GradedSubmission,
     answered,
 )
+from service.formats.told_report import report_in
 from service.grading import FeedbackLevel, Report, Submission, grade
 from service.submissions.answers import ExerciseAnswers, answers_in
 from service.submissions.assignment import AssignedExercise, Assignment
 from service.submissions.body import GradeRequest
 from service.submissions.handed_in import HandedIn
 from service.submissions.lookup import nearest
+from service.submissions.outline import SetExercise
+from service.translations import ENGLISH, Language
 
 _LONGEST_NAME = 60
 
@@ -27,6 +30,7 @@ class GradingTerms:
 
     ``feedback`` is the level of the command line. Without it, the level is that of the submission,
     or, with ``for_students``, at most that of the exercise. ``echo`` shows how each cell was read.
+    Reports and the texts of exercises are in ``language``.
     """
 
     assignment: Assignment
@@ -34,13 +38,18 @@ class GradingTerms:
     feedback: FeedbackLevel | None = None
     for_students: bool = False
     echo: bool = False
+    language: Language = ENGLISH
 
     @property
     def answered(self) -> tuple[AnsweredExercise, ...]:
         """The assigned exercises as results show them."""
         return tuple(
-            answered(assigned.exercise, assigned.worth) for assigned in self.assignment.exercises
+            answered(self._told(assigned.exercise), assigned.worth)
+            for assigned in self.assignment.exercises
         )
+
+    def _told(self, exercise: SetExercise) -> SetExercise:
+        return in_language(exercise, self.language) if isinstance(exercise, Exercise) else exercise
 
     def submission(self, body: GradeRequest, assigned: AssignedExercise) -> Submission:
         """Return the submission for the grader, with the feedback level of these terms."""
@@ -78,7 +87,7 @@ def report_here(
     if problem := unknown_part(body, assigned):
         return None, problem
     try:
-        return grade(exercise, terms.submission(body, assigned)), ""
+        return report_in(grade(exercise, terms.submission(body, assigned)), terms.language), ""
     except Exception as error:  # noqa: BLE001 - a fault of the program affects only this submission
         place = traceback.extract_tb(error.__traceback__)[-1]
         return None, (

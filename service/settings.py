@@ -130,6 +130,11 @@ class Settings(BaseSettings):
     key: SecretStr | None = Field(
         None, description="The key that `dh-grader grade` sends to this service."
     )
+    language: str = Field(
+        "en",
+        description="The language of the reports of `dh-grader grade`: `en`, `de`, `es`, `fr` or "
+        "`zh`. Over HTTP, the reader chooses the language.",
+    )
     metrics: Literal["off", "local", "all"] = Field(
         "off",
         description="Who may read `GET /metrics` (for Prometheus): nobody (`off`; then nothing is "

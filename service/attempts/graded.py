@@ -3,15 +3,15 @@
 from dataclasses import dataclass, replace
 
 from service.attempts.outcome import Outcome, outcome_of
+from service.attempts.results.recorded_report import recorded_report
 from service.catalogue import Exercise, FeedbackLevel
-from service.formats.documents.json import rendered
 from service.grading import GradedAnswers, Report, graded_answers
 from service.submissions.body import GradeRequest
 
 
 @dataclass(frozen=True, slots=True)
 class AttemptReport:
-    """A report, its JSON text, and its outcome for statistics."""
+    """A report, its JSON for the database, and its outcome for statistics."""
 
     report: Report
     text: str
@@ -48,7 +48,7 @@ class AttemptGrading:
         report = graded.report(enough)
         outcome = outcome_of(report)
         shown = report if level is enough else graded.report(level)
-        return AttemptReport(shown, rendered(shown).decode(), outcome)
+        return AttemptReport(shown, recorded_report(shown), outcome)
 
     def _level(self, most: FeedbackLevel) -> FeedbackLevel:
         return self._body.submission(most).feedback

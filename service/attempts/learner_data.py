@@ -19,6 +19,7 @@ from sqlalchemy import (
     select,
 )
 
+from service.attempts.results.recorded_report import shown_report
 from service.attempts.storage import lti_tables as lti
 from service.attempts.storage.tables import (
     assignments,
@@ -32,11 +33,12 @@ from service.attempts.storage.tables import (
     overrides,
     regrade_queue,
 )
+from service.translations import ENGLISH
 
 # Columns that are about the database and not about the learner, and columns of JSON. A learner does
 # not see the seed of a variant.
 _INNER: Final = {"number", "attempt", "assignment", "outcome", "digest", "variant"}
-_JSON: Final = {"submission", "report", "exercises"}
+_JSON: Final = {"submission", "exercises"}
 
 # The learner's id at learning platforms, and the points that these got or wait for.
 _AT_PLATFORMS: Final = (
@@ -146,4 +148,6 @@ def _named(row: Row[Any]) -> Mapping[str, Any]:
 def _plain(name: str, value: Any) -> Any:
     if isinstance(value, datetime):
         return value.isoformat()
+    if name == "report":
+        return json.loads(shown_report(value, ENGLISH))
     return json.loads(value) if name in _JSON else value

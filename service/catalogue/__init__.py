@@ -1,6 +1,6 @@
 """Exercise files, validated and compiled. This package does not handle students' answers."""
 
-from service.catalogue.exercise import Exercise
+from service.catalogue.exercise import Exercise, in_language
 from service.catalogue.feedback_level import FeedbackLevel, least
 from service.catalogue.files.regular_file import read_regular
 from service.catalogue.files.schema import CheckSpec
@@ -43,6 +43,7 @@ __all__ = [
     "exercise_after",
     "exercise_files",
     "grid_values",
+    "in_language",
     "is_exercise_id",
     "least",
     "load_catalogue",

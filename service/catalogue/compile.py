@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from service.catalogue.files.schema import (
     ScrewRobotSpec,
     SymbolSpec,
 )
+from service.catalogue.files.translations import check_translations
 from service.catalogue.part import PartSpec
 from service.catalogue.robots.formulas import (
     EXACT,
@@ -41,6 +43,7 @@ from service.catalogue.robots.screw_robot import Reference, ScrewRobot
 from service.catalogue.robots.variables import Variable
 from service.expressions import Expression, Kind, Symbol, Vocabulary
 from service.kinematics.chain import COLUMNS, A, D
+from service.translations import say
 
 DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "angle": (-math.pi, math.pi),
@@ -49,7 +52,7 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
 }
 # The fields of a file that do not affect grading.
 _CATALOGUE = {"level", "order", "minutes", "summary", "keywords"}
-_NOT_GRADING = {"checks", "feedback", "attempts", "view", *_CATALOGUE}
+_NOT_GRADING = {"checks", "feedback", "attempts", "view", "translations", *_CATALOGUE}
 
 
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
@@ -65,6 +68,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         reference = _screw_robot(spec.robot, joints, reader)
     formulas = _formulas(spec.parts, reference, reader)
     _check_checks(spec.checks, spec.parts)
+    check_translations(spec)
     return Exercise(
         id=exercise_id,
         version=_version(spec),
@@ -86,6 +90,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         minutes=spec.minutes,
         summary=spec.summary,
         keywords=tuple(spec.keywords),
+        translations=spec.translations,
     )
 
 
@@ -174,9 +179,17 @@ def _variables(joints: tuple[Joint, ...], symbols: dict[str, SymbolSpec]) -> tup
 def _joint_variable(joint: Joint, symbol: SymbolSpec | None) -> Variable:
     kind: Kind = "length" if joint.prismatic else "angle"
     if symbol is None:
-        motion = "displacement" if joint.prismatic else "angle"
-        symbol = SymbolSpec(kind=kind, description=f"joint {motion} of joint {joint.index}")
-    elif symbol.kind != kind:
+        meaning = (
+            say("joint displacement of joint {joint}", joint=joint.index)
+            if joint.prismatic
+            else say("joint angle of joint {joint}", joint=joint.index)
+        )
+        variable = _variable(
+            joint.variable, SymbolSpec(kind=kind, description=meaning), joint.index
+        )
+        # The model of the file makes a plain text of the sentence.
+        return replace(variable, description=meaning)
+    if symbol.kind != kind:
         raise FieldError(
             f"symbols.{joint.variable}.kind",
             f"is {symbol.kind!r}, but joint {joint.index} "

@@ -1,12 +1,12 @@
 """A compiled exercise: its vocabulary, its reference robot, and its parts."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
-from service.catalogue.files.schema import CheckSpec, ViewSpec
+from service.catalogue.files.schema import CheckSpec, TranslationSpec, ViewSpec
 from service.catalogue.level import ExerciseLevel
 from service.catalogue.part import PartSpec
 from service.catalogue.robots.formulas import FormulaField, FormulaGrid, fields_of
@@ -16,8 +16,10 @@ from service.catalogue.robots.variables import Variable
 from service.catalogue.varying.vary import Vary
 from service.expressions import Vocabulary
 from service.kinematics.dh import Convention
+from service.translations import ENGLISH, Language, told
 
 _ANY_TIME: Final = AttemptsSpec()
+_UNTRANSLATED: Final = TranslationSpec()
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,13 +27,14 @@ class Exercise:
     """One exercise of the catalogue.
 
     ``version`` changes with every field that affects grading: not with ``checks``, ``view``,
-    ``attempts``, the fields of the catalogue (``level``, ``order``, ``minutes``, ``summary`` and
-    ``keywords``) and ``feedback_by_attempt``, the highest feedback level of each attempt (the last
-    one is for all later attempts). ``reference`` is the robot, if any; ``formulas`` has the answers
-    in the file by part id. ``length_scale`` is the longest length, to which small differences are
-    compared. ``view`` is the viewpoint of the figure. ``vary`` has the values of the variants, if
-    the exercise has some; ``seed`` is that of a variant, whose ``id`` is ``<exercise>~<seed>``
-    unless the seed is hidden.
+    ``attempts``, ``translations``, the fields of the catalogue (``level``, ``order``, ``minutes``,
+    ``summary`` and ``keywords``) and ``feedback_by_attempt``, the highest feedback level of each
+    attempt (the last one is for all later attempts). ``reference`` is the robot, if any;
+    ``formulas`` has the answers in the file by part id. ``length_scale`` is the longest length, to
+    which small differences are compared. ``view`` is the viewpoint of the figure. ``vary`` has the
+    values of the variants, if the exercise has some; ``seed`` is that of a variant, whose ``id`` is
+    ``<exercise>~<seed>`` unless the seed is hidden. ``told`` has the exercise in the languages in
+    which it was shown.
     """
 
     id: str
@@ -56,6 +59,8 @@ class Exercise:
     keywords: tuple[str, ...] = ()
     vary: Vary | None = None
     seed: str = ""
+    translations: Mapping[str, TranslationSpec] = field(default_factory=dict)
+    told: dict[str, "Exercise"] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def plain_id(self) -> str:
@@ -115,3 +120,36 @@ class Exercise:
             if written is not None:
                 path, grid = f"parts[{i}].{written.path}", self.formulas[part.id]
                 yield from fields_of(path, grid, written.quantities)
+
+
+def in_language(exercise: Exercise, language: Language) -> Exercise:
+    """Return the exercise with its texts in a language; texts without a translation stay."""
+    if language == ENGLISH:
+        return exercise
+    if language.code not in exercise.told:
+        exercise.told[language.code] = _translated(exercise, language)
+    return exercise.told[language.code]
+
+
+def _translated(exercise: Exercise, language: Language) -> Exercise:
+    texts = exercise.translations.get(language.code, _UNTRANSLATED)
+    translation = language.translation
+    variables = (
+        replace(
+            each, description=texts.symbols.get(each.name) or told(each.description, translation)
+        )
+        for each in exercise.variables
+    )
+    return replace(
+        exercise,
+        title=texts.title or exercise.title,
+        summary=texts.summary or exercise.summary,
+        statement=texts.statement or exercise.statement,
+        variables=tuple(variables),
+        parts=tuple(
+            part.model_copy(update=texts.parts[part.id].model_dump(exclude_none=True))
+            if part.id in texts.parts
+            else part
+            for part in exercise.parts
+        ),
+    )

@@ -6,14 +6,15 @@ from typing import Final
 
 from service.catalogue.exercise import Exercise
 from service.catalogue.level import ExerciseLevel
+from service.translations import say
 
 _LEVELS: Final = tuple(ExerciseLevel)
 _HEADINGS: Final = {
-    ExerciseLevel.START: "Start here",
-    ExerciseLevel.BASICS: "Basics",
-    ExerciseLevel.ARMS: "Arms",
-    ExerciseLevel.INDUSTRIAL: "Industrial robots",
-    None: "More exercises",
+    ExerciseLevel.START: say("Start here"),
+    ExerciseLevel.BASICS: say("Basics"),
+    ExerciseLevel.ARMS: say("Arms"),
+    ExerciseLevel.INDUSTRIAL: say("Industrial robots"),
+    None: say("More exercises"),
 }
 
 

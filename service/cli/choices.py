@@ -6,7 +6,9 @@ from typing import TypeVar
 
 import typer
 
+from service.cli.terminal import give_up
 from service.submissions.lookup import nearest
+from service.translations import LANGUAGES, Language, language_named
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -29,3 +31,11 @@ def choice(of: type[_Choice]) -> Callable[[str], _Choice]:
 def listed(of: type[StrEnum]) -> str:
     """The values of an enumeration as ``--help`` shows them: ``[a|b]``."""
     return f"[{'|'.join(each.value for each in of)}]"
+
+
+def report_language(tag: str) -> Language:
+    """Return the language of this tag; end the program if reports are not in this language."""
+    found = language_named(tag)
+    if found is None:
+        give_up(f"{tag!r} is no language of the reports: write one of {', '.join(LANGUAGES)}.")
+    return found

@@ -29,13 +29,17 @@ def checked_server(server: str) -> str:
     return str(url).rstrip("/")
 
 
-def client_options(server: str, key: str | None, timeout: float) -> dict[str, Any]:
+def client_options(
+    server: str, key: str | None, timeout: float, language: str | None = None
+) -> dict[str, Any]:
     """Return the options of an httpx client, sync or async, for a checked server.
 
     Raises ValueError for a key with invalid characters; the message does not show the key.
     """
     # No compression, so that the size of an answer is limited by the bytes received.
     headers = {"User-Agent": f"dh-grader/{VERSION}", "Accept-Encoding": "identity"}
+    if language is not None:
+        headers["Accept-Language"] = language
     if key is not None:
         if not _KEY.fullmatch(key):
             raise ValueError("The key is empty or has a character that no key has; copy it again.")

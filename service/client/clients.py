@@ -86,7 +86,8 @@ class GraderClient(_Methods):
 
     ``server`` is its address, including a path before ``/v1``. ``key`` is sent only to this server.
     ``timeout`` is the limit for one answer in seconds. ``transport`` is that of httpx, for your own
-    certificates or proxies. Raises ValueError for an invalid address or key.
+    certificates or proxies. ``language`` is that of messages, such as "de"; without it, they are in
+    English. Raises ValueError for an invalid address or key.
     """
 
     def __init__(
@@ -97,12 +98,13 @@ class GraderClient(_Methods):
         timeout: float = 60.0,
         retries: Retries = Retries(),  # noqa: B008 -- frozen
         transport: httpx.BaseTransport | None = None,
+        language: str | None = None,
     ) -> None:
         self.server = checked_server(server)
         self._timeout = timeout
         self._retries = retries
         self._is_closed = threading.Event()
-        options = client_options(self.server, key, timeout)
+        options = client_options(self.server, key, timeout, language)
         self._http = httpx.Client(transport=transport, **options)
 
     def grade_many(self, submissions: Iterable[ExerciseSubmission]) -> Iterator[GradeResult]:
@@ -170,11 +172,12 @@ class AsyncGraderClient(_Methods):
         timeout: float = 60.0,
         retries: Retries = Retries(),  # noqa: B008 -- frozen
         transport: httpx.AsyncBaseTransport | None = None,
+        language: str | None = None,
     ) -> None:
         self.server = checked_server(server)
         self._timeout = timeout
         self._retries = retries
-        options = client_options(self.server, key, timeout)
+        options = client_options(self.server, key, timeout, language)
         self._http = httpx.AsyncClient(transport=transport, **options)
 
     async def grade_many(

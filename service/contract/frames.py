@@ -4,7 +4,7 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.contract.preview import PreviewError
+from service.contract.preview import PreviewError, ToldText
 from service.figures.drawing.style import Theme
 from service.figures.tables.table_frames import LARGEST
 from service.kinematics.dh import Convention
@@ -108,7 +108,7 @@ class LostFreedom(BaseModel):
     model_config = ConfigDict(from_attributes=True)
 
     joints: list[int]
-    message: str
+    message: ToldText
 
 
 class PrintedFormula(BaseModel):

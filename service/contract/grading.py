@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.contract.preview import ToldText
 from service.contract.problems import ProblemDocument
 from service.grading import Report
 from service.hints.steps import STEPS
@@ -33,8 +34,8 @@ class Hint(BaseModel):
 
     step: int
     steps: int = Field(description="The number of steps of each hint.")
-    title: str = Field(description="The name of the rule.")
-    text: str
+    title: ToldText = Field(description="The name of the rule.")
+    text: ToldText
     picture: str | None = Field(
         None,
         description="The path of the picture of the rule, an SVG, from the address of the service. "
@@ -76,7 +77,7 @@ class ChoicesRequest(BaseModel):
 class ValidTable(BaseModel):
     """Another valid table."""
 
-    change: str = Field(description="What is different in it, as a sentence.")
+    change: ToldText = Field(description="What is different in it, as a sentence.")
     rows: list[TableRow]
 
 

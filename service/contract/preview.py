@@ -1,10 +1,31 @@
 """The bodies of previews, which show how a text is read while the student types."""
 
-from typing import Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    SerializationInfo,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 
 from service.expressions import Kind
+from service.translations import Sentence, told
+
+
+def _kept(text: Any, validated: ValidatorFunctionWrapHandler) -> Any:
+    return text if isinstance(text, Sentence) else validated(text)
+
+
+def _told(text: str, info: SerializationInfo) -> str:
+    return told(text, info.context)
+
+
+# A sentence that is told when its model is written: ``model_dump_json(context=translation)``.
+ToldText = Annotated[str, WrapValidator(_kept), PlainSerializer(_told)]
 
 
 class PreviewRequest(BaseModel):
@@ -34,7 +55,7 @@ class PreviewNote(BaseModel):
     model_config = ConfigDict(from_attributes=True)
 
     code: str
-    message: str
+    message: ToldText
     span: tuple[int, int]
 
 

@@ -2,6 +2,8 @@
 
 from pydantic import BaseModel, Field
 
+from service.contract.preview import ToldText
+
 
 class ShareCorrect(BaseModel):
     """The number of answers and of right answers."""
@@ -36,7 +38,7 @@ class MisconceptionFigures(BaseModel):
 
     part: str
     code: str
-    sentence: str | None = Field(
+    sentence: ToldText | None = Field(
         None,
         description="The message in one of these reports; absent if the report has no messages.",
     )

@@ -37,7 +37,7 @@ class LaunchMessage:
     """A message that has passed all checks. ``sub`` is None for guests; ``claims`` are all claims.
 
     ``custom`` are the custom parameters with text values. ``reviewed`` is the user whose attempts
-    are to be shown, or "".
+    are to be shown, or "". ``locale`` is the language of the user on the platform, or "".
     """
 
     registration: Registration
@@ -55,6 +55,7 @@ class LaunchMessage:
     scopes: str
     memberships_url: str | None
     reviewed: str
+    locale: str
     claims: Mapping[str, Any]
 
 
@@ -202,6 +203,7 @@ def _content(
         if isinstance(scopes, list)
         else "",
         reviewed=_reviewed(claims) if kind == REVIEW else "",
+        locale=_locale(claims.get(f"{LTI}launch_presentation")),
         memberships_url=_address(roster.get("context_memberships_url")),
         claims=claims,
     )
@@ -212,6 +214,11 @@ def _reviewed(claims: Mapping[str, Any]) -> str:
     if not (user := _name(_object(claims, name).get("user_id"))):
         raise LtiError("bad-claim", claim=name)
     return user
+
+
+def _locale(presentation: Any) -> str:
+    """Return the language of the user. A launch is not refused because of it."""
+    return _line(presentation.get("locale")) if isinstance(presentation, dict) else ""
 
 
 def _object(claims: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -3,9 +3,13 @@
 from collections.abc import Mapping
 from typing import Final, NamedTuple
 
+from service.translations import say
+
 # What the student can do.
-_AGAIN: Final = "Go back to your course, reload the page there, and open the exercise once more."
-_TEACHER: Final = (
+_AGAIN: Final = say(
+    "Go back to your course, reload the page there, and open the exercise once more."
+)
+_TEACHER: Final = say(
     "You have done nothing wrong. Tell your teacher, who passes the reference number on to the "
     "people that run this service."
 )
@@ -36,7 +40,10 @@ LTI_PROBLEMS: Final[Mapping[str, LtiProblem]] = {
     "binding-from-elsewhere": LtiProblem("The page of another site has sent the message.", _AGAIN),
     "cookies-blocked": LtiProblem(
         "The browser keeps no cookies, and the platform has no storage.",
-        "Your browser does not accept cookies from this page. Allow them, or use another browser.",
+        say(
+            "Your browser does not accept cookies from this page. Allow them, or use another "
+            "browser."
+        ),
     ),
     "no-token": LtiProblem("The message has no id_token."),
     "token-too-long": LtiProblem("The id_token is too long."),

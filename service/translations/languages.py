@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from gettext import GNUTranslations
+from gettext import GNUTranslations, NullTranslations
 from pathlib import Path
 from typing import Final
 
@@ -20,12 +20,16 @@ class Language:
     name: str
     tag: str
 
+    def __getstate__(self) -> dict[str, str]:
+        """Return the language without its catalogue, which other processes read themselves."""
+        return {"code": self.code, "name": self.name, "tag": self.tag}
+
     @cached_property
-    def translation(self) -> GNUTranslations | None:
+    def translation(self) -> NullTranslations | None:
         """The catalogue of the language; None for English, the language of the templates."""
         if self.code == "en":
             return None
-        found = GNUTranslations()
+        found = NullTranslations()
         # A template that no catalogue has stays English.
         for domain in DOMAINS:
             file = _FOLDER / self.code / f"{domain}.mo"

@@ -3,7 +3,7 @@
 A changed file has another name, so browsers may cache each file without a limit. The names are made
 when the service starts; there is no build step. In the source, a module imports another one by its
 path, such as ``"../shared/dom.js"``. All files are served from one folder, so no two of them may
-have the same name.
+have the same name. Each language but English has one more file, the dictionary of the scripts.
 """
 
 import hashlib
@@ -15,12 +15,17 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Final
 
+from service.translations import LANGUAGES, Language
+from service.web.script_words import dictionary, with_dictionaries
+
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 # A file names another one by its path in quotes. A module may also import one later (``import(``).
 # A pattern that begins with plain characters is ten times as fast.
 _NAMED: Final = re.compile(r'"(\.\.?/[\w./-]+\.(?:js|css|svg))"')
 _LATER: Final = "import("
+# The script that loads the dictionaries.
+_WORDS: Final = "words.js"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +67,11 @@ class Assets:
                 waiting += self.by_plain_name[name].needs
         return [self.name(name) for name in found]
 
+    def words(self, language: Language) -> str | None:
+        """Return the name of the dictionary of a language, or None if it needs none."""
+        found = self.by_plain_name.get(_dictionary_name(language))
+        return None if found is None else found.name
+
 
 def load_assets(folder: Path = FOLDER) -> Assets:
     """Return all files below a folder.
@@ -76,6 +86,13 @@ def load_assets(folder: Path = FOLDER) -> Assets:
     named = {name: list(_NAMED.finditer(text)) for name, text in texts.items()}
     targets = {name: [_target(files, name, match) for match in named[name]] for name in files}
     assets: dict[str, Asset] = {}
+    if _WORDS in texts:
+        languages = [each for each in LANGUAGES.values() if each.translation]
+        for each in languages:
+            name = _dictionary_name(each)
+            assets[name] = _asset(name, dictionary(each, texts.values()).encode())
+        addresses = {each.code: f"./{_dictionary_name(each)}" for each in languages}
+        texts[_WORDS] = with_dictionaries(texts[_WORDS], addresses)
     # The named files come first: a name is part of the content that is hashed.
     for name in TopologicalSorter(targets).static_order():
         content = _NAMED.sub(lambda match: f'"./{assets[_name(match)].name}"', texts[name]).encode()
@@ -84,10 +101,18 @@ def load_assets(folder: Path = FOLDER) -> Assets:
             for target, match in zip(targets[name], named[name], strict=True)
             if not texts[name].endswith(_LATER, 0, match.start())
         )
-        stem, suffix = files[name].stem, files[name].suffix
-        hashed = f"{stem}-{hashlib.sha256(content).hexdigest()[:12]}{suffix}"
-        assets[name] = Asset(hashed, content, _MEDIA_TYPES[suffix], needs)
+        assets[name] = _asset(name, content, needs)
     return Assets(assets)
+
+
+def _asset(name: str, content: bytes, needs: tuple[str, ...] = ()) -> Asset:
+    stem, suffix = Path(name).stem, Path(name).suffix
+    hashed = f"{stem}-{hashlib.sha256(content).hexdigest()[:12]}{suffix}"
+    return Asset(hashed, content, _MEDIA_TYPES[suffix], needs)
+
+
+def _dictionary_name(language: Language) -> str:
+    return f"words-{language.code}.js"
 
 
 def _name(match: re.Match[str]) -> str:

@@ -5,15 +5,21 @@ from typing import Final
 
 from service.catalogue import Exercise
 from service.kinematics.dh import Convention
+from service.translations import ENGLISH, Language, say, told
 
 _KIND_NAMES: Final = {
-    "dh_table": "DH table",
-    "dh_row": "DH row",
-    "frames": "placing frames",
-    "find_slip": "finding the slip",
-    "link_transforms": "link transforms",
-    "euler_angles": "Euler angles",
-    "screw_axes": "screw axes",
+    "dh_table": say("DH table"),
+    "dh_row": say("DH row"),
+    "frames": say("placing frames"),
+    "find_slip": say("finding the slip"),
+    "link_transforms": say("link transforms"),
+    "euler_angles": say("Euler angles"),
+    "screw_axes": say("screw axes"),
+    "matrix": say("matrix"),
+    "position": say("position"),
+    "rotation": say("rotation"),
+    "transform": say("transform"),
+    "vector": say("vector"),
 }
 # The words that lectures and books use.
 _CONVENTIONS: Final = {
@@ -28,9 +34,17 @@ def kinds_of(exercise: Exercise) -> Iterable[str]:
     return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
 
 
-def words_of(exercise: Exercise) -> str:
-    """Return all words of an exercise that a student may search for."""
-    return " ".join(dict.fromkeys(" ".join(_texts(exercise)).split()))
+def words_of(
+    exercise: Exercise, language: Language = ENGLISH, original: Exercise | None = None
+) -> str:
+    """Return all words of an exercise that a student may search for.
+
+    In another language than English, the words of the ``original`` exercise are among them.
+    """
+    texts = [told(each, language.translation) for each in _texts(exercise)]
+    if language.translation:
+        texts += _texts(original or exercise)
+    return " ".join(dict.fromkeys(" ".join(texts).split()))
 
 
 def _texts(exercise: Exercise) -> Iterator[str]:

@@ -7,35 +7,51 @@ from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
 from service.api.routes.reference import SCRIPT, START, STYLE
-from service.catalogue import Exercise, by_level
+from service.catalogue import Exercise, by_level, in_language
 from service.formats.shared.html_templates import html, own_html
+from service.translations import ENGLISH, LANGUAGES, Language, say
 from service.typeset.statement import statement_html
 from service.variants.robots.practice_id import practice_id
 from service.web.assets import Assets
 from service.web.catalogue_words import kinds_of, words_of
 
 # The entries of the menu: text, and address relative to the root.
-_MENU: Final = (("Exercises", ""), ("Practice", "practice"), ("Free play", "play"), ("API", "docs"))
-_TUTORS_MENU: Final = (*_MENU, ("For tutors", "tutor"))
+_MENU: Final = (
+    (say("Exercises"), ""),
+    (say("Practice"), "practice"),
+    (say("Free play"), "play"),
+    (say("API"), "docs"),
+)
+_TUTORS_MENU: Final = (*_MENU, (say("For tutors"), "tutor"))
 
 
-def catalogue_page(catalogue: Catalogue, assets: Assets, *, tutor: bool = False) -> bytes:
+def catalogue_page(
+    catalogue: Catalogue, assets: Assets, language: Language, *, tutor: bool = False
+) -> bytes:
     """Return the page with the list of all exercises."""
+    shown = [in_language(each, language) for each in catalogue.values()]
     return page(
         "web/templates/catalogue.html",
         assets,
         "",
         ["page.js", "catalogue.js"],
         styles=["catalogue.css"],
+        language=language,
         tutor=tutor,
-        groups=by_level(catalogue.values()),
+        groups=by_level(shown),
         kinds_of=kinds_of,
-        words_of=words_of,
+        # An English word finds an exercise in every language.
+        words_of=lambda it: words_of(it, language, catalogue[it.id]),
     )
 
 
 def exercise_page(
-    exercise: Exercise, following: Exercise | None, assets: Assets, *, tutor: bool = False
+    exercise: Exercise,
+    following: Exercise | None,
+    assets: Assets,
+    language: Language,
+    *,
+    tutor: bool = False,
 ) -> bytes:
     """Return the page of an exercise, with a link to the ``following`` one."""
     return page(
@@ -44,20 +60,28 @@ def exercise_page(
         "../",
         ["page.js", "embed.js"],
         styles=["print.css"],
+        language=language,
         tutor=tutor,
-        exercise=exercise,
-        next=following,
+        exercise=in_language(exercise, language),
+        next=following and in_language(following, language),
         is_generated=practice_id(exercise.id) is not None,
         markdown=_markdown,
     )
 
 
-def play_page(assets: Assets, *, tutor: bool = False) -> bytes:
+def play_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
     """Return the page of free play, which accepts the table of any robot."""
-    return page("web/templates/play.html", assets, "", ["page.js", "play.js"], tutor=tutor)
+    return page(
+        "web/templates/play.html",
+        assets,
+        "",
+        ["page.js", "play.js"],
+        language=language,
+        tutor=tutor,
+    )
 
 
-def practice_page(assets: Assets, *, tutor: bool = False) -> bytes:
+def practice_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
     """Return the page of generated robots; the element deals them."""
     return page(
         "web/templates/practice.html",
@@ -65,11 +89,12 @@ def practice_page(assets: Assets, *, tutor: bool = False) -> bytes:
         "",
         ["page.js", "embed.js", "practice.js"],
         styles=["print.css"],
+        language=language,
         tutor=tutor,
     )
 
 
-def ten_minutes_page(assets: Assets, *, tutor: bool = False) -> bytes:
+def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
     """Return the page "DH in ten minutes"; it can be read without scripts."""
     return page(
         "web/templates/learn_dh.html",
@@ -77,11 +102,12 @@ def ten_minutes_page(assets: Assets, *, tutor: bool = False) -> bytes:
         "",
         ["page.js", "ten_minutes.js"],
         styles=["ten_minutes.css"],
+        language=language,
         tutor=tutor,
     )
 
 
-def learner_page(assets: Assets) -> bytes:
+def learner_page(assets: Assets, language: Language) -> bytes:
     """Return the page of a learner with a personal link; its script loads the assignments."""
     return page(
         "web/templates/learn.html",
@@ -89,12 +115,13 @@ def learner_page(assets: Assets) -> bytes:
         "",
         ["page.js", "embed.js", "learner.js"],
         styles=["learner.css"],
+        language=language,
         key="",
         place="",
     )
 
 
-def reference_page(assets: Assets, *, tutor: bool = False) -> bytes:
+def reference_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
     """Return the page /docs, on which people read and try the operations."""
     return page(
         "web/templates/docs.html",
@@ -102,6 +129,7 @@ def reference_page(assets: Assets, *, tutor: bool = False) -> bytes:
         "",
         ["page.js"],
         styles=["docs.css"],
+        language=language,
         tutor=tutor,
         swagger=[SCRIPT, START],
         swagger_style=STYLE,
@@ -115,26 +143,36 @@ def page(
     scripts: Iterable[str],
     *,
     styles: Iterable[str] = (),
+    language: Language | None = None,
     tutor: bool = False,
+    is_framed: bool = False,
     **values: object,
 ) -> bytes:
     """Return the page of a template that extends ``site.html``.
 
     ``root`` is the relative address of the catalogue. The menu has one more entry for a ``tutor``.
     With ``is_framed``, a page has no menu: no other page opens in a frame.
+    A page without a ``language`` is in English, and does not offer others.
     ``values`` are the variables of the template.
     """
     static = f"{root}static/"
+    offers = language is not None and not is_framed and len(LANGUAGES) > 1
     modules = dict.fromkeys(name for script in scripts for name in assets.modules(script))
+    words = assets.words(language) if language else None
+    if words and assets.name("words.js") in modules:
+        modules[words] = None
     return html(
         template,
+        language=language or ENGLISH,
+        languages=list(LANGUAGES.values()) if offers else [],
         asset=lambda name: f"{static}{assets.name(name)}",
         menu=_TUTORS_MENU if tutor else _MENU,
         modules=[f"{static}{name}" for name in modules],
         root=root,
         scripts=list(scripts),
         styles=list(styles),
-        **{"is_framed": False, **values},
+        is_framed=is_framed,
+        **values,
     )
 
 

@@ -4,9 +4,10 @@ from http import HTTPStatus
 from typing import Final
 
 from fastapi import APIRouter, Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from service.api.http.chunked_response import ChunkedResponse
+from service.api.http.language import keep_language, language_of
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
@@ -16,7 +17,8 @@ from service.variants.robots.practice_catalogue import CatalogueWithPractice
 from service.web.assets import Asset, Assets, load_assets
 from service.web.courses.course_routes import course_routes
 from service.web.lti.lti_routes import lti_routes
-from service.web.page_headers import PAGE_HEADERS, REFERENCE_HEADERS
+from service.web.page_answer import page_answer
+from service.web.page_headers import REFERENCE_HEADERS
 from service.web.pages import (
     catalogue_page,
     exercise_page,
@@ -63,38 +65,40 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         """Answer with the catalogue, or redirect to the exercise that the query names."""
         if exercise is not None:
             known = exercise_or_404(practised, exercise)
-            return RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
-        return HTMLResponse(
-            catalogue_page(catalogue, assets, tutor=tutoring.access.shows_solutions(request)),
-            headers=PAGE_HEADERS,
-        )
+            answer = RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
+            keep_language(request, answer)
+            return answer
+        tutor = tutoring.access.shows_solutions(request)
+        shown = catalogue_page(catalogue, assets, language_of(request), tutor=tutor)
+        return page_answer(request, shown)
 
     @router.get("/exercises/{exercise_id}")
     async def exercise(request: Request, exercise_id: str) -> Response:
         """Answer with the page of an exercise; statement and figure need no scripts."""
-        shown = exercise_or_404(practised, exercise_id)
-        shows_solutions = tutoring.access.shows_solutions(request)
+        found = exercise_or_404(practised, exercise_id)
+        tutor = tutoring.access.shows_solutions(request)
         following = exercise_after(exercise_id, catalogue.values())
-        return HTMLResponse(
-            exercise_page(shown, following, assets, tutor=shows_solutions), headers=PAGE_HEADERS
-        )
+        shown = exercise_page(found, following, assets, language_of(request), tutor=tutor)
+        return page_answer(request, shown)
 
     @router.get("/play")
     async def play(request: Request) -> Response:
         """Answer with the page of free play; its tables stay in the browser."""
-        shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
-        return HTMLResponse(shown, headers=PAGE_HEADERS)
+        tutor = tutoring.access.shows_solutions(request)
+        shown = play_page(assets, language_of(request), tutor=tutor)
+        return page_answer(request, shown)
 
     @router.get("/learn")
-    async def learn() -> Response:
+    async def learn(request: Request) -> Response:
         """Answer with the learner's page, the same for all; the key in the link never gets here."""
-        return HTMLResponse(learner_page(assets), headers=PAGE_HEADERS)
+        return page_answer(request, learner_page(assets, language_of(request)))
 
     @router.get("/docs")
     async def reference(request: Request) -> Response:
         """Answer with the reference of the HTTP interface."""
-        shown = reference_page(assets, tutor=tutoring.access.shows_solutions(request))
-        return HTMLResponse(shown, headers=REFERENCE_HEADERS)
+        tutor = tutoring.access.shows_solutions(request)
+        shown = reference_page(assets, language_of(request), tutor=tutor)
+        return page_answer(request, shown, REFERENCE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
@@ -118,14 +122,16 @@ def _practice_routes(assets: Assets, access: Access) -> APIRouter:
     @router.get("/practice")
     async def practice(request: Request) -> Response:
         """Answer with the page of generated robots; the robot is in the fragment of the address."""
-        shown = practice_page(assets, tutor=access.shows_solutions(request))
-        return HTMLResponse(shown, headers=PAGE_HEADERS)
+        tutor = access.shows_solutions(request)
+        shown = practice_page(assets, language_of(request), tutor=tutor)
+        return page_answer(request, shown)
 
     @router.get("/learn-dh")
     async def learn_dh(request: Request) -> Response:
         """Answer with the page "DH in ten minutes"; its progress stays in the browser."""
-        shown = ten_minutes_page(assets, tutor=access.shows_solutions(request))
-        return HTMLResponse(shown, headers=PAGE_HEADERS)
+        tutor = access.shows_solutions(request)
+        shown = ten_minutes_page(assets, language_of(request), tutor=tutor)
+        return page_answer(request, shown)
 
     return router
 

@@ -7,10 +7,11 @@ from typing import Final
 from urllib.parse import parse_qs, quote, unquote
 
 from fastapi import APIRouter, Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from service.access.caller import Scope
 from service.access.keys import CredentialError, Keys, KeysBusyError, KeysUnreachableError
+from service.api.http.language import language_of
 from service.api.http.problems import store_down
 from service.api.permissions.access import (
     PLAIN_COOKIE,
@@ -19,7 +20,9 @@ from service.api.permissions.access import (
     is_same_origin,
 )
 from service.api.permissions.access_problems import access_problem
+from service.translations import say
 from service.web.assets import Assets
+from service.web.page_answer import page_answer
 from service.web.page_headers import FORM_HEADERS
 from service.web.pages import page
 
@@ -36,23 +39,24 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
     """Return the routes to sign in and out."""
     router = APIRouter(prefix="/tutor", include_in_schema=False)
 
-    def form(following: str, message: str = "") -> Response:
+    def form(request: Request, following: str, message: str = "") -> Response:
         content = page(
             "web/templates/sign_in.html",
             assets,
             "../",
             ["page.js"],
             styles=["tutor.css", "records.css"],
+            language=language_of(request),
             following=following,
             message=message,
         )
         status = HTTPStatus.FORBIDDEN if message else HTTPStatus.OK
-        return HTMLResponse(content, status, headers=FORM_HEADERS)
+        return page_answer(request, content, FORM_HEADERS, status)
 
     @router.get("/sign-in")
-    async def ask(following: str = HOME) -> Response:
+    async def ask(request: Request, following: str = HOME) -> Response:
         """Answer with the form that asks for a key."""
-        return form(own_path(following))
+        return form(request, own_path(following))
 
     @router.post("/sign-in")
     async def begin(request: Request) -> Response:
@@ -62,12 +66,13 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
         if access.keys is None or not await access.keys.are_needed():
             return _see(following)
         if not is_same_origin(request):
-            return form(following, "The form was sent by a page of another site. Send it again.")
+            message = say("The form was sent by a page of another site. Send it again.")
+            return form(request, following, message)
         until = datetime.now(UTC) + SESSION
         try:
             session = await _session(access.keys, fields.get("key", "").strip(), until)
         except CredentialError as error:
-            return form(following, str(error))
+            return form(request, following, error.args[0] if error.args else str(error))
         answer = _see(following)
         set_session_cookie(answer, request, session)
         return answer
@@ -98,15 +103,15 @@ def own_path(path: str) -> str:
 async def _session(keys: Keys, key: str, until: datetime) -> str:
     """Return a session of the holder of a key. Raises CredentialError, ProblemError."""
     if not key:
-        raise CredentialError("Enter a key.")
+        raise CredentialError(say("Enter a key."))
     try:
         caller = await keys.caller(key)
     except KeysUnreachableError as error:
-        raise store_down("The key cannot be checked: the database does not answer.") from error
+        raise store_down(say("The key cannot be checked: the database does not answer.")) from error
     except KeysBusyError as error:
         raise access_problem("busy") from error
     if Scope.TUTOR not in caller.scopes or caller.learner is not None:
-        raise CredentialError("This key is not a tutor's: it has not the scope tutor.")
+        raise CredentialError(say("This key is not a tutor's: it has not the scope tutor."))
     return keys.session(caller, until)
 
 

@@ -41,10 +41,13 @@ class Served:
 
 
 @contextmanager
-def served(folder: Path, **environment: str) -> Iterator[Served]:
-    """Start a real process, `python -m service serve`, that logs into a folder; end it at last."""
+def served(folder: Path, *, module: str = "service", **environment: str) -> Iterator[Served]:
+    """Start a real process, `python -m service serve`, that logs into a folder; end it at last.
+
+    Another ``module`` may start the service with a change.
+    """
     log = folder / "log"
-    command = [sys.executable, "-m", "service", "serve"]
+    command = [sys.executable, "-m", module, "serve"]
     usual = {"NO_COLOR": "1", "DH_GRADER_PORT": "0"}
     with (
         log.open("wb") as output,

@@ -22,9 +22,11 @@ from service.catalogue.files.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
+    PartTextsSpec,
     RobotSpec,
     ScrewRobotSpec,
     SymbolSpec,
+    TranslationSpec,
     ViewSpec,
 )
 from service.catalogue.part import PartSpec, PosePartSpec
@@ -59,6 +61,9 @@ _EXAMPLES: Final = {
     "ExpectSpec.points": "5.5",
     "ExpectSpec.codes": '["sign"]',
     "ExpectSpec.follow_through": "true",
+    "TranslationSpec.title": '"Knickarm"',
+    "TranslationSpec.symbols": '{ l1 = "Länge von Glied 1" }',
+    "PartTextsSpec.title": '"Denavit-Hartenberg-Tabelle"',
     "CheckSpec.title": '"x1 the other way round, in degrees"',
     "EulerAnglesSpec.expected": '["phi", "theta", "psi"]',
     "ComponentSpec.name": '"p_x"',
@@ -116,6 +121,8 @@ def page() -> str:
     sections += [
         _section("## `[[checks]]`", CheckSpec),
         _section("## `expect.PART` of `[[checks]]`", ExpectSpec),
+        _section("## `[translations.de]`", TranslationSpec),
+        _section("## `[translations.de.parts.PART]`", PartTextsSpec),
     ]
     return "\n\n".join(sections) + "\n"
 

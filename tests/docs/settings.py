@@ -57,8 +57,8 @@ SECTIONS: Final = (
     ),
     (
         "The command line",
-        "Only `dh-grader grade` reads these two. [`grade --server`](client.md) explains them.",
-        ("server", "key"),
+        "Only `dh-grader grade` reads these. [`grade --server`](client.md) explains the first two.",
+        ("server", "key", "language"),
     ),
 )
 

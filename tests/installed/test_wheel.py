@@ -72,7 +72,8 @@ def test_the_wheel_holds_the_templates_of_reports_and_pages(programs: Path, tmp_
     assert report.stdout.startswith("<!doctype html>"), report.stderr
     ask = (
         "from service.web.assets import load_assets; from service.web.pages import play_page;"
-        "print(play_page(load_assets()).decode())"
+        "from service.translations import ENGLISH;"
+        "print(play_page(load_assets(), ENGLISH).decode())"
     )
     assert "<dh-play>" in checked(programs / "python", "-c", ask, cwd=tmp_path)
 

@@ -7,8 +7,10 @@ import pytest
 from sqlalchemy import event, select
 
 from service.attempts.storage.lti_tables import contexts, resource_links
+from service.translations import LANGUAGES
 from tests.lti.conftest import Tool, hidden, token_of
 from tests.lti.platform import LTI, MEMBER, ROLES
+from tests.translations.pseudo import PSEUDO
 
 KINDS = pytest.mark.parametrize("tool", ["sqlite", "postgresql"], indirect=True)
 RIGHT = {"table": "a1 0 0 θ1\na2 0 0 θ2"}
@@ -71,6 +73,24 @@ def test_a_tutor_sets_up_a_link_and_opens_the_course(tool: Tool) -> None:
     # The session is for this course only.
     answer = tool.send("POST", "/v1/courses", headers={"cookie": cookie}, json={})
     assert answer.status_code == 403
+
+
+def test_the_page_is_in_the_language_that_the_user_has_on_the_platform(
+    tool: Tool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(LANGUAGES, PSEUDO.code, PSEUDO)
+    told: dict[str, Any] = {}
+    tool.platform.habits.append(lambda claims: claims.update(told))
+    for presentation, tag in (
+        ({"locale": "qps-Ploc"}, "qps-Ploc"),
+        ({"locale": "tlh"}, "en"),
+        ({"locale": 7}, "en"),
+        (None, "en"),
+    ):
+        told[f"{LTI}launch_presentation"] = presentation
+        page = tool.launch("ada")
+        assert page.status_code == 200
+        assert f'<html lang="{tag}">' in page.text
 
 
 def test_previews_and_guests_record_nothing(tool: Tool) -> None:

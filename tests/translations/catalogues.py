@@ -62,9 +62,10 @@ def _files(domain: str) -> Iterator[tuple[Path, str]]:
     for file in sorted((ROOT / "service").rglob("*.py")):
         if (ROOT / "service" / "web" in file.parents) == (domain == "pages"):
             yield file, "python"
-    if domain == "pages":
-        for file in sorted((ROOT / "service" / "web").rglob("*.html")):
+    for file in sorted((ROOT / "service").rglob("*.html")):
+        if (ROOT / "service" / "web" in file.parents) == (domain == "pages"):
             yield file, "jinja2.ext:babel_extract"
+    if domain == "pages":
         for file in sorted((ROOT / "service" / "web" / "static").rglob("*.js")):
             if "vendor" not in file.parts:
                 yield file, "javascript"

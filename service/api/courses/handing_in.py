@@ -21,6 +21,7 @@ from service.api.courses.asking import (
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.http.problems import ProblemError
+from service.api.http.told_answer import in_languages
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
@@ -80,7 +81,7 @@ def routes(
         operation_id="handIn",
         summary="Hand in an exercise of an assignment",
         response_description="The recorded attempt and its report.",
-        **changing(HandInRequest, AttemptResponse, success=HTTPStatus.CREATED),
+        **in_languages(changing(HandInRequest, AttemptResponse, success=HTTPStatus.CREATED)),
     )
     async def hand_in(
         request: Request,

@@ -29,10 +29,11 @@ _TEXT: Final = {
 def of_assignment(options: dict[str, Any]) -> dict[str, Any]:
     """Return the options of a route with the two parameters in its documentation."""
     extra = options.get("openapi_extra", {})
-    parameters = [
+    own = [
         {"name": name, "in": "query", "required": False, "description": text, "schema": _SCHEMA}
         for name, text in _TEXT.items()
     ]
+    parameters = [*extra.get("parameters", ()), *own]
     return {**options, "openapi_extra": {**extra, "parameters": parameters}}
 
 

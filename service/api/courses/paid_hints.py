@@ -12,11 +12,13 @@ from service.access.caller import Caller
 from service.api.courses.asking import read, write
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
+from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
 from service.api.recording.new_attempts import not_recorded
-from service.api.recording.store import private, unknown_attempt
+from service.api.recording.store import NO_STORE, unknown_attempt
 from service.api.routes.hints import hint_for
 from service.api.turns import run_in_turns
 from service.attempts.policy import AttemptRefusedError, ruling
@@ -47,13 +49,15 @@ def routes(
         operation_id="takeHint",
         summary="Take a hint for a message of a recorded report",
         response_description="One step of the hint.",
-        **posting(
-            AttemptHintRequest,
-            Hint,
-            None,
-            HTTPStatus.FORBIDDEN,
-            HTTPStatus.NOT_FOUND,
-            HTTPStatus.SERVICE_UNAVAILABLE,
+        **in_languages(
+            posting(
+                AttemptHintRequest,
+                Hint,
+                None,
+                HTTPStatus.FORBIDDEN,
+                HTTPStatus.NOT_FOUND,
+                HTTPStatus.SERVICE_UNAVAILABLE,
+            )
         ),
     )
     async def take_hint(
@@ -89,7 +93,9 @@ def routes(
         refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
         if refused is not None:
             raise _refused(refused.name, str(refused))
-        return private(hint)
+        language = language_of(request)
+        content = hint.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language, headers=NO_STORE)
 
     return router
 

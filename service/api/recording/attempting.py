@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 
 from fastapi import Request, Response
 
+from service.api.http.language import language_of
 from service.api.http.problems import ProblemError, store_down
+from service.api.http.told_answer import told_json
 from service.api.monitor import Monitor
 from service.api.turns import run_in_turns
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
@@ -19,10 +21,12 @@ from service.attempts.errors import StoreDownError
 from service.attempts.graded import AttemptGrading, AttemptReport
 from service.attempts.outcome import Outcome
 from service.attempts.policy import AttemptRefusedError, Ruling, points_after, ruling
+from service.attempts.results.recorded_report import shown_report
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
 from service.contract.attempts import Attempt, AttemptRequest
 from service.time_slices import working_time
+from service.translations import Language
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -77,7 +81,8 @@ class Recorder:
             raise ProblemError(
                 HTTPStatus.FORBIDDEN, str(error), error.name, "The attempt is not taken"
             ) from error
-        return Response(_answer(recorded), HTTPStatus.CREATED, media_type="application/json")
+        language = language_of(request)
+        return told_json(_answer(recorded, language), language, HTTPStatus.CREATED)
 
 
 class _Attempting:
@@ -190,11 +195,12 @@ class _Attempting:
         )
 
 
-def _answer(recorded: RecordedAttempt) -> bytes:
-    """Return the attempt and its report as JSON; the report is the recorded text, byte by byte."""
+def _answer(recorded: RecordedAttempt, language: Language) -> bytes:
+    """Return the attempt and its report as JSON. In English, it is the report byte by byte."""
     attempt = Attempt.model_validate(recorded, from_attributes=True)
     told = attempt.model_dump_json(exclude_none=True)
-    return f'{{"attempt":{told},"report":{recorded.report}}}'.encode()
+    report = shown_report(recorded.report, language)
+    return f'{{"attempt":{told},"report":{report}}}'.encode()
 
 
 def _digest(content: object) -> str:

@@ -12,13 +12,16 @@ from pydantic import AfterValidator, AwareDatetime, BeforeValidator, StringConst
 
 from service.access.caller import Caller
 from service.api.document.openapi import MAY_NEED_KEY, refusals
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import invalid
+from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
-from service.api.recording.store import ask, private, private_json, unknown_attempt
+from service.api.recording.store import NO_STORE, ask, private, unknown_attempt
 from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
+from service.attempts.results.recorded_report import shown_report
 from service.contract.attempts import (
     AttemptDetail,
     AttemptList,
@@ -28,6 +31,7 @@ from service.contract.attempts import (
 )
 from service.contract.courses import CourseName
 from service.contract.statistics import ExerciseStatistics
+from service.translations import Language
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Row
@@ -128,13 +132,12 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         summary="Show a recorded attempt",
         response_model=AttemptDetail,
         response_description="The attempt with its answers and reports.",
-        responses=_REFUSED,
-        openapi_extra=MAY_NEED_KEY,
+        **in_languages({"responses": _REFUSED, "openapi_extra": MAY_NEED_KEY}),
     )
     async def show_attempt(
         request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
     ) -> Response:
-        """Show a recorded attempt with its answers and its report.
+        """Show a recorded attempt with its answers and its report, in the reader's language.
 
         Tutors also see earlier reports and overrides.
         """
@@ -142,7 +145,9 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         found = await ask(store, lambda it: it.history(attempt_id))
         if found is None or not _may_read(caller, found):
             raise unknown_attempt()
-        return private_json(json.dumps(_detail(found, caller)).encode())
+        language = language_of(request)
+        content = json.dumps(_detail(found, caller, language))
+        return told_json(content, language, headers=NO_STORE)
 
     @router.get(
         "/exercises/{exercise_id}/statistics",
@@ -150,8 +155,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         summary="Show the statistics of an exercise",
         response_model=ExerciseStatistics,
         response_description="The counts of recorded attempts.",
-        responses=_REFUSED,
-        openapi_extra=MAY_NEED_KEY,
+        **in_languages({"responses": _REFUSED, "openapi_extra": MAY_NEED_KEY}),
     )
     async def show_statistics(
         request: Request,
@@ -171,7 +175,9 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
             assignment=assignment,
         )
         figures = await ask(store, lambda it: it.statistics(wanted))
-        return private(figures)
+        language = language_of(request)
+        content = figures.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language, headers=NO_STORE)
 
     return router
 
@@ -209,14 +215,14 @@ def _summary(attempt: ListedAttempt, caller: Caller) -> AttemptSummary:
     return AttemptSummary.model_validate(seen, from_attributes=True)
 
 
-def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
+def _detail(found: "AttemptHistory", caller: Caller, language: Language) -> dict[str, Any]:
     # Overrides and replaced reports are only for tutors.
     is_tutor = caller.learner is None
     attempt = _summary(found.attempt, caller)
     return {
         "attempt": attempt.model_dump(mode="json", exclude_none=True),
         "submission": json.loads(found.submission),
-        "report": json.loads(found.report),
+        "report": json.loads(shown_report(found.report, language)),
         "overrides": [
             AttemptOverride.model_validate(row, from_attributes=True).model_dump(
                 mode="json", exclude_none=True
@@ -224,15 +230,15 @@ def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
             for row in found.overrides
             if is_tutor
         ],
-        "earlier_reports": [_earlier(row) for row in found.earlier if is_tutor],
+        "earlier_reports": [_earlier(row, language) for row in found.earlier if is_tutor],
         "hints": [each.model_dump(mode="json", exclude_none=True) for each in found.hints],
     }
 
 
-def _earlier(row: "Row[Any]") -> dict[str, Any]:
+def _earlier(row: "Row[Any]", language: Language) -> dict[str, Any]:
     named = ("version", "grader", "points", "max_points")
     return {
         "replaced_at": row.replaced_at.isoformat(),
         **{name: getattr(row, name) for name in named},
-        "report": json.loads(row.report),
+        "report": json.loads(shown_report(row.report, language)),
     }

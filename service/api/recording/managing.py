@@ -26,7 +26,7 @@ from service.api.recording.listing import (
     course_of,
     may_reach,
 )
-from service.api.recording.store import ask, private, unknown_attempt
+from service.api.recording.store import NO_STORE, ask, private, unknown_attempt
 from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.errors import (
     BadCursorError,
@@ -51,7 +51,6 @@ if TYPE_CHECKING:  # they load the drivers of databases
 # Bytes of an export that are sent at once.
 _PIECE: Final = 64 * 1024
 _REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
-_NO_STORE: Final = {"Cache-Control": "no-store"}
 _KINDS: Final = {GradesFormat.JSONL: ("jsonl", "application/jsonl")}
 _CSV: Final = ("csv", "text/csv")
 _EXPORTED: Final[dict[int | str, dict[str, Any]]] = {
@@ -110,7 +109,7 @@ def routes(
         file = await ask(store, lambda it: it.export(wanted, form, exercise or "", rules))
         ending, kind = _KINDS.get(form, _CSV)
         headers = {
-            **_NO_STORE,
+            **NO_STORE,
             "Content-Disposition": f'attachment; filename="{_stem(form, exercise)}.{ending}"',
         }
         return StreamingResponse(_pieces(file), 200, headers, kind, BackgroundTask(file.close))

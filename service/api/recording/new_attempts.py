@@ -11,6 +11,7 @@ from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.http.problems import ProblemError
+from service.api.http.told_answer import in_languages
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
@@ -52,14 +53,16 @@ def routes(
         summary="Grade a submission and record it",
         response_description="The recorded attempt and its report.",
         status_code=HTTPStatus.CREATED,
-        **posting(
-            AttemptRequest,
-            AttemptResponse,
-            "attempt",
-            HTTPStatus.FORBIDDEN,
-            HTTPStatus.NOT_FOUND,
-            HTTPStatus.SERVICE_UNAVAILABLE,
-            success=HTTPStatus.CREATED,
+        **in_languages(
+            posting(
+                AttemptRequest,
+                AttemptResponse,
+                "attempt",
+                HTTPStatus.FORBIDDEN,
+                HTTPStatus.NOT_FOUND,
+                HTTPStatus.SERVICE_UNAVAILABLE,
+                success=HTTPStatus.CREATED,
+            )
         ),
     )
     async def record_attempt(

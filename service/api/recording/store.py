@@ -2,7 +2,7 @@
 
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from fastapi import Response
 from pydantic import BaseModel
@@ -15,6 +15,8 @@ if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
 R = TypeVar("R")
+
+NO_STORE: Final = {"Cache-Control": "no-store"}
 
 
 async def ask(
@@ -47,4 +49,4 @@ def private(model: BaseModel) -> Response:
 
 def private_json(content: bytes) -> Response:
     """Return JSON as an answer that no cache may store."""
-    return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
+    return Response(content, HTTPStatus.OK, NO_STORE, "application/json")

@@ -3,12 +3,14 @@
 from http import HTTPStatus
 from typing import Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Request, Response
 
 from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import refusals
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.catalogue import FeedbackLevel, least
+from service.api.http.told_answer import VARY, in_languages, language_header
+from service.catalogue import FeedbackLevel, in_language, least
 from service.contract.exercises import ExerciseList, ExerciseView
 from service.grading.kinds.find_slip import shown_shape
 from service.typeset.statement import statement_html
@@ -25,10 +27,13 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> A
         summary="List the exercises",
         response_model=ExerciseList,
         response_description="The catalogue.",
+        **in_languages({}),
     )
-    async def list_exercises() -> dict[str, Any]:
+    async def list_exercises(request: Request, response: Response) -> dict[str, Any]:
         """List all exercises, by level, then by their place within it."""
-        return {"exercises": list(catalogue.values())}
+        language = language_of(request)
+        response.headers.update({**language_header(language), **VARY})
+        return {"exercises": [in_language(each, language) for each in catalogue.values()]}
 
     @router.get(
         "/{exercise_id}",
@@ -37,11 +42,18 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> A
         response_model=ExerciseView,
         response_description="The exercise.",
         response_model_exclude_none=True,
-        **of_assignment({"responses": refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)}),
+        **in_languages(
+            of_assignment({"responses": refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)})
+        ),
     )
-    async def show_exercise(exercise_id: ExerciseId, request: Request) -> dict[str, Any]:
+    async def show_exercise(
+        exercise_id: ExerciseId, request: Request, response: Response
+    ) -> dict[str, Any]:
         """Show an exercise: its statement, its symbols, and what each part asks for."""
+        language = language_of(request)
+        response.headers.update({**language_header(language), **VARY})
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
+        exercise = in_language(exercise, language)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
         parts = [
             {

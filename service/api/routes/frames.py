@@ -11,8 +11,10 @@ from fastapi import APIRouter, Request, Response
 from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, Location, require_exercise
 from service.api.http.problems import ProblemError, invalid
+from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access, require_reach
 from service.api.turns import run_in_turns
 from service.catalogue import Exercise
@@ -86,7 +88,7 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
         operation_id="getFrames",
         summary="Compute the places of frames and links",
         response_description="Coordinates to draw with.",
-        **of_assignment(posting(FramesRequest, FramesAnswer, "frames")),
+        **in_languages(of_assignment(posting(FramesRequest, FramesAnswer, "frames"))),
     )
     async def frames(request: Request) -> Response:
         """Compute the frames of a table and the links of an exercise's mechanism.
@@ -101,8 +103,9 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
         if body.exercise is not None:
             exercise = await own.of(request, require_exercise(catalogue, body.exercise))
         answer = await run_in_turns(request, partial(_answered, exercise, body, mechanisms))
-        content = answer.model_dump_json(exclude_none=True)
-        return Response(content, media_type="application/json")
+        language = language_of(request)
+        content = answer.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language)
 
     return router
 

@@ -10,9 +10,11 @@ from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.courses.practice import PracticeGate
 from service.api.document.openapi import posting, refusals
 from service.api.http.bodies import read_body
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
+from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
 from service.api.routes.figures import SvgResponse, figure_headers
 from service.api.turns import run_in_turns
@@ -54,8 +56,10 @@ def routes(
         operation_id="getHint",
         summary="Get a hint for a message of a report",
         response_description="One step of the hint.",
-        **of_assignment(
-            posting(HintRequest, Hint, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
+        **in_languages(
+            of_assignment(
+                posting(HintRequest, Hint, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
+            )
         ),
     )
     async def hint(exercise_id: ExerciseId, request: Request) -> Response:
@@ -69,15 +73,21 @@ def routes(
         body = await read_body(HintRequest, request)
         await practice.check_hints(access.caller(request), exercise)
         found = await run_in_turns(request, partial(hint_for, exercise, body, feedback))
-        return Response(found.model_dump_json(exclude_none=True), media_type="application/json")
+        language = language_of(request)
+        content = found.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language)
 
     @router.post(
         "/exercises/{exercise_id}/choices",
         operation_id="getFrameChoices",
         summary="Show other valid choices of frames",
         response_description="Other valid tables.",
-        **of_assignment(
-            posting(ChoicesRequest, FrameChoices, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
+        **in_languages(
+            of_assignment(
+                posting(
+                    ChoicesRequest, FrameChoices, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
+                )
+            )
         ),
     )
     async def choices(exercise_id: ExerciseId, request: Request) -> Response:
@@ -90,7 +100,8 @@ def routes(
         body = await read_body(ChoicesRequest, request)
         await practice.check(access.caller(request), exercise.plain_id)
         found = await run_in_turns(request, partial(choices_for, exercise, body))
-        return Response(found.model_dump_json(), media_type="application/json")
+        language = language_of(request)
+        return told_json(found.model_dump_json(context=language.translation), language)
 
     @router.get(
         "/rules/{convention}/{rule}.svg",

@@ -8,8 +8,10 @@ from fastapi import APIRouter, Request, Response
 from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, require_exercise, require_parts
 from service.api.http.problems import invalid
+from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access, require_reach
 from service.api.turns import run_in_turns
 from service.catalogue import Exercise
@@ -21,6 +23,7 @@ from service.contract.preview import (
 )
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
 from service.grading.reading.preview import CellPreview, preview_entries, preview_pasted
+from service.translations import Language
 
 JOINTS: Final = range(1, 10)
 
@@ -86,7 +89,7 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
     )
 
 
-def _shown(body: PreviewRequest, exercise: Exercise | None) -> str:
+def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) -> str:
     """Return the reading of the text as JSON: of one entry, or of a grid if it is not one entry."""
     shown = preview(body, exercise.vocabulary if exercise else GENERIC)
     if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
@@ -94,7 +97,7 @@ def _shown(body: PreviewRequest, exercise: Exercise | None) -> str:
         # If the text is not a grid either, the problem of the single entry explains it better.
         is_script = grid.error is not None and grid.error.code == "unread_script"
         shown = grid if grid.rows or is_script or "\n" in body.text else shown
-    return shown.model_dump_json(exclude_none=True)
+    return shown.model_dump_json(exclude_none=True, context=language.translation)
 
 
 def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
@@ -106,7 +109,7 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
         operation_id="preview",
         summary="Show how a text is read",
         response_description="The reading of the text, or the reason why it cannot be read.",
-        **of_assignment(posting(PreviewRequest, PreviewAnswer, "preview")),
+        **in_languages(of_assignment(posting(PreviewRequest, PreviewAnswer, "preview"))),
     )
     async def preview_text(request: Request) -> Response:
         """Show how a text is read: as plain text, LaTeX and MathML.
@@ -119,15 +122,18 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
         exercise = _exercise(catalogue, body)
         if exercise is not None:
             exercise = await own.of(request, exercise)
-        content = await run_in_turns(request, partial(_shown, body, exercise))
-        return Response(content, media_type="application/json")
+        language = language_of(request)
+        content = await run_in_turns(request, partial(_shown, body, exercise, language))
+        return told_json(content, language)
 
     @router.post(
         "/previews",
         operation_id="previewMany",
         summary="Show how the entries of a part are read",
         response_description="The reading of each entry, in their order.",
-        **of_assignment(posting(PreviewManyRequest, PreviewManyResponse, "preview-many")),
+        **in_languages(
+            of_assignment(posting(PreviewManyRequest, PreviewManyResponse, "preview-many"))
+        ),
     )
     async def preview_entries_of_part(request: Request) -> Response:
         """Show how several entries of one part are read, each on its own.
@@ -141,7 +147,9 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
         exercise = await own.of(request, require_exercise(catalogue, body.exercise))
         require_parts(exercise, [(body.part, ("part",))])
         shown = await run_in_turns(request, partial(preview_many, body, exercise))
-        return Response(shown.model_dump_json(exclude_none=True), media_type="application/json")
+        language = language_of(request)
+        content = shown.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language)
 
     return router
 

@@ -19,7 +19,7 @@ PartResults: TypeAlias = Mapping[str, tuple[str, float]]
 
 @dataclass(frozen=True, slots=True)
 class WrittenReport:
-    """The JSON text of a report, and the values that are needed without parsing it."""
+    """The JSON of a report for the database, and the values that are needed without parsing it."""
 
     text: str
     points: float

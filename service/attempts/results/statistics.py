@@ -11,6 +11,7 @@ from sqlalchemy import ColumnElement, Connection, String, cast, func, select, ty
 from service.attempts.attempt import AttemptFilter
 from service.attempts.hints import hint_figures
 from service.attempts.results.listing import condition
+from service.attempts.results.recorded_report import sentence_in
 from service.attempts.storage.tables import attempts, outcomes
 from service.contract.statistics import (
     CellFigures,
@@ -231,7 +232,9 @@ def _newest_reports(
 def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
     """The first message with a code in a part; None if the report is too terse to have it."""
     told = (each for each in report["parts"] if each["part"] == part)
-    return next((each["message"] for each in _messages(told) if each["code"] == code), None)
+    texts = (each["message"] for each in _messages(told) if each["code"] == code)
+    text = next(texts, None)
+    return None if text is None else sentence_in(report, text)
 
 
 def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:

@@ -13,9 +13,11 @@ from service.catalogue.files.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
+    PartTextsSpec,
     RobotSpec,
     ScrewRobotSpec,
     SymbolSpec,
+    TranslationSpec,
 )
 from service.catalogue.parts import SPECS
 from service.catalogue.robots.formulas import FieldError
@@ -177,6 +179,10 @@ def exercise_table(location: _Location) -> type[BaseModel]:
             return ExpectSpec
         case ["checks", *_]:
             return CheckSpec
+        case ["translations", _, "parts", *_]:
+            return PartTextsSpec
+        case ["translations", *_]:
+            return TranslationSpec
         case _:
             return ExerciseSpec
 

@@ -176,6 +176,30 @@ class ViewSpec(StrictModel):
     """The viewer's elevation above the plane of x0 and y0, in degrees."""
 
 
+class PartTextsSpec(StrictModel):
+    """The texts of a part in another language. Missing texts are shown in English."""
+
+    title: Text | None = None
+    """The title that students see."""
+    prompt: Text | None = None
+    """The task in one or more sentences."""
+
+
+class TranslationSpec(StrictModel):
+    """The texts of the exercise in another language. Missing texts are shown in English."""
+
+    title: Text | None = None
+    """The title of the exercise."""
+    summary: Text | None = None
+    """One line for the catalogue."""
+    statement: Text | None = None
+    """The whole task in words."""
+    symbols: dict[Text, Text] = Field({})
+    """The meanings of symbols, by name."""
+    parts: dict[Text, PartTextsSpec] = Field({})
+    """The texts of parts, by part id: a table ``[translations.de.parts.PART]`` for each."""
+
+
 class ExerciseSpec(StrictModel):
     """One exercise file."""
 
@@ -219,6 +243,9 @@ class ExerciseSpec(StrictModel):
     """The questions, one ``[[parts]]`` for each."""
     checks: list[CheckSpec] = Field([])
     """Answers that are graded whenever the file is checked, one ``[[checks]]`` for each."""
+    translations: dict[Text, TranslationSpec] = Field({})
+    """The texts in other languages: a table ``[translations.de]`` for German, and also "es", "fr"
+    and "zh". A text has exactly the formulas ``$…$`` of the English one, in any order."""
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> "ExerciseSpec":

@@ -38,6 +38,7 @@ _PLACE: Final = re.compile(r"\{\{([^{}]{1,200})\}\}")
 # The fields of a file that do not affect grading.
 _NOT_GRADING: Final = frozenset({
     "checks", "feedback", "attempts", "view", "level", "order", "minutes", "summary", "keywords",
+    "translations",
 })  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from service.cli.choices import choice, listed, one_of
+from service.cli.choices import choice, listed, one_of, report_language
 from service.cli.files.output import console_of, write
 from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.files.written_files import remember, require_own
@@ -125,6 +125,15 @@ def command(
             "otherwise full; in formats for students, the level of the exercise.",
         ),
     ] = None,
+    language: Annotated[
+        str | None,
+        typer.Option(
+            "--lang",
+            metavar="CODE",
+            help="The language of the report: en, de, es, fr or zh. Also: DH_GRADER_LANGUAGE.",
+            show_default=False,
+        ),
+    ] = None,
     echo: Annotated[bool, typer.Option("--echo", help="Show how each cell was read.")] = False,
     jobs: Annotated[
         int | None,
@@ -191,7 +200,7 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; the other files are still graded.
     """
-    settings = load_settings(server=server, key=key)
+    settings = load_settings(server=server, key=key, language=language)
     if key is not None and settings.server is None:
         give_up("--key goes with --server URL.")
     grader = context.with_resource(server_of(settings))
@@ -210,6 +219,7 @@ def command(
         feedback,
         for_students=taken.for_students,
         echo=echo or taken.shows_entries,
+        language=report_language(settings.language),
     )
     found = list(
         all_handed_in(
@@ -223,7 +233,14 @@ def command(
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
     own = found if shard is None else shard.of(found)
     is_class = bool(folders) and not one_student
-    setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
+    setting = Setting(
+        terms.answered,
+        console_of(output),
+        datetime.now(UTC),
+        os.environ,
+        visibility,
+        terms.language,
+    )
     try:
         with (
             interruptible() as check,

@@ -35,7 +35,7 @@ def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
     from service.client import GraderClient
 
     try:
-        client = GraderClient(settings.server, _key(settings))
+        client = GraderClient(settings.server, _key(settings), language=settings.language)
     except ValueError as error:
         give_up(visible(str(error)))
     with client:

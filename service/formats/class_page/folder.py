@@ -29,6 +29,6 @@ def class_folder(page: Pages) -> Folder:
             path = f"{PAGES}/{file_name(submission.learner)}"
             overview.add(submission, path)
             yield Document(path, page([submission], setting))
-        yield Document(INDEX, index(overview))
+        yield Document(INDEX, index(overview, setting.language))
 
     return documents

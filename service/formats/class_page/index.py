@@ -16,6 +16,7 @@ from service.formats.shared.plain_text import shortened
 from service.grading import Place, Verdict
 from service.statistics import CountedSlip, ScoreBin, Share
 from service.statistics.success import columns
+from service.translations import Language, say, say_count
 
 INDEX: Final = "index.html"
 STYLE: Final = style_sheet(Path(__file__).with_name("index.css"))
@@ -23,10 +24,11 @@ STYLE: Final = style_sheet(Path(__file__).with_name("index.css"))
 _BANDS: Final = (0.0, 0.25, 0.5, 0.75, 0.9)
 
 
-def index(overview: Overview) -> Iterator[bytes]:
-    """Yield the index piece by piece."""
+def index(overview: Overview, language: Language) -> Iterator[bytes]:
+    """Yield the index in a language, piece by piece."""
     return html_pieces(
         "formats/class_page/templates/index.html",
+        language=language,
         style=STYLE,
         title=_title(overview),
         overview=overview,
@@ -38,7 +40,8 @@ def index(overview: Overview) -> Iterator[bytes]:
         columns_of=columns,
         grouped="{:,}".format,
         place_of=_place_of,
-        plural=_plural,
+        untold=_untold,
+        wrong_cells=_wrong_cells,
         sentence_of=_sentence_of,
         signs=SIGNS,
         span_of=_span_of,
@@ -49,7 +52,8 @@ def index(overview: Overview) -> Iterator[bytes]:
 def _title(overview: Overview) -> str:
     if len(overview.exercises) == 1:
         return next(iter(overview.exercises.values())).title
-    return _plural(len(overview.exercises), "exercise")
+    count = len(overview.exercises)
+    return say_count("1 exercise", "{number} exercises", count=count, number=f"{count:,}")
 
 
 def _part_titles(overview: Overview) -> Mapping[tuple[str, str], str]:
@@ -62,9 +66,19 @@ def _part_titles(overview: Overview) -> Mapping[tuple[str, str], str]:
     }
 
 
-def _plural(count: int, noun: str) -> str:
-    """Return ``1 submission``, or ``2,000 submissions``."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+def _untold(count: int) -> str:
+    return say_count(
+        "1 report without misconceptions, because of the feedback level. To see them, grade again "
+        "with --feedback full.",
+        "{number} reports without misconceptions, because of the feedback level. To see them, "
+        "grade again with --feedback full.",
+        count=count,
+        number=f"{count:,}",
+    )
+
+
+def _wrong_cells(count: int) -> str:
+    return say_count("1 wrong cell", "{number} wrong cells", count=count, number=f"{count:,}")
 
 
 def _place_of(row: str, cell: str) -> str:
@@ -84,8 +98,10 @@ def _band_of(share: Share) -> str:
 
 def _span_of(each: ScoreBin) -> str:
     """Return the range of scores of a column of the histogram in words."""
-    until = "to" if each.high == 1 else "to under"
-    return f"{each.low * 100:.0f} {until} {each.high * 100:.0f} %"
+    low, high = f"{each.low * 100:.0f}", f"{each.high * 100:.0f}"
+    if each.high == 1:
+        return say("{low} to {high} %", low=low, high=high)
+    return say("{low} to under {high} %", low=low, high=high)
 
 
 def _bars_of(each: ScoreBin, highest: int) -> Iterator[tuple[str, str, str]]:

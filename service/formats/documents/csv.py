@@ -19,13 +19,13 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
     columns = [f"{each.id}.{part.id}" for each in setting.exercises for part in each.parts]
     yield spreadsheet.line([*_HEAD, *columns])
     for submission in submissions:
-        yield spreadsheet.line(_cells(submission))
+        yield spreadsheet.line(_cells(submission, setting))
 
 
-def _cells(submission: GradedSubmission) -> list[str | float | None]:
+def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
     """Return the cells of a submission. Those for points are empty if nothing was graded."""
     is_graded = submission.is_graded
-    results = part_results(submission)
+    results = part_results(submission, setting.language)
     return [
         submission.name,
         submission.points if is_graded else None,

@@ -13,15 +13,15 @@ from service.formats.shared.plain_text import points
 from service.formats.shared.report_format import ReportFormat, Setting
 
 
-def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     yield spreadsheet.line(spreadsheet.GRADEBOOK_HEAD)
     for submission in submissions:
-        yield spreadsheet.line(_cells(submission))
+        yield spreadsheet.line(_cells(submission, setting))
 
 
-def _cells(submission: GradedSubmission) -> list[str | float | None]:
+def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
     """Return the cells of a learner. An empty grade leaves the old one as it is in an import."""
-    parts = (f"{each.name}: {_earned(each)}" for each in part_results(submission))
+    parts = (f"{each.name}: {_earned(each)}" for each in part_results(submission, setting.language))
     return [
         submission.learner,
         submission.points if submission.is_graded else None,

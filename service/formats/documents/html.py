@@ -1,6 +1,7 @@
 """A page for students: a card for each part, which shows how each entry was read."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from typing import Final
@@ -8,9 +9,9 @@ from typing import Final
 from service.formats.class_page import class_folder
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.html_templates import html_pieces, style_sheet
-from service.formats.shared.messages import SIGNS
+from service.formats.shared.messages import SIGNS, VERDICT_NAMES
 from service.formats.shared.part_results import part_results
-from service.formats.shared.plain_text import points
+from service.formats.shared.plain_text import points, points_in_words
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import RowReport
 
@@ -23,12 +24,15 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
     names = [first[0].learner] if len(first) == 1 else []
     yield from html_pieces(
         "formats/documents/templates/submissions.html",
+        language=setting.language,
         title=" · ".join([*names, *(each.title for each in setting.exercises)]),
         style=STYLE,
         submissions=chain(first, rest),
         columns_of=_columns_of,
-        part_results=part_results,
+        part_results=partial(part_results, language=setting.language),
         points=points,
+        points_in_words=partial(points_in_words, translation=setting.language.translation),
+        verdict_names=VERDICT_NAMES,
         signs=SIGNS,
     )
 

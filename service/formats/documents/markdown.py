@@ -11,37 +11,40 @@ from service.formats.shared.markdown_text import escaped, part_details
 from service.formats.shared.part_results import part_results
 from service.formats.shared.plain_text import percent, points
 from service.formats.shared.report_format import ReportFormat, Setting
+from service.translations import Language, say, told
+from service.translations.sentence import Translation
 
-_HEAD: Final = "| submission | points | score | passed |\n|---|--:|--:|:-:|\n"
+_HEAD: Final = (say("submission"), say("points"), say("score"), say("passed"))
+_ALIGNED: Final = "|---|--:|--:|:-:|\n"
 
 
-def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     """Yield a table of all submissions, then the parts of each."""
     details = []
-    yield _HEAD.encode()
+    head = " | ".join(told(each, setting.language.translation) for each in _HEAD)
+    yield f"| {head} |\n{_ALIGNED}".encode()
     for submission in submissions:
-        yield _line(submission).encode()
-        details.append(_details(submission).encode())
+        yield _line(submission, setting.language.translation).encode()
+        details.append(_details(submission, setting.language).encode())
     yield from details
 
 
-def _line(submission: GradedSubmission) -> str:
+def _line(submission: GradedSubmission, translation: Translation | None) -> str:
     name = escaped(submission.name)
     if not submission.is_graded:
-        return f"| {name} | | not graded | ✗ |\n"
+        return f"| {name} | | {told(say('not graded'), translation)} | ✗ |\n"
     earned = points(submission.points, submission.max_points)
     sign = "✓" if submission.passed else "✗"
     return f"| {name} | {earned} | {percent(submission.score)} | {sign} |\n"
 
 
-def _details(submission: GradedSubmission) -> str:
+def _details(submission: GradedSubmission, language: Language) -> str:
     sections = [f"\n### {escaped(submission.name)}\n"]
-    for result in part_results(submission):
-        earned = points(result.points, result.max_points)
-        sections.append(
-            f"\n**{escaped(result.name)}:** {result.verdict.value}, {earned} points\n\n"
-            f"{part_details(result)}"
-        )
+    sections += (
+        f"\n**{escaped(result.name)}:** {result.verdict_name}, {result.points_in_words}\n\n"
+        f"{part_details(result)}"
+        for result in part_results(submission, language)
+    )
     return "".join(sections)
 
 

@@ -14,10 +14,20 @@ from rich.text import Text
 from service.formats.shared.aligned import AlignedColumn, AlignedTable, StyledText
 from service.formats.shared.class_summary import ClassSummary, pass_line, result_line
 from service.formats.shared.graded import GradedSubmission, is_answered
-from service.formats.shared.messages import SIGNS, Message, marks, messages
-from service.formats.shared.plain_text import percent, points, visible
+from service.formats.shared.messages import (
+    POINTS,
+    ROW,
+    SIGNS,
+    VERDICT_NAMES,
+    Message,
+    marks,
+    messages,
+)
+from service.formats.shared.plain_text import percent, points, points_in_words, visible
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import PartReport, Report, Severity, Verdict
+from service.translations import say, told
+from service.translations.sentence import Translation
 
 _COLOURS: Final[Mapping[Verdict, str]] = {
     Verdict.CORRECT: "green",
@@ -33,6 +43,9 @@ _ASCII_MARKS: Final = str.maketrans({"−": "-", "α": "alpha", "θ": "theta"})
 # Longer lines are hard to read however wide the terminal is.
 _WIDEST: Final = 100
 _INDENT: Final = 2
+# Translators: the heading of a table that shows how entries were read.
+_READ: Final = say("read")
+_FOLLOWED: Final = say("counted with your own earlier answer")
 _BLANK: Final[StyledText] = ("", "")
 
 
@@ -41,15 +54,16 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
     rest = iter(submissions)
     first = tuple(islice(rest, _IN_FULL + 1))
     are_several = len(first) > 1 or any(len(each.files) > 1 for each in first)
-    summary = ClassSummary()
+    translation = setting.language.translation
+    summary = ClassSummary(translation)
     console = setting.console
     for submission in chain(first, rest):
         summary.add(submission)
         with console.capture() as captured:
             if len(first) > _IN_FULL:
-                console.print(result_line(submission), soft_wrap=True)
+                console.print(result_line(submission, translation), soft_wrap=True)
             else:
-                _write_submission(submission, console, are_several=are_several)
+                _write_submission(submission, console, translation, are_several=are_several)
         yield captured.get().encode(console.encoding, "replace")
     if len(first) > 1:
         with console.capture() as captured:
@@ -60,20 +74,26 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
         yield captured.get().encode(console.encoding, "replace")
 
 
-def _write_submission(submission: GradedSubmission, console: Console, *, are_several: bool) -> None:
+def _write_submission(
+    submission: GradedSubmission,
+    console: Console,
+    translation: Translation | None,
+    *,
+    are_several: bool,
+) -> None:
     for file in submission.files:
         if file.report is None:
             continue
         if are_several:
             console.print(Text(f"== {visible(file.file or file.exercise.id)}", "bold"))
-        write(file.report, console)
+        write(file.report, console, translation)
         if len(submission.files) > 1:
             console.print()
     if len(submission.files) > 1:
-        total = f"{points(submission.points, submission.max_points)} points"
+        total = points_in_words(submission.points, submission.max_points, translation)
         console.print(Text(f"{visible(submission.name)}: {total}, {percent(submission.score)}"))
     if submission.is_graded:
-        console.print(pass_line(submission))
+        console.print(pass_line(submission, translation))
         if are_several:
             console.print()
 
@@ -91,37 +111,41 @@ def _print_indented(line: Text, console: Console) -> None:
         console.print(Text.assemble(indent, each), width=width)
 
 
-def write(report: Report, console: Console) -> None:
+def write(report: Report, console: Console, translation: Translation | None = None) -> None:
     """Print the report. If the console's encoding lacks the marks, they are plain ASCII."""
-    _Page(console).report(report)
+    _Page(console, translation).report(report)
 
 
 class _Page:
     """One report on one console."""
 
-    def __init__(self, console: Console) -> None:
+    def __init__(self, console: Console, translation: Translation | None) -> None:
         self._console = console
+        self._translation = translation
         self._width = min(console.width, _WIDEST)
         self._ascii = not _can_write("✓✗–", console.encoding)
 
     def report(self, report: Report) -> None:
         for part in report.parts:
             self._part(part)
-        total = f"{points(report.points, report.max_points)} points, {percent(report.score)}"
-        self._print(Text.assemble((f"Total for {visible(report.exercise)}: ", "bold"), total))
+        of = say("Total for {exercise}: ", exercise=visible(report.exercise))
+        total = points_in_words(report.points, report.max_points, self._translation)
+        shown = f"{total}, {percent(report.score)}"
+        self._print(Text.assemble((self._told(of), "bold"), shown))
         if not report.gradable:
-            unread = "Nothing in this submission could be read."
-            self._print(Text(unread if is_answered(report) else "It is not answered."))
+            unread = say("Nothing in this submission could be read.")
+            nothing = unread if is_answered(report) else say("It is not answered.")
+            self._print(Text(self._told(nothing)))
         if any(part.rows for part in report.parts):
             signs = [Verdict.CORRECT, Verdict.INCORRECT, Verdict.UNREADABLE, Verdict.MISSING]
             # An error in a partly right part or row has this mark.
             if any(
                 each.severity is Severity.ERROR and each.verdict is Verdict.PARTIAL
                 for part in report.parts
-                for each in messages(part)
+                for each in messages(part, self._translation)
             ):
                 signs.insert(1, Verdict.PARTIAL)
-            legend = "   ".join(f"{self._mark(verdict)[0]} {verdict}" for verdict in signs)
+            legend = "   ".join(f"{self._mark(each)[0]} {self._verdict(each)}" for each in signs)
             self._print(Text(legend, "dim"))
 
     def _part(self, part: PartReport) -> None:
@@ -129,17 +153,23 @@ class _Page:
             Text.assemble(
                 (visible(part.part), "bold"),
                 f" ({part.kind}): ",
-                (part.verdict.value, _COLOURS[part.verdict]),
-                f", {points(part.points, part.max_points)} points",
-                ", counted with your own earlier answer" if part.follow_through else "",
+                (self._verdict(part.verdict), _COLOURS[part.verdict]),
+                f", {points_in_words(part.points, part.max_points, self._translation)}",
+                f", {self._told(_FOLLOWED)}" if part.follow_through else "",
             )
         )
         if part.rows:
             self._print(self._table(part).on(self._console, self._width, _INDENT))
         if any(cell.read for row in part.rows for cell in row.cells):
             self._print(self._read(part).on(self._console, self._width, _INDENT))
-        lines = [line for message in messages(part) for line in self._message(message)]
-        lines += [line for text in marks(part) for line in self._marks(text)]
+        lines = [
+            line for message in messages(part, self._translation) for line in self._message(message)
+        ]
+        lines += [
+            line
+            for text in marks(part, translation=self._translation)
+            for line in self._marks(text)
+        ]
         self._console.print(_as_they_are(lines, self._console))
 
     def _table(self, part: PartReport) -> AlignedTable:
@@ -156,13 +186,21 @@ class _Page:
             for row in part.rows
         ]
         return AlignedTable(
-            [AlignedColumn("row"), *columns, AlignedColumn("points", "right")], rows
+            [
+                AlignedColumn(self._told(ROW)),
+                *columns,
+                AlignedColumn(self._told(POINTS), "right"),
+            ],
+            rows,
         )
 
     def _read(self, part: PartReport) -> AlignedTable:
         """Return a table that shows how each entry was read."""
         widest = max((row.cells for row in part.rows), key=len)
-        columns = [AlignedColumn("read"), *(AlignedColumn(cell.label) for cell in widest)]
+        columns = [
+            AlignedColumn(self._told(_READ)),
+            *(AlignedColumn(cell.label) for cell in widest),
+        ]
         rows = [
             [
                 (row.label, ""),
@@ -199,6 +237,12 @@ class _Page:
     def _mark(self, verdict: Verdict) -> StyledText:
         sign = SIGNS[verdict]
         return (sign.translate(_ASCII) if self._ascii else sign), _COLOURS[verdict]
+
+    def _told(self, text: str) -> str:
+        return told(text, self._translation)
+
+    def _verdict(self, verdict: Verdict) -> str:
+        return self._told(VERDICT_NAMES[verdict])
 
     def _print(self, what: RenderableType) -> None:
         self._console.print(what, width=self._width)

@@ -31,7 +31,7 @@ _HUNDREDTHS: Final = 100
 
 
 def _document(submission: GradedSubmission, setting: Setting) -> bytes:
-    tests = [_test(each) for each in part_results(submission)]
+    tests = [_test(each) for each in part_results(submission, setting.language)]
     content = {
         "schema": "classroom50/result/v1",
         **_identity(setting.environment),

@@ -10,39 +10,41 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.messages import NOT_GRADED, NOT_PASSED, PASSED, total_points
 from service.formats.shared.part_results import PartResult, part_results
-from service.formats.shared.plain_text import percent, points, visible
+from service.formats.shared.plain_text import percent, visible
 from service.formats.shared.report_format import ReportFormat, Setting
+from service.translations import paragraph, say, told
+from service.translations.sentence import Translation
 
 # Percent comes first, because all replacements contain it.
 _IN_DATA: Final = (("%", "%25"), ("\r", "%0D"), ("\n", "%0A"))
 _IN_PROPERTIES: Final = (*_IN_DATA, (":", "%3A"), (",", "%2C"))
 
 
-def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     for submission in submissions:
-        for result in part_results(submission):
+        for result in part_results(submission, setting.language):
             if not result.passed:
                 yield _part(result)
-        yield _total(submission)
+        yield _total(submission, setting.language.translation)
 
 
 def _part(result: PartResult) -> bytes:
-    title = f"{result.name}: {points(result.points, result.max_points)} points"
+    title = f"{result.name}: {result.points_in_words}"
     level = "warning" if result.points else "error"
     return _command(level, result.file.file, title, "\n".join(result.lines() or [title]))
 
 
-def _total(submission: GradedSubmission) -> bytes:
+def _total(submission: GradedSubmission, translation: Translation | None) -> bytes:
     file = submission.files[0].file if len(submission.files) == 1 else ""
-    needed = f"{percent(submission.pass_mark)} is needed to pass."
+    needed = say("{share} is needed to pass.", share=percent(submission.pass_mark))
     if not submission.is_graded:
-        return _command("error", file, "Not graded", needed)
-    total = f"{points(submission.points, submission.max_points)} points"
-    told = f"{total}, {percent(submission.score)}. {needed}"
+        return _command("error", file, told(NOT_GRADED, translation), told(needed, translation))
+    total = told(paragraph(total_points(submission), needed), translation)
     if submission.passed:
-        return _command("notice", file, "Passed", told)
-    return _command("error", file, "Not passed", told)
+        return _command("notice", file, told(PASSED, translation), total)
+    return _command("error", file, told(NOT_PASSED, translation), total)
 
 
 def _command(level: str, file: str, title: str, message: str) -> bytes:

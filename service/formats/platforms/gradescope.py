@@ -9,30 +9,36 @@ from typing import Any, Final
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.json_document import json_document
 from service.formats.shared.markdown_text import part_details
+from service.formats.shared.messages import total_points
 from service.formats.shared.part_results import PartResult, part_results
-from service.formats.shared.plain_text import percent, points, visible
+from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import ReportFormat, Setting, single
+from service.translations import paragraph, say, told
+from service.translations.sentence import Translation
 
 
 def _document(submission: GradedSubmission, setting: Setting) -> bytes:
     content = {
         "score": submission.points,
-        "output": "\n\n".join([_total(submission), *_tasks(submission)]),
+        "output": "\n\n".join(
+            [_total(submission, setting.language.translation), *_tasks(submission)]
+        ),
         "output_format": "text",
         "test_name_format": "text",
         "test_output_format": "md",
         "visibility": setting.visibility.value,
         "stdout_visibility": "hidden",
-        "tests": [_test(each) for each in part_results(submission)],
+        "tests": [_test(each) for each in part_results(submission, setting.language)],
     }
     return json_document(content)
 
 
-def _total(submission: GradedSubmission) -> str:
+def _total(submission: GradedSubmission, translation: Translation | None) -> str:
     if not submission.is_graded:
-        return visible(f"Nothing could be graded: {'; '.join(submission.problems)}")
-    total = f"{points(submission.points, submission.max_points)} points"
-    return f"{total}, {percent(submission.score)}.{_unread(submission)}"
+        problems = "; ".join(submission.problems)
+        nothing = say("Nothing could be graded: {problems}", problems=problems)
+        return visible(told(nothing, translation))
+    return told(paragraph(total_points(submission), _unread(submission)), translation)
 
 
 def _tasks(submission: GradedSubmission) -> Iterator[str]:
@@ -44,11 +50,9 @@ def _tasks(submission: GradedSubmission) -> Iterator[str]:
 def _unread(submission: GradedSubmission) -> str:
     if submission.is_gradable:
         return ""
-    return (
-        " Nothing in this submission could be read."
-        if submission.is_answered
-        else " Nothing is answered."
-    )
+    if submission.is_answered:
+        return say("Nothing in this submission could be read.")
+    return say("Nothing is answered.")
 
 
 def _test(result: PartResult) -> dict[str, Any]:

@@ -12,23 +12,24 @@ from xml.etree.ElementTree import Element, indent, tostring
 
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.part_results import PartResult, distinct_names, part_results
-from service.formats.shared.plain_text import points, visible
+from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import Verdict
+from service.translations import Language
 
 
-def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     yield b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="dh-grader">\n'
     distinct = distinct_names()
     for submission in submissions:
-        suite = _suite(submission, distinct(submission.name))
+        suite = _suite(submission, distinct(submission.name), setting.language)
         indent(suite)
         yield tostring(suite, encoding="utf-8", xml_declaration=False) + b"\n"
     yield b"</testsuites>\n"
 
 
-def _suite(submission: GradedSubmission, name: str) -> Element:
-    cases = [_case(each, name) for each in part_results(submission)]
+def _suite(submission: GradedSubmission, name: str, language: Language) -> Element:
+    cases = [_case(each, name) for each in part_results(submission, language)]
     found = Counter(child.tag for case in cases for child in case)
     return _element(
         "testsuite",
@@ -52,13 +53,12 @@ def _case(result: PartResult, suite: str) -> Element:
 def _failure(result: PartResult) -> Element:
     """Return a ``failure`` element, or an ``error`` if the part could not be read."""
     is_unread = result.verdict is Verdict.UNREADABLE
-    earned = points(result.points, result.max_points)
     failure = _element(
         "error" if is_unread else "failure",
-        message=f"{result.verdict.value}, {earned} points",
+        message=f"{result.verdict_name}, {result.points_in_words}",
         type=result.verdict.value,
     )
-    failure.text = "\n".join([f"{earned} points", *result.lines()])
+    failure.text = "\n".join([result.points_in_words, *result.lines()])
     return failure
 
 

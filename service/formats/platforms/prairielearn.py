@@ -9,22 +9,29 @@ from typing import Any, Final
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.json_document import json_document
 from service.formats.shared.part_results import PartResult, part_results
-from service.formats.shared.plain_text import percent, points
+from service.formats.shared.plain_text import percent, points_in_words
 from service.formats.shared.report_format import ReportFormat, Setting, single
+from service.translations.sentence import Translation
 
 
-def _document(submission: GradedSubmission, _: Setting) -> bytes:
-    results = part_results(submission)
-    content = _graded(submission, results) if submission.is_gradable else _not_gradable(results)
+def _document(submission: GradedSubmission, setting: Setting) -> bytes:
+    results = part_results(submission, setting.language)
+    content = (
+        _graded(submission, results, setting.language.translation)
+        if submission.is_gradable
+        else _not_gradable(results)
+    )
     return json_document(content)
 
 
-def _graded(submission: GradedSubmission, results: list[PartResult]) -> dict[str, Any]:
-    total = points(submission.points, submission.max_points)
+def _graded(
+    submission: GradedSubmission, results: list[PartResult], translation: Translation | None
+) -> dict[str, Any]:
+    total = points_in_words(submission.points, submission.max_points, translation)
     return {
         "gradable": True,
         "score": submission.score,
-        "message": f"{total} points, {percent(submission.score)}",
+        "message": f"{total}, {percent(submission.score)}",
         "tests": [_test(each) for each in results],
     }
 

@@ -2,13 +2,16 @@
 
 A template is named by its path below ``service/``. Every value that a template prints becomes one
 visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
+
+Each language has an environment of its own. There, ``{% trans %}`` prints HTML of the catalogue,
+``_("…")`` prints its text, and a printed ``Sentence`` is told in the language.
 """
 
 import base64
 import hashlib
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -22,6 +25,7 @@ from service.formats.shared.plain_text import (
     whole_percent,
     whole_score,
 )
+from service.translations import ENGLISH, Language, told
 from service.typeset import formulas, names
 
 if TYPE_CHECKING:
@@ -39,22 +43,25 @@ class StyleSheet:
     hash: str
 
 
-def html(template: str, /, **values: object) -> bytes:
-    """Return the document that a template makes, in UTF-8."""
-    return environment().get_template(template).render(values).encode()
+def html(template: str, /, *, language: Language = ENGLISH, **values: object) -> bytes:
+    """Return the document that a template makes in a language, in UTF-8."""
+    return environment(language).get_template(template).render(values).encode()
 
 
-def html_pieces(template: str, /, **values: object) -> Iterator[bytes]:
+def html_pieces(
+    template: str, /, *, language: Language = ENGLISH, **values: object
+) -> Iterator[bytes]:
     """Yield the document that a template makes, piece by piece. It may iterate lazily."""
-    for piece in environment().get_template(template).generate(values):
+    for piece in environment(language).get_template(template).generate(values):
         yield piece.encode()
 
 
 def own_html(text: str) -> Markup:
     """Return HTML that templates do not escape. The service itself must have made it.
 
-    There are four such texts: style sheets, statements (``statement_html``), formulas in MathML
-    (``formula_html``, ``formula``) and texts with names in MathML (``typeset``).
+    There are five such texts: style sheets, statements (``statement_html``), formulas in MathML
+    (``formula_html``, ``formula``), texts with names in MathML (``typeset``), and texts of
+    templates in a language (``_filled``).
     """
     return Markup(text)
 
@@ -87,8 +94,8 @@ def formula(text: str) -> Markup:
 
 
 @cache
-def environment() -> "Environment":
-    """Return the Jinja2 environment; it compiles each template once in a process."""
+def environment(language: Language = ENGLISH) -> "Environment":
+    """Return the Jinja2 environment of a language; it compiles each template once in a process."""
     # Imported here, so that a program that writes no HTML starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -96,7 +103,8 @@ def environment() -> "Environment":
         loader=FileSystemLoader(_PACKAGE),
         autoescape=True,
         undefined=StrictUndefined,
-        finalize=_finalize,
+        finalize=partial(_finalize, language),
+        extensions=["jinja2.ext.i18n"],
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -106,18 +114,76 @@ def environment() -> "Environment":
     functions = (
         code_pieces,
         formula,
-        in_unicode,
         lines,
         number,
         percent,
-        typeset,
         whole_percent,
         whole_score,
     )
     made.filters |= {each.__name__: each for each in functions}
+    made.filters |= {
+        "in_unicode": _telling(in_unicode, language),
+        "typeset": _telling(typeset, language),
+    }
+    # A `{% trans %}` is one line, and its values are named.
+    made.policies["ext.i18n.trimmed"] = True
+    made.newstyle_gettext = True  # type: ignore[attr-defined]
+    made.globals |= {
+        "_": partial(_text, language),
+        "gettext": partial(_markup, language),
+        "ngettext": partial(_counted_markup, language),
+        "language": language,
+    }
     return made
 
 
-def _finalize(value: object) -> str:
+def _finalize(language: Language, value: object) -> str:
     """Return a printed value unchanged if it is HTML, otherwise as visible text."""
-    return value if isinstance(value, Markup) else visible(str(value))
+    if isinstance(value, Markup):
+        return value
+    return visible(_told(value, language))
+
+
+def _told(value: object, language: Language) -> str:
+    """Return a sentence in the language, or the text of another value."""
+    return told(value, language.translation) if isinstance(value, str) else str(value)
+
+
+def _telling(shown: Callable[..., str], language: Language) -> Callable[..., str]:
+    """Return the filter ``shown`` for sentences in a language."""
+
+    def filtered(text: object, symbols: Container[str] = ()) -> str:
+        return shown(_told(text, language), symbols)
+
+    return filtered
+
+
+def _text(language: Language, text: str, /, **values: object) -> Markup:
+    """Return a text of a template in the language, escaped, with its values."""
+    return _filled(escape(_translated(language, text)), language, values)
+
+
+def _markup(language: Language, text: str, /, **values: object) -> Markup:
+    """Return HTML of a template in the language, with its values."""
+    return _filled(_translated(language, text), language, values)
+
+
+def _counted_markup(
+    language: Language, one: str, many: str, count: int, /, **values: object
+) -> Markup:
+    """Return HTML of a template that the language has for a count, with its values."""
+    translation = language.translation
+    if translation is None:
+        chosen = one if count == 1 else many
+    else:
+        chosen = translation.ngettext(one, many, count)
+    return _filled(chosen, language, {"num": count, **values})
+
+
+def _translated(language: Language, text: str) -> str:
+    return language.translation.gettext(text) if language.translation else text
+
+
+def _filled(text: str, language: Language, values: Mapping[str, object]) -> Markup:
+    """Return HTML of a template or of its catalogue with escaped values."""
+    return own_html(text) % {name: _finalize(language, each) for name, each in values.items()}

@@ -4,10 +4,11 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from service.formats.shared.messages import SIGNS, Message
+from service.formats.shared.messages import POINTS, ROW, SIGNS, Message
 from service.formats.shared.part_results import LONGEST, MESSAGES_TOLD, PartResult
 from service.formats.shared.plain_text import code_pieces, first_lines, shortened, visible
 from service.grading import RowReport
+from service.translations import told
 
 # A character reference is plain text in every dialect; backslashes escape different characters in
 # different dialects. The point of `www.` and the colon of `://` would start a link.
@@ -35,11 +36,11 @@ def sentence(text: str) -> str:
 
 def part_details(result: PartResult) -> str:
     """Return a part as Markdown: a table with a sign for each cell, and a list of messages."""
-    report = result.report
+    report, translation = result.report, result.language.translation
     if report is None:
         return f"- {escaped(shortened(result.file.problem, LONGEST))}\n"
     blocks = [_table(result, report.rows)] if report.rows else []
-    items = list(first_lines(map(_item, result.messages()), MESSAGES_TOLD))
+    items = list(first_lines(map(_item, result.messages()), MESSAGES_TOLD, translation))
     if items := [*items, *map(escaped, result.marks())]:
         blocks.append("".join(f"- {item}\n" for item in items))
     return "\n".join(blocks)
@@ -47,7 +48,9 @@ def part_details(result: PartResult) -> str:
 
 def _table(result: PartResult, rows: Sequence[RowReport]) -> str:
     widest = max((row.cells for row in rows), key=len)
-    head = ["row", *(cell.label for cell in widest), "points"]
+    translation = result.language.translation
+    row_head, points_head = told(ROW, translation), told(POINTS, translation)
+    head = [row_head, *(cell.label for cell in widest), points_head]
     lines = [_line(head), "|---|" + ":-:|" * len(widest) + "--:|\n"]
     for row in rows[:_ROWS]:
         signs = [SIGNS[cell.verdict] for cell in row.cells]

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Final
 
-from service.formats.shared.plain_text import number, visible
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.plain_text import number, percent, points, visible
 from service.grading import (
     Correction,
     Feedback,
@@ -30,6 +31,26 @@ SIGNS: Final[Mapping[Verdict, str]] = {
     Verdict.MISSING: "–",
 }
 
+# The names of verdicts and severities in reports.
+VERDICT_NAMES: Final[Mapping[Verdict, str]] = {
+    Verdict.CORRECT: say("correct"),
+    Verdict.PARTIAL: say("partial"),
+    Verdict.INCORRECT: say("incorrect"),
+    Verdict.UNREADABLE: say("unreadable"),
+    Verdict.MISSING: say("missing"),
+}
+PASSED: Final = say("Passed")
+NOT_PASSED: Final = say("Not passed")
+NOT_GRADED: Final = say("Not graded")
+# The headings of the first and the last column of a table.
+ROW: Final = say("row")
+POINTS: Final = say("points")
+_SEVERITY_NAMES: Final[Mapping[Severity, str]] = {
+    Severity.WARNING: say("warning"),
+    Severity.HINT: say("hint"),
+    Severity.INFO: say("info"),
+}
+
 _RESULTS: Final = (YOURS, EXPECTED)
 
 
@@ -37,28 +58,34 @@ _RESULTS: Final = (YOURS, EXPECTED)
 class Message:
     """A message as visible texts of one line each.
 
-    ``places`` names the rows and cells, ``text`` is the message itself, ``offers`` says what to
-    write instead, and ``example`` is a counterexample; all but ``text`` may be empty. ``verdict``
-    is the verdict on the place.
+    ``label`` is the sign of the verdict on the place for an error, otherwise the name of the
+    severity. ``places`` names the rows and cells, ``text`` is the message itself, ``offers`` says
+    what to write instead, and ``example`` is a counterexample; all but ``text`` may be empty.
+    ``verdict`` is the verdict on the place.
     """
 
     severity: Severity
     verdict: Verdict
+    label: str
     places: str
     text: str
     offers: str
     example: str
 
     @property
-    def label(self) -> str:
-        """Return the sign of the verdict for an error, otherwise the severity."""
-        return SIGNS[self.verdict] if self.severity is Severity.ERROR else self.severity.value
-
-    @property
     def line(self) -> str:
         """Return the whole message in one line, such as ``row 2 alpha: …``."""
         pieces = (f"{self.places}:" if self.places else "", self.text, self.offers, self.example)
         return " ".join(filter(None, pieces))
+
+
+def total_points(submission: GradedSubmission) -> str:
+    """Return the points and the score of a submission as a sentence."""
+    return say(
+        "{points} points, {score}.",
+        points=points(submission.points, submission.max_points),
+        score=percent(submission.score),
+    )
 
 
 def messages(part: PartReport, translation: Translation | None = None) -> Iterator[Message]:
@@ -101,6 +128,7 @@ def _message(
     return Message(
         severity=feedback.severity,
         verdict=verdict,
+        label=told(_SEVERITY_NAMES.get(feedback.severity, SIGNS[verdict]), translation),
         places=visible(told(places_in_words(places, rows), translation)),
         text=visible(text),
         offers=visible(told(offers, translation)),

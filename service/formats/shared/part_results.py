@@ -6,10 +6,17 @@ from itertools import chain, count
 from typing import Final
 
 from service.formats.shared.graded import AnsweredPart, GradedFile, GradedSubmission
-from service.formats.shared.messages import Message, marks, messages
-from service.formats.shared.plain_text import first_lines, points, shortened, visible
+from service.formats.shared.messages import VERDICT_NAMES, Message, marks, messages
+from service.formats.shared.plain_text import (
+    first_lines,
+    points,
+    points_in_words,
+    shortened,
+    visible,
+)
 from service.grading import PartReport, RowReport, Verdict
 from service.grading.report import rounded_points
+from service.translations import ENGLISH, Language, told
 
 # Platforms limit a result: an annotation to 64 KB, a whole result to 1 MB.
 MESSAGES_TOLD: Final = 30
@@ -21,12 +28,14 @@ class PartResult:
     """An assigned part with its report; without one, its file has a problem.
 
     ``name`` is one line, and unique in the submission. Points are weighted as in the submission.
+    Texts are in ``language``.
     """
 
     name: str
     file: GradedFile
     part: AnsweredPart
     report: PartReport | None
+    language: Language = ENGLISH
 
     @property
     def points(self) -> float:
@@ -48,6 +57,16 @@ class PartResult:
         """Return the verdict on the part; unreadable if the part has no report."""
         return self.report.verdict if self.report else Verdict.UNREADABLE
 
+    @property
+    def points_in_words(self) -> str:
+        """Return the points earned and the maximum points, such as ``1.5 / 2 points``."""
+        return points_in_words(self.points, self.max_points, self.language.translation)
+
+    @property
+    def verdict_name(self) -> str:
+        """Return the name of the verdict."""
+        return told(VERDICT_NAMES[self.verdict], self.language.translation)
+
     def row_points(self, row: RowReport) -> str:
         """Return the points of a row as text."""
         weight = self.file.weight
@@ -55,11 +74,12 @@ class PartResult:
 
     def messages(self) -> Iterator[Message]:
         """Return the messages on the part."""
-        return messages(self.report) if self.report else iter(())
+        return messages(self.report, self.language.translation) if self.report else iter(())
 
     def marks(self) -> list[str]:
         """Return lines with the lost points and their places."""
-        lines = marks(self.report, self.file.weight) if self.report else []
+        translation = self.language.translation
+        lines = marks(self.report, self.file.weight, translation) if self.report else []
         return [shortened(line, LONGEST) for line in lines]
 
     def message_lines(self) -> list[str]:
@@ -67,19 +87,25 @@ class PartResult:
         if self.report is None:
             return [shortened(visible(self.file.problem), LONGEST)]
         lines = (shortened(f"{each.label} {each.line}", LONGEST) for each in self.messages())
-        return list(first_lines(lines, MESSAGES_TOLD))
+        return list(first_lines(lines, MESSAGES_TOLD, self.language.translation))
 
     def lines(self) -> list[str]:
         """Return the lines of the messages, then those of the lost points."""
         return [*self.message_lines(), *self.marks()]
 
 
-def part_results(submission: GradedSubmission) -> list[PartResult]:
+def part_results(submission: GradedSubmission, language: Language) -> list[PartResult]:
     """Return the results of all parts of all exercises of the submission, in order."""
     distinct = distinct_names()
     has_several = len(submission.files) > 1
     return [
-        PartResult(distinct(_title(part, file) if has_several else part.title), file, part, report)
+        PartResult(
+            distinct(_title(part, file) if has_several else part.title),
+            file,
+            part,
+            report,
+            language,
+        )
         for file in submission.files
         for part, report in _reports(file)
     ]

@@ -4,15 +4,22 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from service.translations import say, told
+from service.translations.sentence import Translation
+
 # Builds read commands in the output of programs: GitHub `::` at the start of a line and `##[`
 # anywhere, Azure `##vso[`, TeamCity `##teamcity[`. No formula has these signs twice in a row.
 _COMMAND: Final = re.compile(r"(?<=([:#]))(?=\1)")
+# Spaces at which no line breaks, as French has them before a colon. Python calls them unprintable.
+_UNBROKEN: Final = "\u00a0\u202f"
 
 
 def visible(text: str) -> str:
     """Return the text in one line, without invisible characters and commands to builds."""
     if not text.isprintable():
-        text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+        text = "".join(
+            c if c.isprintable() or c in _UNBROKEN else "\N{REPLACEMENT CHARACTER}" for c in text
+        )
     return _COMMAND.sub(" ", text)
 
 
@@ -32,7 +39,9 @@ def shortened(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def first_lines(lines: Iterable[str], most: int) -> Iterator[str]:
+def first_lines(
+    lines: Iterable[str], most: int, translation: Translation | None = None
+) -> Iterator[str]:
     """Yield the first ``most`` lines, then a line with the number of the other lines."""
     left = 0
     for i, line in enumerate(lines):
@@ -41,7 +50,12 @@ def first_lines(lines: Iterable[str], most: int) -> Iterator[str]:
         else:
             left += 1
     if left:
-        yield f"… and {left} more"
+        yield told(say("… and {count} more", count=left), translation)
+
+
+def points_in_words(earned: float, most: float, translation: Translation | None = None) -> str:
+    """Return points with their unit, such as ``1.5 / 2 points``."""
+    return told(say("{points} points", points=points(earned, most)), translation)
 
 
 def points(earned: float, most: float) -> str:

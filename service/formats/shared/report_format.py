@@ -6,6 +6,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 from service.formats.shared.graded import AnsweredExercise, GradedSubmission, Visibility
+from service.translations import ENGLISH, Language
 
 if TYPE_CHECKING:
     from rich.console import Console  # its import takes a tenth of a second
@@ -17,7 +18,7 @@ class Setting:
 
     ``exercises`` are the assigned exercises in order. ``console`` has the width, colours and
     encoding of the output. ``now`` is the time in UTC. ``environment`` has the environment
-    variables, in which platforms describe the submission.
+    variables, in which platforms describe the submission. ``language`` is that of the reports.
     """
 
     exercises: tuple[AnsweredExercise, ...]
@@ -25,6 +26,7 @@ class Setting:
     now: datetime
     environment: Mapping[str, str] = field(default_factory=dict)
     visibility: Visibility = Visibility.VISIBLE
+    language: Language = ENGLISH
 
 
 class UnusableSettingError(ValueError):

@@ -173,7 +173,7 @@ def _shown(when: datetime | None) -> str:
     return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
 
 
-def _page(name: str, assets: Assets, root: str, scripts: Sequence[str], **values: object) -> bytes:
+def _page(name: str, assets: Assets, root: str, scripts: Sequence[str], **values: Any) -> bytes:
     return page(
         f"web/courses/templates/{name}.html",
         assets,

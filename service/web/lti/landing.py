@@ -16,6 +16,7 @@ from service.lti.logins import Login, use_login
 from service.lti.messages import DEEP_LINKING, LaunchMessage
 from service.lti.roles import LtiRole
 from service.lti.tickets import LtiTicket, signed_ticket
+from service.translations import Language
 from service.web.assets import Assets
 from service.web.lti.deep_linking.offers import Offer, Picked, offer_of
 from service.web.lti.deep_linking.picker_pages import picker_page
@@ -39,7 +40,7 @@ class Landings:
         self.catalogue, self.assets, self.store = catalogue, assets, store
         self.keys, self.secret = keys, secret
 
-    async def page(self, message: LaunchMessage, login: Login) -> bytes:
+    async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
         """Record a launch; return the page that it opens. Raises LtiError."""
         now = datetime.now(UTC)
         if message.kind == DEEP_LINKING:
@@ -53,7 +54,8 @@ class Landings:
         if landing.key_id:
             self.keys.expect_keys()
         if landing.role is not LtiRole.TUTOR:
-            return landing_page(landing, self._token(landing, now), self.catalogue, self.assets)
+            token = self._token(landing, now)
+            return landing_page(landing, token, self.catalogue, self.assets, language)
         mine = LtiTicket(
             registration=message.registration.id,
             context=landing.context,

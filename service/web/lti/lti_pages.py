@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from service.api.http.lookup import Catalogue
 from service.catalogue import Exercise
 from service.contract.courses import CourseAssignment
+from service.translations import Language, say
 from service.web.assets import Assets
 from service.web.catalogue_words import words_of
 from service.web.page_headers import FORM_HEADERS, policy
@@ -44,12 +45,13 @@ class Choice:
     variants: bool = False
 
 
-def login_page(login: "NewLogin", name: str, assets: Assets) -> bytes:
+def login_page(login: "NewLogin", name: str, assets: Assets, language: Language) -> bytes:
     """Return the page that puts the secret of the browser into the platform's storage."""
     return lti_page(
         "login.html",
         assets,
         ["platform_storage.js"],
+        language=language,
         address=login.address,
         frame=login.fields["lti_storage_target"],
         origin=login.registration.platform_origin,
@@ -60,6 +62,7 @@ def login_page(login: "NewLogin", name: str, assets: Assets) -> bytes:
 
 def binding_page(
     assets: Assets,
+    language: Language,
     window: str,
     *,
     state: str = "",
@@ -77,6 +80,7 @@ def binding_page(
         "binding.html",
         assets,
         scripts,
+        language=language,
         window=window,
         state=state,
         token=token,
@@ -87,12 +91,24 @@ def binding_page(
     )
 
 
-def refused_page(assets: Assets, advice: str, reference: str, reason: str) -> bytes:
+def refused_page(
+    assets: Assets, language: Language, advice: str, reference: str, reason: str
+) -> bytes:
     """Return the page that says why nothing was opened, and what to do."""
-    return lti_page("refused.html", assets, [], advice=advice, reference=reference, reason=reason)
+    return lti_page(
+        "refused.html",
+        assets,
+        [],
+        language=language,
+        advice=advice,
+        reference=reference,
+        reason=reason,
+    )
 
 
-def landing_page(landing: "Landing", token: str, catalogue: Catalogue, assets: Assets) -> bytes:
+def landing_page(
+    landing: "Landing", token: str, catalogue: Catalogue, assets: Assets, language: Language
+) -> bytes:
     """Return the page of a learner, a preview or a guest; the token is only in this page."""
     assignment = landing.assignment
     if landing.learner and assignment is not None:
@@ -102,6 +118,7 @@ def landing_page(landing: "Landing", token: str, catalogue: Catalogue, assets: A
             "../",
             ["page.js", "embed.js", "learner.js"],
             styles=["learner.css"],
+            language=language,
             is_framed=True,
             key=token,
             place=_place(landing.course, assignment),
@@ -111,8 +128,9 @@ def landing_page(landing: "Landing", token: str, catalogue: Catalogue, assets: A
         "visitor.html",
         assets,
         ["embed.js"] if exercises else [],
+        language=language,
         role=landing.role.value,
-        title=landing.link_title or "Exercises",
+        title=landing.link_title or say("Exercises"),
         is_set_up=assignment is not None,
         token=token,
         exercises=[each for each in exercises if each in catalogue],
@@ -187,7 +205,7 @@ def lti_page(
     assets: Assets,
     scripts: list[str],
     more_styles: Iterable[str] = (),
-    **values: object,
+    **values: Any,
 ) -> bytes:
     """Return the page of a template of this folder."""
     shown = {"is_framed": True, **values}

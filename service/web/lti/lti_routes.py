@@ -14,9 +14,11 @@ from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 
 from service.api.courses.asking import read, write
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue
 from service.api.http.request_context import current_request
 from service.api.permissions.access import is_same_origin
+from service.translations import ENGLISH, Language
 from service.web.assets import Assets
 from service.web.lti.lti_pages import binding_page, frame_headers, login_page, refused_page
 from service.web.page_headers import NO_STORE
@@ -60,12 +62,12 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     landings = Landings(catalogue, assets, tutoring.store, keys, keys.secret)
     launching = _Launching(assets, tutoring, PlatformKeys())
 
-    async def login(fields: Mapping[str, str]) -> Response:
+    async def login(fields: Mapping[str, str], language: Language) -> Response:
         begun = await launching.begin(fields)
         answer: Response
         if "lti_storage_target" in begun.fields:
             name = cookie_name(begun.registration, begun.state)
-            content = login_page(begun, name, assets)
+            content = login_page(begun, name, assets, language)
             headers = frame_headers(begun.registration.frame_origins)
             answer = HTMLResponse(content, headers=headers)
         else:
@@ -76,13 +78,17 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     @router.get(_LOGIN)
     async def login_by_get(request: Request) -> Response:
         """Begin a login: the platform sends the user here first."""
-        return await launching.answered(lambda: login(dict(request.query_params)))
+        language = language_of(request)
+        return await launching.answered(
+            lambda: login(dict(request.query_params), language), language
+        )
 
     @router.post(_LOGIN)
     async def login_by_post(request: Request) -> Response:
         """Begin a login whose fields are those of a form."""
         fields = await form_fields(request, _MOST_FIELDS)
-        return await launching.answered(lambda: login(fields))
+        language = language_of(request)
+        return await launching.answered(lambda: login(fields, language), language)
 
     @router.post(_LAUNCH)
     async def launch(request: Request) -> Response:
@@ -94,10 +100,11 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
             if not is_bound(request, fields, known, begun):
                 return launching.ask_to_bind(request, fields, known, begun)
             message = await launching.message(fields.get("id_token", ""), known, begun)
-            content = await landings.page(message, begun)
+            language = language_of(request, message.locale)
+            content = await landings.page(message, begun, language)
             return HTMLResponse(content, headers=frame_headers(known.frame_origins))
 
-        return await launching.answered(launched)
+        return await launching.answered(launched, language_of(request))
 
     @router.get("/jwks.json")
     async def own_keys() -> Response:
@@ -185,6 +192,7 @@ class _Launching:
             storage = (begun.storage_target, known.platform_origin, name)
         content = binding_page(
             self._assets,
+            language_of(request),
             f"login?{urlencode(again)}",
             state=fields["state"],
             token=fields.get("id_token", ""),
@@ -192,16 +200,18 @@ class _Launching:
         )
         return HTMLResponse(content, headers=frame_headers(known.frame_origins))
 
-    async def answered(self, work: Callable[[], Awaitable[Response]]) -> Response:
+    async def answered(
+        self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
+    ) -> Response:
         """Return the answer of ``work``, or the page that says why it is refused."""
         from service.lti.problems import LtiError
 
         try:
             return await work()
         except LtiError as error:
-            return await self._refused(error)
+            return await self._refused(error, language)
 
-    async def _refused(self, error: "LtiError") -> Response:
+    async def _refused(self, error: "LtiError", language: Language) -> Response:
         """Answer with a page for the student; the log has the cause under the same number."""
         from service.lti.registrations import all_registrations
 
@@ -210,7 +220,7 @@ class _Launching:
         _log.warning("LTI: refused (%s), reference %s: %s", error.name, reference, error)
         known = await read(self._store, all_registrations)
         origins = [origin for each in known for origin in each.frame_origins]
-        content = refused_page(self._assets, error.advice, reference, error.name)
+        content = refused_page(self._assets, language, error.advice, reference, error.name)
         status = _STATUSES.get(error.name, HTTPStatus.FORBIDDEN)
         return HTMLResponse(content, status, headers=frame_headers(origins))
 

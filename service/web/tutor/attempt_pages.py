@@ -1,6 +1,6 @@
 """The pages of recorded attempts as HTML: forms, and empty elements that scripts fill."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from service.api.http.lookup import Catalogue
 from service.catalogue import Exercise
@@ -63,7 +63,7 @@ def nothing_recorded_page(assets: Assets, root: str) -> bytes:
     return _page("nothing_recorded", assets, root)
 
 
-def _page(name: str, assets: Assets, root: str, *scripts: str, **values: object) -> bytes:
+def _page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) -> bytes:
     return page(
         f"web/tutor/templates/{name}.html",
         assets,

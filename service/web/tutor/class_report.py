@@ -21,6 +21,7 @@ from service.local_grading import GradingTerms, graded
 from service.submissions.assignment import PASS_MARK, Assignment, UnknownPartNameError, of_one
 from service.submissions.handed_in import MAX_FILES, HandedIn, all_handed_in
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.translations import ENGLISH, Language
 
 # Bytes after unpacking. A body has at most 256 KiB, but similar submissions compress well.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
@@ -93,7 +94,7 @@ def _marks(content: bytes) -> int:
     return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
 
 
-def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
+def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language = ENGLISH) -> bytes:
     """Grade a class, and return the folder of its reports and the gradebook as a ZIP archive.
 
     Raises ProblemError.
@@ -116,7 +117,7 @@ def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
                 f"There are more than {MAX_SUBMISSIONS} submissions. Choose fewer, or use "
                 "dh-grader grade FOLDER --format html."
             )
-        return _archive(found, assignment, folder)
+        return _archive(found, assignment, folder, language)
 
 
 def _write(upload: ClassUpload, folder: Path) -> None:
@@ -139,7 +140,9 @@ def _write(upload: ClassUpload, folder: Path) -> None:
             raise _unusable(f"A file has a name that cannot be used here: {shown}") from error
 
 
-def _archive(found: list[HandedIn], assignment: Assignment, folder: Path) -> bytes:
+def _archive(
+    found: list[HandedIn], assignment: Assignment, folder: Path, language: Language
+) -> bytes:
     # Imported here, because grading over HTTP does not need them.
     from rich.console import Console
 
@@ -149,9 +152,14 @@ def _archive(found: list[HandedIn], assignment: Assignment, folder: Path) -> byt
     chosen = report_format("html")
     assert chosen.folder is not None
     terms = GradingTerms(
-        assignment, PASS_MARK, for_students=chosen.for_students, echo=chosen.shows_entries
+        assignment,
+        PASS_MARK,
+        for_students=chosen.for_students,
+        echo=chosen.shows_entries,
+        language=language,
     )
-    setting = Setting(terms.answered, Console(file=io.StringIO()), datetime.now(UTC))
+    console = Console(file=io.StringIO())
+    setting = Setting(terms.answered, console, datetime.now(UTC), language=language)
     packed = io.BytesIO()
     gradebook = report_format("gradebook")
     lines: list[bytes] = []

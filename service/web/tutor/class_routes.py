@@ -7,6 +7,7 @@ from starlette.responses import HTMLResponse, Response
 
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.chunked_response import ChunkedResponse
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
@@ -43,7 +44,8 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
     async def report(request: Request) -> Response:
         """Grade a class, and answer with its folder as a ZIP archive. Nothing is stored."""
         packed = await request.body()
-        content = await work.do(lambda: class_archive(unpacked(packed), catalogue))
+        language = language_of(request)
+        content = await work.do(lambda: class_archive(unpacked(packed), catalogue, language))
         return ChunkedResponse(content, headers=NO_STORE, media_type="application/zip")
 
     return router

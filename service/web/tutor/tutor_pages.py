@@ -1,6 +1,6 @@
 """Tutors' pages as HTML."""
 
-from typing import Final
+from typing import Any, Final
 
 from markupsafe import Markup
 
@@ -101,7 +101,7 @@ def class_page(catalogue: Catalogue, assets: Assets) -> bytes:
     return _page("class", assets, "../", "class.js", exercises=list(catalogue.values()))
 
 
-def _page(name: str, assets: Assets, root: str, *scripts: str, **values: object) -> bytes:
+def _page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) -> bytes:
     return page(
         f"web/tutor/templates/{name}.html",
         assets,

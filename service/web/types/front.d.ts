@@ -5,6 +5,10 @@ declare namespace Front {
   // deno-lint-ignore no-explicit-any
   type Attributes = Record<string, string | number | boolean | null | undefined | ((event: any) => unknown)>;
 
+  // The sentences of a language by their English texts, and those that count by the text for one.
+  type Dictionary = { tag: string; words: Record<string, string>; counts: Record<string, [string, string]> };
+  type WordedValues = Record<string, string | number>;
+
   // A part of an exercise: its grids of cells, and their contents.
   type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity; offers?: string[]; help?: string };
   type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity; prefill?: string[]; isGiven?: boolean };

@@ -5,13 +5,20 @@ from typing import Any
 import httpx
 import pytest
 from jsonschema import Draft202012Validator
-from sqlalchemy import text
+from sqlalchemy import select, text
 
 from service.api.application import application
 from service.api.permissions.access import Access
+from service.attempts import graded
+from service.attempts.learner_data import everything_of
+from service.attempts.results.recorded_report import recorded_report
+from service.attempts.storage.tables import attempts
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
+from service.formats.told_report import with_texts
+from service.grading import Report
 from tests.api.conftest import InProcess
+from tests.translations.german import as_sentence, messages_in, offer_german
 
 WRONG = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
 PATHS = ("/v1/attempts", "/v1/attempts/" + 32 * "0", "/v1/exercises/scara/statistics")
@@ -63,6 +70,42 @@ def test_recorded_attempts_can_be_read(tutor_of: Tutor) -> None:
     figures = tutor.get("/v1/exercises/scara/statistics").json()
     assert (figures["attempts"], figures["learners"]) == (3, 2)
     assert figures["identical"][0]["among"] == ["ada", "grace"]
+
+
+def test_each_reader_gets_a_recorded_report_in_the_own_language(
+    tutor_of: Tutor, store: AttemptStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    offer_german(monkeypatch, {"no answer": "keine Antwort"})
+
+    def recorded(report: Report) -> str:
+        return recorded_report(with_texts(report, as_sentence))
+
+    monkeypatch.setattr(graded, "recorded_report", recorded)
+    client: httpx.Client = tutor_of()
+
+    def post(query: str) -> httpx.Response:
+        body = {"learner": "ada", "answers": WRONG}
+        headers = {"Idempotency-Key": "1"}
+        return client.post(f"/v1/exercises/scara/attempts{query}", json=body, headers=headers)
+
+    german, english = post("?lang=de"), post("")
+    assert (german.status_code, german.headers["content-language"]) == (201, "de")
+    assert "keine Antwort" in messages_in(german.json()["report"])
+    # The same attempt, sent again by a reader of English.
+    assert english.json()["attempt"] == german.json()["attempt"]
+    assert "no answer" in messages_in(english.json()["report"])
+    path = f"/v1/attempts/{german.json()['attempt']['id']}"
+    shown = client.get(path, headers={"Accept-Language": "de"})
+    assert (shown.headers["content-language"], shown.json()["report"]) == (
+        "de",
+        german.json()["report"],
+    )
+    assert client.get(path).json()["report"] == english.json()["report"]
+    with store.engine.connect() as connection:
+        assert '{"sentences":' in (connection.scalar(select(attempts.c.report)) or "")
+        exported = everything_of(connection, "ada")
+    assert exported["attempts"][0]["report"] == english.json()["report"]
+    assert "sentences" not in client.get("/v1/attempts/export?format=jsonl").text
 
 
 def test_every_field_of_an_attempt_is_documented(tutor_of: Tutor) -> None:

@@ -10,6 +10,7 @@ from typer.testing import Result
 from service.formats.documents.json import rendered
 from service.grading import Report, Submission, grade
 from tests.shipped import shipped_exercises
+from tests.translations.german import messages_in, offer_german
 
 Run = Callable[..., Result]
 Save = Callable[..., Path]
@@ -70,6 +71,34 @@ def test_a_score_equal_to_the_pass_mark_passes(run: Run, save: Save) -> None:
     # 8 of the exercise's 16 points
     assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.5").exit_code == 0
     assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.51").exit_code == 1
+
+
+def test_a_report_in_german(run: Run, save: Save, monkeypatch: pytest.MonkeyPatch) -> None:
+    words = {
+        "{points} points": "{points} Punkte",
+        "Total for {exercise}: ": "Summe für {exercise}: ",
+        "{verdict}: the pass mark is {share}.": "{verdict}: zum Bestehen braucht es {share}.",
+        "Passed": "Bestanden",
+        "correct": "richtig",
+        "no answer": "keine Antwort",
+    }
+    offer_german(monkeypatch, words)
+    file = save({"answers": {"table": RIGHT}})
+    english = table_only(run, file)
+    for german in (table_only(run, file, "--lang", "de"), table_only(run, file, "--lang", "de-AT")):
+        assert german.exit_code == 0, german.output
+        assert "table (dh_table): richtig, 8 / 8 Punkte\n" in german.stdout
+        assert "Summe für planar-rrr: 8 / 8 Punkte, 100 %\n" in german.stdout
+        assert "Bestanden: zum Bestehen braucht es 80 %.\n" in german.stdout
+    monkeypatch.setenv("LANG", "de_DE.UTF-8")
+    assert table_only(run, file).stdout == english.stdout
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
+    assert table_only(run, file).stdout == german.stdout
+    [entry] = json.loads(run("grade", "--exercise", "planar-rrr", file, "--format", "json").stdout)
+    assert messages_in(entry["report"]) == ["keine Antwort"]
+    unknown = table_only(run, file, "--lang", "xx")
+    assert unknown.exit_code == 2
+    assert "'xx' is no language of the reports: write one of en, de" in unknown.stderr
 
 
 def test_a_file_may_contain_just_the_answer_to_the_part(run: Run, save: Save) -> None:

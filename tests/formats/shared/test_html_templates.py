@@ -10,7 +10,9 @@ from jinja2 import Environment, UndefinedError
 
 from service.formats.shared import html_templates
 from service.formats.shared.html_templates import lines, own_html
+from service.translations import say
 from tests.formats.submissions import HOSTILE
+from tests.translations.pseudo import PSEUDO
 
 SERVICE = Path(__file__).parents[3] / "service"
 TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
@@ -18,6 +20,7 @@ TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
 TRUSTED = {
     "formats/shared/html_templates.py style_sheet": "the style sheets of reports",
     "formats/shared/html_templates.py typeset": "texts with names in MathML: names.typeset()",
+    "formats/shared/html_templates.py _filled": "texts of templates and of their catalogues",
     "formats/shared/html_templates.py formula": "formulas in MathML: formulas.formula()",
     "web/pages.py _markdown": "statements and prompts: statement_html()",
     "web/tutor/tutor_pages.py _formula": "MathML of model solutions: formula_html()",
@@ -98,3 +101,34 @@ def test_no_template_turns_escaping_off(file: Path) -> None:
 def test_only_listed_functions_pass_unescaped_html() -> None:
     assert set(calls("own_html")) == set(TRUSTED)
     assert list(calls("Markup")) == ["formats/shared/html_templates.py own_html"]
+
+
+def test_a_printed_sentence_is_told_in_the_language_of_the_page() -> None:
+    environment = html_templates.environment(PSEUDO)
+    source = (
+        '{{ s }}|{{ s | typeset }}|{{ "row" }}|{{ _("<i>") }}|'
+        "{% trans a=s %}<b>{{ a }}</b>{% endtrans %}"
+    )
+    sentence = say("Row {row}\u00a0: {text}", row=2, text="<u>")
+    shown = rendered(environment, source, s=sentence)
+    told = "Rów 2\u00a0: &lt;u&gt;"
+    printed, names, plain, text, html = shown.split("|")
+    assert printed.startswith(told)
+    assert names.startswith("Rów")
+    assert plain == "row"
+    assert text.startswith("&lt;i&gt;")
+    assert html.startswith(f"<b>{told}")
+
+
+def test_trusted_html_of_a_catalogue_does_not_trust_its_values(environment: Environment) -> None:
+    source = '{% trans t=text %}<b>{{ t }}</b>{% endtrans %}{{ _("T: %(t)s", t=text) }}'
+    assert (
+        rendered(environment, source, text="<i>\u202e")
+        == "<b>&lt;i&gt;\ufffd</b>T: &lt;i&gt;\ufffd"
+    )
+
+
+def test_a_template_counts(environment: Environment) -> None:
+    source = "{% trans n=n %}one{% pluralize %}{{ n }} <b>rows</b>{% endtrans %}"
+    assert [rendered(environment, source, n=n) for n in (1, 2)] == ["one", "2 <b>rows</b>"]
+    assert rendered(html_templates.environment(PSEUDO), source, n=2).startswith("2 <b>rów")

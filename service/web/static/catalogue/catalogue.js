@@ -3,6 +3,7 @@
 import { byId, h, points } from "../shared/dom.js";
 import { progressOf } from "./progress.js";
 import { matches, wordsOf } from "./search.js";
+import { worded, wordedFor } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url).href;
 
@@ -20,16 +21,16 @@ function showProgress() {
     const isDone = earned > 0 && earned >= Number(most);
     item.classList.toggle("is-done", isDone);
     const mark = isDone
-      ? [h("span", { "aria-hidden": "true" }, "✓ "), "Done"]
+      ? [h("span", { "aria-hidden": "true" }, "✓ "), worded("Done")]
       : earned > 0
-      ? [`${points(earned, Number(most))} so far`]
+      ? [worded("{points} so far", { points: points(earned, Number(most)) })]
       : [];
     item.querySelector(".done")?.replaceChildren(...mark);
   }
   for (const group of groups) {
     const all = group.querySelectorAll(".exercises > li").length;
     const done = group.querySelectorAll(".is-done").length;
-    group.querySelector(".done-count")?.replaceChildren(done ? `${done} of ${all} done` : "");
+    group.querySelector(".done-count")?.replaceChildren(done ? worded("{done} of {all} done", { done, all }) : "");
   }
 }
 
@@ -42,12 +43,12 @@ function narrow() {
   for (const group of groups) group.hidden = !group.querySelector(".exercises > li:not([hidden])");
   const left = items.filter((item) => !item.hidden).length;
   byId("count", HTMLElement).textContent = field.value.trim()
-    ? `${left} of ${items.length}`
-    : `${items.length} exercises`;
+    ? worded("{left} of {all}", { left, all: items.length })
+    : wordedFor("1 exercise", "{count} exercises", items.length);
   const none = document.getElementById("none-found");
   if (!none) return;
   none.hidden = left > 0;
-  none.textContent = "No exercise has all these words.";
+  none.textContent = worded("No exercise has all these words.");
 }
 
 if (items.length) {

@@ -6,10 +6,11 @@ import { attemptName, attemptPoints } from "../student/handin/own_state.js";
 import { besides } from "../student/hints/solution.js";
 import { RecordedReport } from "../tutor/records/recorded_report.js";
 import { fragmentOf } from "./link_key.js";
+import { worded } from "../shared/words/words.js";
 
 const HINTS = new URL("../student/hints/hints.css", import.meta.url).href;
 
-export const back = () => h("p", { class: "ways-on" }, h("a", { href: "#" }, "← All assignments"));
+export const back = () => h("p", { class: "ways-on" }, h("a", { href: "#" }, worded("← All assignments")));
 
 /**
  * Return the form of an exercise, and the element for what was handed in, which `handedIn` fills.
@@ -22,7 +23,7 @@ export function form({ path, exercise }, key) {
   for (const [name, value] of Object.entries({ exercise, assignment: path, token: key, submit: "", linked: "" })) {
     element.setAttribute(name, value);
   }
-  const done = h("section", { class: "handed-in", "aria-label": "Handed in" });
+  const done = h("section", { class: "handed-in", "aria-label": worded("Handed in") });
   return { element, done };
 }
 
@@ -41,14 +42,14 @@ export function handedIn({ course, exercise }, place, showSolution) {
       h("a", { href: fragmentOf({ ...place, attempt: each.id }) }, attemptName(exercise, each.id)),
       h("span", {}, momentIn(each.at, course.zone)),
       h("span", {}, attemptPoints(each, exercise)),
-      each.counts ? h("span", { class: "badge" }, "counts") : null,
+      each.counts ? h("span", { class: "badge" }, worded("counts")) : null,
     )
   );
   return [
-    h("h2", {}, "What you handed in"),
-    rows.length ? h("ul", {}, ...rows) : h("p", { class: "quiet" }, "Nothing yet."),
+    h("h2", {}, worded("What you handed in")),
+    rows.length ? h("ul", {}, ...rows) : h("p", { class: "quiet" }, worded("Nothing yet.")),
     exercise.shows_solution
-      ? h("button", { type: "button", class: "quiet-button", onclick: showSolution }, "Show the solution")
+      ? h("button", { type: "button", class: "quiet-button", onclick: showSolution }, worded("Show the solution"))
       : null,
   ];
 }
@@ -75,7 +76,11 @@ export async function report(service, place, { course, exercise: own }) {
   return [
     h("h1", {}, visible(own.title)),
     h("p", {}, facts),
-    h("p", {}, h("a", { href: fragmentOf({ path: place.path, exercise: place.exercise }) }, "Back to the exercise")),
+    h(
+      "p",
+      {},
+      h("a", { href: fragmentOf({ path: place.path, exercise: place.exercise }) }, worded("Back to the exercise")),
+    ),
     drawn.element,
   ];
 }
@@ -96,5 +101,5 @@ export async function solution(service, { path, exercise }, { exercise: { attemp
   ]);
   const answers = /** @type {Record<string, unknown>} */ (found?.submission.answers ?? {});
   const style = h("link", { rel: "stylesheet", href: HINTS });
-  return [style, h("h2", { tabindex: -1 }, "Solution"), ...besides(shown, parts, answers)];
+  return [style, h("h2", { tabindex: -1 }, worded("Solution")), ...besides(shown, parts, answers)];
 }

@@ -6,6 +6,7 @@ import { ownState } from "../student/handin/own_state.js";
 import { back, form, handedIn, report, solution } from "./assigned.js";
 import { forgetKey, placeIn, takeKey, takePageKey } from "./link_key.js";
 import { overview } from "./overview.js";
+import { worded } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url).href;
 const main = byId("learner", HTMLElement);
@@ -18,7 +19,9 @@ const service = new Service(HOME, () => key);
 async function show() {
   key = takeKey();
   const now = ++turn;
-  if (!key) return advise("Open your personal link", "You got it from your lecturer, for example by e-mail.");
+  if (!key) {
+    return advise(worded("Open your personal link"), worded("You got it from your lecturer, for example by e-mail."));
+  }
   const place = placeIn(location.hash);
   try {
     const view = await service.own();
@@ -33,25 +36,26 @@ async function show() {
 /** @param {Error & { status?: number }} error */
 function failed(error) {
   if ((error.status === 401 || error.status === 403) && isLaunched) {
-    const told = "Open it again from your course. What you have handed in is not lost.";
-    return advise("The page was open for too long", told);
+    const told = worded("Open it again from your course. What you have handed in is not lost.");
+    return advise(worded("The page was open for too long"), told);
   }
   if (error.status === 401 || error.status === 403) {
-    const told = "It has expired, or was replaced by a newer one. Use the newest link that you got, or ask your " +
-      "lecturer for a new one. What you have handed in is not lost.";
-    return advise("This link is not valid any more", told);
+    const told = worded(
+      "It has expired, or was replaced by a newer one. Use the newest link that you got, or ask your lecturer for a new one. What you have handed in is not lost.",
+    );
+    return advise(worded("This link is not valid any more"), told);
   }
   return put(
-    h("h1", {}, "Your assignments could not be loaded"),
+    h("h1", {}, worded("Your assignments could not be loaded")),
     h("p", { role: "alert" }, visible(error.message)),
-    h("button", { type: "button", class: "quiet-button", onclick: show }, "Try again"),
+    h("button", { type: "button", class: "quiet-button", onclick: show }, worded("Try again")),
   );
 }
 
 /** @param {Api.OwnCourses} view @param {Front.Assigned} place */
 async function exercise(view, place) {
   const own = ownState(view, place.path, place.exercise);
-  if (!own) return [back(), h("h1", {}, "This is not one of your assignments")];
+  if (!own) return [back(), h("h1", {}, worded("This is not one of your assignments"))];
   if (place.attempt) return [back(), ...await report(service, place, own)];
   const { element, done } = form(place, key);
   let latest = own;
@@ -80,9 +84,9 @@ function signOut() {
     forgetKey();
     history.replaceState(null, "", location.pathname);
     key = "";
-    advise("You are signed out", "Open your personal link to come back.");
+    advise(worded("You are signed out"), worded("Open your personal link to come back."));
   };
-  return h("button", { type: "button", class: "quiet-button", onclick: leave }, "Sign out");
+  return h("button", { type: "button", class: "quiet-button", onclick: leave }, worded("Sign out"));
 }
 
 /** @param {string} title @param {string} text */
@@ -95,7 +99,7 @@ function put(...shown) {
   main.removeAttribute("aria-busy");
   main.replaceChildren(...shown);
   const title = main.querySelector("h1")?.textContent;
-  document.title = title ? `${title} · DH Grader` : "My assignments · DH Grader";
+  document.title = title ? `${title} · DH Grader` : `${worded("My assignments")} · DH Grader`;
 }
 
 addEventListener("hashchange", async () => {

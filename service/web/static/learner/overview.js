@@ -4,11 +4,14 @@ import { h, visible } from "../shared/dom.js";
 import { attemptsInWords, datesInWords, pointsInWords, STATES } from "../student/handin/own_state.js";
 import { typeset } from "../typeset/names.js";
 import { fragmentOf } from "./link_key.js";
+import { worded, wordedFor } from "../shared/words/words.js";
 
 /** @param {Api.OwnCourses} view */
 export function overview({ courses }) {
-  if (!courses.length) return [h("h1", {}, "My assignments"), h("p", {}, "You are in no course at the moment.")];
-  return [h("h1", {}, "My assignments"), ...courses.map(courseSection)];
+  if (!courses.length) {
+    return [h("h1", {}, worded("My assignments")), h("p", {}, worded("You are in no course at the moment."))];
+  }
+  return [h("h1", {}, worded("My assignments")), ...courses.map(courseSection)];
 }
 
 /** @param {Api.OwnCourse} course */
@@ -18,8 +21,8 @@ function courseSection(course) {
     "section",
     { class: "course" },
     h("h2", {}, visible(title)),
-    h("p", { class: "quiet" }, `${visible(name)} · times of ${visible(zone)}`),
-    assignments.length ? null : h("p", {}, "There are no assignments yet."),
+    h("p", { class: "quiet" }, worded("{course} · times of {zone}", { course: visible(name), zone: visible(zone) })),
+    assignments.length ? null : h("p", {}, worded("There are no assignments yet.")),
     ...assignments.map((each) => assignmentCard(course, each)),
   );
 }
@@ -35,7 +38,7 @@ function assignmentCard(course, assignment) {
       {},
       h("h3", {}, visible(title)),
       h("span", { class: "badge", "data-state": state }, STATES[state]),
-      isExtended ? h("span", { class: "badge" }, "extended for you") : null,
+      isExtended ? h("span", { class: "badge" }, worded("extended for you")) : null,
     ),
     h("p", {}, datesInWords(course, assignment)),
     h(
@@ -60,6 +63,6 @@ function assignmentCard(course, assignment) {
 
 /** @param {Api.OwnExercise} exercise */
 function handedIn({ attempts, shows_solution: hasSolution }) {
-  const done = attempts.length ? [`${attempts.length} handed in`] : [];
-  return hasSolution ? [...done, "with solution"] : done;
+  const done = attempts.length ? [wordedFor("1 handed in", "{count} handed in", attempts.length)] : [];
+  return hasSolution ? [...done, worded("with solution")] : done;
 }

@@ -9,6 +9,8 @@ import { RobotView } from "../robot/robot_view.js";
 import { ROBOTS } from "./robots.js";
 import { Service } from "../shared/service.js";
 import { packed, unpacked } from "../shared/storage.js";
+import { nothingTo } from "../shared/words/phrases.js";
+import { worded } from "../shared/words/words.js";
 
 const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("../student/element.css", import.meta.url).href;
@@ -16,8 +18,8 @@ const PLAY_STYLE = new URL("./play.css", import.meta.url).href;
 const HOME = new URL("../", import.meta.url).href;
 const NAME = "#robot=";
 const KEPT = "dh-grader:play";
-const FIRST = "Stanford arm, RRPRRR";
-const LETTERS = { standard: "Standard (distal)", modified: "Modified (proximal)" };
+const FIRST = worded("Stanford arm, RRPRRR");
+const LETTERS = { standard: worded("Standard (distal)"), modified: worded("Modified (proximal)") };
 
 /** @typedef {{ put(state: Front.Robot): void, focus(): void }} Place */
 
@@ -44,26 +46,26 @@ export class DhPlay extends HTMLElement {
     const option = (text, value = text) => h("option", { value }, text);
     this.robot = h(
       "select",
-      { "aria-label": "Start from a robot", onchange: () => this.#chosen() },
-      option("Start from …", ""),
+      { "aria-label": worded("Start from a robot"), onchange: () => this.#chosen() },
+      option(worded("Start from …"), ""),
       ...Object.keys(ROBOTS).map((name) => option(name)),
     );
     this.convention = h(
       "select",
-      { "aria-label": "Convention", onchange: () => this.#change(this.state) },
+      { "aria-label": worded("Convention"), onchange: () => this.#change(this.state) },
       ...Object.entries(LETTERS).map(([value, text]) => option(text, value)),
     );
     this.unit = h(
       "select",
-      { "aria-label": "Angles without a unit", onchange: () => this.#edited() },
-      option("radians"),
-      option("degrees"),
+      { "aria-label": worded("Angles without a unit"), onchange: () => this.#edited() },
+      option(worded("radians"), "radians"),
+      option(worded("degrees"), "degrees"),
     );
     this.said = h("p", { class: "quiet saved" });
-    this.add = quietButton("Add a row", () => this.#addRow());
+    this.add = quietButton(worded("Add a row"), () => this.#addRow());
     this.table = new PlayTable(this);
     this.results = new Results(
-      (latex) => this.#copy(latex, "LaTeX of the pose copied"),
+      (latex) => this.#copy(latex, worded("LaTeX of the pose copied")),
       (rows) => this.#useConverted(rows),
     );
   }
@@ -98,29 +100,36 @@ export class DhPlay extends HTMLElement {
         h(
           "header",
           {},
-          h("h1", { id: "title" }, "Free play"),
-          h("p", { class: "quiet" }, "Write any DH table, see its robot, and move it."),
+          h("h1", { id: "title" }, worded("Free play")),
+          h("p", { class: "quiet" }, worded("Write any DH table, see its robot, and move it.")),
         ),
         view.element,
       ),
       h(
         "div",
         { class: "parts" },
-        h("div", { class: "tools" }, this.robot, this.said, quietButton("Copy link", () => this.#share())),
+        h("div", { class: "tools" }, this.robot, this.said, quietButton(worded("Copy link"), () => this.#share())),
         card(
-          [h("h2", {}, "Table"), this.results.freedoms],
+          [h("h2", {}, worded("Table")), this.results.freedoms],
           h(
             "div",
             { class: "tools" },
             this.convention,
-            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
+            h(
+              "label",
+              { class: "unit" },
+              h("span", { "aria-hidden": "true" }, worded("Angles without a unit:"), " "),
+              this.unit,
+            ),
           ),
           h("div", { class: "grids" }, this.table.element),
           h(
             "p",
             { class: "reading" },
             ...message(
-              "Joint i turns by `theta_i` or slides by `d_i`. For other letters, such as `a1`, `alpha1`, `d1` or `l1`, you choose numbers below the view. Paste a whole table into one cell, or a block of cells.",
+              worded(
+                "Joint i turns by `theta_i` or slides by `d_i`. For other letters, such as `a1`, `alpha1`, `d1` or `l1`, you choose numbers below the view. Paste a whole table into one cell, or a block of cells.",
+              ),
             ),
           ),
           h("div", { class: "tools" }, this.add),
@@ -160,9 +169,9 @@ export class DhPlay extends HTMLElement {
     this.#rows = rows;
     this.table.show({ rows, convention });
     this.add.disabled = rows.length >= MOST_ROWS;
-    this.results.title.textContent = `This table in the ${
-      convention === "standard" ? "modified (proximal)" : "standard (distal)"
-    } convention`;
+    this.results.title.textContent = convention === "standard"
+      ? worded("This table in the modified (proximal) convention")
+      : worded("This table in the standard (distal) convention");
     this.view?.refit();
     this.changed();
   }
@@ -226,7 +235,7 @@ export class DhPlay extends HTMLElement {
   /** @param {Front.Direction} direction */
   undone(direction) {
     const place = this.#history[direction]();
-    if (!place) return this.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
+    if (!place) return this.announce(nothingTo(direction));
     this.#before = this.state;
     return place.focus();
   }
@@ -244,7 +253,7 @@ export class DhPlay extends HTMLElement {
   filled(pairs) {
     for (const [cell, text] of pairs) cell.put(text);
     this.#edited();
-    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; press Ctrl+Z to undo`);
+    if (pairs.length > 1) this.#say(worded("{count} cells are filled; press Ctrl+Z to undo", { count: pairs.length }));
   }
 
   /**
@@ -263,7 +272,7 @@ export class DhPlay extends HTMLElement {
     if (!robot) return;
     this.view?.forget();
     this.#change(robot);
-    this.announce("The table is filled in.");
+    this.announce(worded("The table is filled in."));
   }
 
   #addRow() {
@@ -277,10 +286,10 @@ export class DhPlay extends HTMLElement {
   /** @param {number} i */
   removed(i) {
     const { rows, ...rest } = this.state;
-    if (rows.length === 1) return this.#say("A table needs at least one row");
+    if (rows.length === 1) return this.#say(worded("A table needs at least one row"));
     this.#change({ ...rest, rows: without(rows, i) });
     this.#focus(i);
-    return this.announce(`Row ${i + 1} is removed.`);
+    return this.announce(worded("Row {row} is removed.", { row: i + 1 }));
   }
 
   /** @param {number} i @param {string} kind */
@@ -297,11 +306,15 @@ export class DhPlay extends HTMLElement {
       const table = { rows: text, structure: "R".repeat(MOST_JOINTS), formulas: true, convention };
       const { table: read } = await this.service.frames({ table, angle_unit: unit });
       if (read?.error || !read?.formulas?.cells.length) {
-        return this.#say(`Not read as a table: ${read?.error?.message ?? "it has no rows"}`);
+        return this.#say(
+          read?.error
+            ? worded("Not read as a table: {reason}", { reason: read.error.message })
+            : worded("Not read as a table: it has no rows"),
+        );
       }
       this.view?.forget();
       this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
-      return this.#say("The pasted table is filled in; press Ctrl+Z to undo");
+      return this.#say(worded("The pasted table is filled in; press Ctrl+Z to undo"));
     } catch (error) {
       return this.#say(error.message);
     }
@@ -327,13 +340,13 @@ export class DhPlay extends HTMLElement {
       unit,
       rows: converted.map(({ cells }, i) => ({ kind: kinds[i], cells: cells.map((cell) => cell.text) })),
     });
-    this.announce("The table is now in the other convention.");
+    this.announce(worded("The table is now in the other convention."));
   }
 
   #share() {
     return this.#copy(
       this.service.address("play") + NAME + packed(this.state),
-      "Link copied, with the table",
+      worded("Link copied, with the table"),
       true,
     );
   }
@@ -345,7 +358,7 @@ export class DhPlay extends HTMLElement {
       this.#say(told);
     } catch {
       if (isLink) history.replaceState(null, "", new URL(text).hash);
-      this.#say(isLink ? "The link is in the address bar" : "The browser did not allow copying");
+      this.#say(isLink ? worded("The link is in the address bar") : worded("The browser did not allow copying"));
     }
   }
 }

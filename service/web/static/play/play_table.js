@@ -6,13 +6,14 @@ import { target, undoKey } from "../shared/keyboard.js";
 import { blockOf, placedFrom } from "../shared/pasted_block.js";
 import { LETTERS, SPOKEN } from "../student/kinds.js";
 import { jointCount, MOST_JOINTS } from "./rows.js";
+import { worded } from "../shared/words/words.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
 /** @type {Record<string, { text: string, short: string }>} */
 const KINDS = {
-  R: { text: "R, turns", short: "R" },
-  P: { text: "P, slides", short: "P" },
-  F: { text: "fixed", short: "–" },
+  R: { text: worded("R, turns"), short: "R" },
+  P: { text: worded("P, slides"), short: "P" },
+  F: { text: worded("fixed"), short: "–" },
 };
 
 /**
@@ -33,7 +34,7 @@ export class PlayTable {
     this.rows = [];
     this.head = h("tr");
     this.body = h("tbody");
-    const caption = h("caption", { class: "aloud" }, "Denavit-Hartenberg table");
+    const caption = h("caption", { class: "aloud" }, worded("Denavit-Hartenberg table"));
     this.element = h(
       "div",
       { class: "scroll" },
@@ -55,7 +56,7 @@ export class PlayTable {
     });
     /** @type {(text: string) => HTMLElement} */
     const aloud = (text) => h("th", { scope: "col" }, h("span", { class: "aloud" }, text));
-    this.head.replaceChildren(aloud("row"), aloud("joint"), ...heads, aloud("remove"));
+    this.head.replaceChildren(aloud(worded("row")), aloud(worded("joint")), ...heads, aloud(worded("remove")));
     const joints = jointCount(rows);
     this.rows = rows.map((row, i) => this.#row(row, i, joints));
     this.body.replaceChildren(...this.rows.map((row) => row.element));
@@ -69,12 +70,17 @@ export class PlayTable {
       h("option", { value, selected: value === kind, disabled: isFull && value !== "F", title: text }, short)
     );
     const choice = h("select", {
-      "aria-label": `Joint of row ${number}: R turns, P slides, – none`,
+      "aria-label": worded("Joint of row {row}: R turns, P slides, – none", { row: number }),
       onchange: (event) => this.host.kindChanged(i, event.target.value),
     }, ...options);
     const made = COLUMNS.map((label, j) => {
       /** @type {Front.PlayPlace} */
-      const place = { id: `play-${i}-${j}`, at: [i, j], label, spoken: `${SPOKEN[label]}, row ${number}` };
+      const place = {
+        id: `play-${i}-${j}`,
+        at: [i, j],
+        label,
+        spoken: worded("{column}, row {row}", { column: SPOKEN[label], row: number }),
+      };
       const cell = new Cell(place, this);
       cell.input.value = cells[j];
       return cell;
@@ -82,8 +88,8 @@ export class PlayTable {
     const remove = h("button", {
       type: "button",
       class: "quiet-button remove",
-      "aria-label": `Remove row ${number}`,
-      title: "Remove row",
+      "aria-label": worded("Remove row {row}", { row: number }),
+      title: worded("Remove row"),
       onclick: () => this.host.removed(i),
     }, "×");
     const head = h("th", { scope: "row" }, String(number));

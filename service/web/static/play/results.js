@@ -2,6 +2,7 @@
 
 import { decimal, h, visible } from "../shared/dom.js";
 import { mathml, matrix } from "../shared/markup.js";
+import { worded, wordedFor } from "../shared/words/words.js";
 
 export class Results {
   /** @type {Api.PrintedFormula[][] | undefined} */
@@ -22,13 +23,13 @@ export class Results {
     this.rows = [];
     const pose = { class: "scroll", tabindex: 0, role: "group" };
     this.freedoms = h("p", { class: "points" });
-    this.pose = h("div", { ...pose, "aria-label": "Pose as numbers" });
-    this.formula = h("div", { ...pose, class: "scroll formula", "aria-label": "Pose as formulas" });
+    this.pose = h("div", { ...pose, "aria-label": worded("Pose as numbers") });
+    this.formula = h("div", { ...pose, class: "scroll formula", "aria-label": worded("Pose as formulas") });
     this.converted = h("div", { class: "scroll" });
     this.title = h("h2");
-    this.latex = quietButton("Copy LaTeX", () => copy(this.poseLatex));
-    this.use = quietButton("Use this table", () => use(this.rows));
-    this.poseCard = card([h("h2", {}, "Pose of the last frame"), this.latex], this.pose, this.formula);
+    this.latex = quietButton(worded("Copy LaTeX"), () => copy(this.poseLatex));
+    this.use = quietButton(worded("Use this table"), () => use(this.rows));
+    this.poseCard = card([h("h2", {}, worded("Pose of the last frame")), this.latex], this.pose, this.formula);
     this.convertedCard = card([this.title, this.use], this.converted);
   }
 
@@ -45,7 +46,7 @@ export class Results {
     if (isKept) return;
     this.freedoms.textContent = freedoms === undefined
       ? ""
-      : `${freedoms} degree${freedoms === 1 ? "" : "s"} of freedom`;
+      : wordedFor("1 degree of freedom", "{count} degrees of freedom", freedoms);
     const { pose, converted } = formulas ?? {};
     this.#formulas = pose;
     this.formula.hidden = !pose;
@@ -66,7 +67,7 @@ export class Results {
       const rows = [0, 1, 2, 3].map(() => [0, 1, 2, 3].map(() => h("span", { role: "cell" })));
       const drawn = rows.map((entries) => h("span", { role: "row", class: "row" }, ...entries));
       this.pose.replaceChildren(
-        h("div", { class: "bracketed numeric", role: "table", "aria-label": "Pose" }, ...drawn),
+        h("div", { class: "bracketed numeric", role: "table", "aria-label": worded("Pose") }, ...drawn),
       );
       this.#entries = rows.flat();
     }
@@ -105,12 +106,12 @@ function convertedTable(rows, convention) {
     const shown = cells.map((cell) => h("td", { class: "said" }, mathml(cell.mathml) ?? visible(cell.text)));
     return h("tr", {}, h("th", { scope: "row" }, label), ...shown);
   });
-  const caption = h("caption", { class: "aloud" }, "The table in the other convention");
+  const caption = h("caption", { class: "aloud" }, worded("The table in the other convention"));
   return h(
     "table",
     {},
     caption,
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "aloud" }, "row")), ...heads)),
+    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "aloud" }, worded("row"))), ...heads)),
     h("tbody", {}, ...body),
   );
 }

@@ -1,5 +1,7 @@
 // The robots to start free play with, as tables in the standard convention.
 
+import { worded } from "../shared/words/words.js";
+
 /** @type {(a: string, alpha: string, d: string, theta: string) => Front.PlayRow} */
 const R = (a, alpha, d, theta) => ({ kind: "R", cells: [a, alpha, d, theta] });
 /** @type {(a: string, alpha: string, d: string, theta: string) => Front.PlayRow} */
@@ -9,15 +11,19 @@ const robot = (...rows) => ({ convention: "standard", unit: "radians", rows });
 
 /** @type {Record<string, Front.Robot>} */
 export const ROBOTS = {
-  "Planar arm, RR": robot(R("a1", "0", "0", "theta1"), R("a2", "0", "0", "theta2")),
-  "SCARA, RRPR": robot(
+  [worded("Planar arm, RR")]: robot(R("a1", "0", "0", "theta1"), R("a2", "0", "0", "theta2")),
+  [worded("SCARA, RRPR")]: robot(
     R("a1", "0", "d1", "theta1"),
     R("a2", "pi", "0", "theta2"),
     P("0", "0", "d3", "0"),
     R("0", "0", "d4", "theta4"),
   ),
-  "Cylindrical arm, RPP": robot(R("0", "0", "d1", "theta1"), P("0", "-pi/2", "d2", "0"), P("0", "0", "d3", "0")),
-  "Stanford arm, RRPRRR": robot(
+  [worded("Cylindrical arm, RPP")]: robot(
+    R("0", "0", "d1", "theta1"),
+    P("0", "-pi/2", "d2", "0"),
+    P("0", "0", "d3", "0"),
+  ),
+  [worded("Stanford arm, RRPRRR")]: robot(
     R("0", "-pi/2", "0", "theta1"),
     R("0", "pi/2", "d2", "theta2"),
     P("0", "0", "d3", "0"),
@@ -25,7 +31,7 @@ export const ROBOTS = {
     R("0", "pi/2", "0", "theta5"),
     R("0", "0", "d6", "theta6"),
   ),
-  "Elbow arm with a wrist, 6R": robot(
+  [worded("Elbow arm with a wrist, 6R")]: robot(
     R("0", "pi/2", "d1", "theta1"),
     R("a2", "0", "0", "theta2 + pi/2"),
     R("0", "pi/2", "0", "theta3 + pi/2"),
@@ -33,7 +39,7 @@ export const ROBOTS = {
     R("0", "pi/2", "0", "theta5"),
     R("0", "0", "d6", "theta6"),
   ),
-  "Redundant arm, 7R": robot(
+  [worded("Redundant arm, 7R")]: robot(
     R("0", "-pi/2", "0.34", "theta1"),
     R("0", "pi/2", "0", "theta2"),
     R("0", "pi/2", "0.4", "theta3"),

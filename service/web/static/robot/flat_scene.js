@@ -2,6 +2,7 @@
 
 import { h } from "../shared/dom.js";
 import { isDark } from "./palette.js";
+import { worded } from "../shared/words/words.js";
 
 export class FlatScene {
   #asked = false;
@@ -19,7 +20,7 @@ export class FlatScene {
   constructor(stage, draw) {
     this.stage = stage;
     this.draw = draw;
-    this.image = h("img", { class: "drawn", alt: "Drawing of the robot at these joint values", hidden: true });
+    this.image = h("img", { class: "drawn", alt: worded("Drawing of the robot at these joint values"), hidden: true });
     stage.append(this.image);
     this.stop = new AbortController();
     const recolour = () => this.move();

@@ -9,6 +9,7 @@ import { PlacingLoader } from "./placing/placing_loader.js";
 import { RowLoader } from "./rows/row_loader.js";
 import { Stage } from "./stage.js";
 import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
+import { worded } from "../shared/words/words.js";
 
 const STYLE = new URL("./robot_view.css", import.meta.url).href;
 const AFTER_A_KEY = 250;
@@ -58,19 +59,19 @@ export class RobotView {
     this.sliders = new JointSliders(this);
     this.symbols = new SymbolFields((name, value) => this.#chosen(name, value), host.descriptions);
     this.frames = new FrameSwitches(() => this.#draw());
-    this.robot = this.#switch("Robot", true);
-    this.beside = this.#switch("Side by side", false, () => this.stage.reset());
+    this.robot = this.#switch(worded("Robot"), true);
+    this.beside = this.#switch(worded("Side by side"), false, () => this.stage.reset());
     this.home = h(
       "button",
       { type: "button", class: "quiet-button", onclick: () => this.goHome() },
-      "Home configuration",
+      worded("Home configuration"),
     );
-    this.given = this.#switch("Given frames", true);
-    this.placed = this.#switch("Your frames", true);
+    this.given = this.#switch(worded("Given frames"), true);
+    this.placed = this.#switch(worded("Your frames"), true);
     this.over = h("div", { class: "switches" }, this.robot.label, this.beside.label);
     this.element = h(
       "section",
-      { class: "robot-view", "aria-label": "3D view" },
+      { class: "robot-view", "aria-label": worded("3D view") },
       h("link", { rel: "stylesheet", href: STYLE }),
       this.stage.element,
       this.words.text,
@@ -340,7 +341,7 @@ export class RobotView {
     for (const { variable, home } of this.#answer.joints) this.#values[variable] = home;
     this.#sweep = null;
     this.#refresh();
-    this.host.announce?.("Home configuration");
+    this.host.announce?.(worded("Home configuration"));
   }
 
   #draw() {
@@ -356,17 +357,18 @@ export class RobotView {
   /** @param {Api.Frames} answer */
   #showTold({ table, placed }) {
     const [cell] = table?.unread ?? [];
-    const place = cell ? `Row ${cell.row}, ${cell.column}: ` : "";
-    const reason = table?.error?.message ?? (cell && `${place}${cell.error.message}`);
+    const unread = cell &&
+      worded("Row {row}, {column}: {reason}", { row: cell.row, column: cell.column, reason: cell.error.message });
+    const reason = table?.error?.message ?? unread;
     const lost = table?.lost_freedoms.map((each) => each.message) ?? [];
     const isKept = this.stage.element.classList.contains("stale");
     const ends = reason && isKept
-      ? " The view shows your last valid table."
+      ? worded("The view shows your last valid table.")
       : reason && table?.frames[0]?.length
-      ? " The view shows the frames before it."
+      ? worded("The view shows the frames before it.")
       : "";
     this.told.replaceChildren(
-      ...message([reason && reason + ends, leftOutText(placed), ...lost].filter(Boolean).join(" ")),
+      ...message([reason, ends, leftOutText(placed), ...lost].filter(Boolean).join(" ")),
     );
     this.told.hidden = !this.told.textContent;
   }

@@ -2,6 +2,7 @@
 // as a drawing by the service.
 
 import { h } from "../shared/dom.js";
+import { worded } from "../shared/words/words.js";
 
 const TURN = Math.PI / 12;
 const NEARER = 1.25;
@@ -53,8 +54,8 @@ export class Stage {
       this.#controls(scene);
     } catch {
       const reason = drawnBy
-        ? "The 3D view could not be loaded."
-        : "This browser has no WebGL, which the 3D view needs.";
+        ? worded("The 3D view could not be loaded. The service draws the robot instead.")
+        : worded("This browser has no WebGL, which the 3D view needs. The service draws the robot instead.");
       await this.#openFlat(reason);
     }
   }
@@ -68,7 +69,7 @@ export class Stage {
   async #openFlat(reason) {
     this.isFlat = true;
     this.room.classList.add("flat");
-    this.room.replaceChildren(h("p", { class: "no-webgl" }, `${reason} The service draws the robot instead.`));
+    this.room.replaceChildren(h("p", { class: "no-webgl" }, reason));
     const { FlatScene } = await import("./flat_scene.js");
     if (!this.#closed) this.#scene = new FlatScene(this.room, this.draw);
   }
@@ -99,7 +100,7 @@ export class Stage {
     canvas.setAttribute("role", "img");
     canvas.setAttribute(
       "aria-label",
-      "The robot in 3D. Arrow keys rotate the view, plus and minus zoom, 0 resets the view.",
+      worded("The robot in 3D. Arrow keys rotate the view, plus and minus zoom, 0 resets the view."),
     );
     canvas.setAttribute("aria-describedby", this.textId);
     canvas.addEventListener("keydown", (event) => this.#pressed(event, scene));
@@ -111,14 +112,14 @@ export class Stage {
     this.element.append(
       h(
         "div",
-        { class: "stage-buttons", role: "group", "aria-label": "View" },
-        button("←", "View from further left", turn(-1, 0)),
-        button("→", "View from further right", turn(1, 0)),
-        button("↑", "View from higher", turn(0, 1)),
-        button("↓", "View from lower", turn(0, -1)),
-        button("+", "Zoom in", () => scene.turn(0, 0, NEARER)),
-        button("−", "Zoom out", () => scene.turn(0, 0, 1 / NEARER)),
-        button("⟲", "Reset view", () => scene.reset()),
+        { class: "stage-buttons", role: "group", "aria-label": worded("View") },
+        button("←", worded("View from further left"), turn(-1, 0)),
+        button("→", worded("View from further right"), turn(1, 0)),
+        button("↑", worded("View from higher"), turn(0, 1)),
+        button("↓", worded("View from lower"), turn(0, -1)),
+        button("+", worded("Zoom in"), () => scene.turn(0, 0, NEARER)),
+        button("−", worded("Zoom out"), () => scene.turn(0, 0, 1 / NEARER)),
+        button("⟲", worded("Reset view"), () => scene.reset()),
       ),
     );
   }

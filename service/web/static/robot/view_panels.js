@@ -4,6 +4,7 @@ import { decimal, h, visible } from "../shared/dom.js";
 import { gapText, isClosed } from "./frames/gap.js";
 import { column } from "./motion.js";
 import { symbolName } from "../typeset/names.js";
+import { worded } from "../shared/words/words.js";
 
 const STEPS = 400;
 const DEGREES = 180 / Math.PI;
@@ -23,7 +24,7 @@ export class JointSliders {
     /** @type {{ field: HTMLInputElement, output: HTMLOutputElement, element: HTMLElement }[]} */
     this.fields = [];
     this.drawn = "";
-    this.element = h("div", { class: "sliders", role: "group", "aria-label": "Joint variables" });
+    this.element = h("div", { class: "sliders", role: "group", "aria-label": worded("Joint variables") });
   }
 
   /** @param {Api.MovingJoint[]} joints @param {Record<string, number>} values */
@@ -40,14 +41,15 @@ export class JointSliders {
 
   /** @param {Api.MovingJoint} joint @param {number} i */
   #slider({ joint, variable, kind, low, high }, i) {
-    const doing = kind === "P" ? "slides" : "turns";
     const prepare = () => this.host.prepare(i);
     const field = h("input", {
       type: "range",
       min: low,
       max: high,
       step: (high - low) / STEPS,
-      "aria-label": `${variable}: joint ${joint} ${doing}`,
+      "aria-label": kind === "P"
+        ? worded("{variable}: joint {joint} slides", { variable, joint })
+        : worded("{variable}: joint {joint} turns", { variable, joint }),
       oninput: (event) => this.host.dragged(i, Number(event.target.value)),
       onchange: () => this.host.released(),
       onpointerdown: prepare,
@@ -88,7 +90,7 @@ export class SymbolFields {
     this.element = h(
       "details",
       { class: "symbols-more", hidden: true },
-      h("summary", {}, "Lengths and other symbols"),
+      h("summary", {}, worded("Lengths and other symbols")),
       this.fields,
     );
   }
@@ -135,7 +137,7 @@ export class FrameSwitches {
   /** @param {() => void} changed */
   constructor(changed) {
     this.changed = changed;
-    this.element = h("div", { class: "frames", role: "group", "aria-label": "Frames shown" });
+    this.element = h("div", { class: "frames", role: "group", "aria-label": worded("Frames shown") });
   }
 
   /** @param {number} i */
@@ -156,7 +158,7 @@ export class FrameSwitches {
       const box = h("input", {
         type: "checkbox",
         checked: this.isShown(i),
-        "aria-label": `Show frame ${i}`,
+        "aria-label": worded("Show frame {frame}", { frame: i }),
         onchange: (event) => toggle(i, event.target.checked),
       });
       return h("label", {}, box, ` {${i}}`);
@@ -164,7 +166,8 @@ export class FrameSwitches {
     const legend = h(
       "span",
       { class: "legend" },
-      "Frames ",
+      worded("Frames"),
+      " ",
       ...["x", "y", "z"].map((axis) => h("i", { class: axis }, axis)),
     );
     this.element.replaceChildren(...(count ? [legend, ...boxes] : []));
@@ -182,9 +185,11 @@ export class PoseNumbers {
     /** @type {[string, number[] | string][]} */
     const lines = [];
     const last = frames && frames.length - 1;
-    if (mechanism) lines.push(["Tool of the robot", mechanism.tool]);
-    if (last && last > 0) lines.push([`Origin of your frame {${last}}`, column(frames[last], 3)]);
-    if (gap) lines.push(["Gap to the tool frame", isClosed(gap) ? "none" : gapText(gap)]);
+    if (mechanism) lines.push([worded("Tool of the robot"), mechanism.tool]);
+    if (last && last > 0) {
+      lines.push([worded("Origin of your frame {frame}", { frame: `{${last}}` }), column(frames[last], 3)]);
+    }
+    if (gap) lines.push([worded("Gap to the tool frame"), isClosed(gap) ? worded("none") : gapText(gap)]);
     if (this.element.children.length !== lines.length) {
       this.element.replaceChildren(...lines.map(() => h("p", {}, h("span"), h("code"))));
     }

@@ -2,6 +2,8 @@
 
 import { h, visible } from "./dom.js";
 import { mathml } from "./markup.js";
+import { verdictName } from "./words/phrases.js";
+import { worded } from "./words/words.js";
 
 export const SIGNS = { correct: "✓", partial: "~", incorrect: "✗", unreadable: "?", missing: "–" };
 
@@ -103,7 +105,7 @@ export class Cell {
     if (!reading) return [];
     if (!reading.error) return [mathml(reading.mathml) ?? visible(reading.text)];
     const told = h("span", { class: "aloud" }, visible(reading.error.message));
-    return [told, reading.error.suggestion ? this.repair(reading.error.suggestion) : "not read"];
+    return [told, reading.error.suggestion ? this.repair(reading.error.suggestion) : worded("not read")];
   }
 
   /**
@@ -116,7 +118,7 @@ export class Cell {
     return h(
       "button",
       { type: "button", class: "repair", onclick: () => this.owner.repaired(this, suggestion) },
-      h("span", { class: "aloud" }, "Write "),
+      h("span", { class: "aloud" }, worded("Write"), " "),
       h("span", { "aria-hidden": "true" }, "→ "),
       h("bdi", {}, visible(suggestion)),
     );
@@ -153,10 +155,10 @@ export class Cell {
     else delete this.element.dataset.verdict;
     this.sign.replaceChildren(
       ...(verdict
-        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdictName(verdict))]
         : []),
     );
-    this.input.setAttribute("aria-label", verdict ? `${spoken}: ${verdict}` : spoken);
+    this.input.setAttribute("aria-label", verdict ? `${spoken}: ${verdictName(verdict)}` : spoken);
     this.#showValidity();
     if (!verdict) this.#tie([]);
   }

@@ -1,9 +1,10 @@
-// The script of the service's own pages: the choice of light or dark.
+// The script of the service's own pages: the choice of light or dark, and that of a language.
 
 import { byId, h } from "./dom.js";
+import { worded } from "./words/words.js";
 
 const NAME = "dh-grader:theme";
-const THEMES = { auto: "System", light: "Light", dark: "Dark" };
+const THEMES = { auto: worded("System"), light: worded("Light"), dark: worded("Dark") };
 
 function kept() {
   try {
@@ -31,8 +32,19 @@ function choose(theme) {
 
 const theme = h(
   "select",
-  { "aria-label": "Colours", onchange: (event) => choose(event.target.value) },
+  { "aria-label": worded("Colours"), onchange: (event) => choose(event.target.value) },
   ...Object.entries(THEMES).map(([value, text]) => h("option", { value, selected: value === kept() }, text)),
 );
 show(kept());
 byId("theme", HTMLElement).append(theme);
+
+// Another language shows the same place of the page, with the rest of its address.
+for (const link of document.querySelectorAll(".languages a")) {
+  if (!(link instanceof HTMLAnchorElement)) continue;
+  const lang = new URL(link.href).searchParams.get("lang") ?? "";
+  link.addEventListener("click", () => {
+    const address = new URL(location.href);
+    address.searchParams.set("lang", lang);
+    link.href = address.href;
+  });
+}

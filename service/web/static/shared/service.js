@@ -1,9 +1,11 @@
 // Requests to the service. Each failure is a ServiceError with a message for the student.
 
+import { language, worded } from "./words/words.js";
+
 // Milliseconds until a request fails; longer than any grading.
 const PATIENCE = 20_000;
 // Students have no key; the course's site has it.
-const KEY_NEEDED = "Please open this exercise from your course page.";
+const KEY_NEEDED = worded("Please open this exercise from your course page.");
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
 export class ServiceError extends Error {
@@ -92,7 +94,7 @@ export class Service {
 
   /** The drawing at an address of this service, as an address that needs no token. Revoke it after use. @param {string} address */
   async picture(address) {
-    const headers = { Authorization: `Bearer ${this.token()}` };
+    const headers = { Authorization: `Bearer ${this.token()}`, "Accept-Language": language };
     /** @type {RequestInit} */
     const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
     const answer = await fetch(this.#own(address), options);
@@ -152,7 +154,8 @@ export class Service {
    * @param {{ own?: boolean, key?: string }} [options]
    */
   async #ask(path, body, { own = false, key } = {}) {
-    const headers = new Headers();
+    // The answers are in the language of the page. This header needs no preflight.
+    const headers = new Headers({ "Accept-Language": language });
     /** @type {RequestInit} */
     const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
     if (body !== undefined) {
@@ -170,7 +173,7 @@ export class Service {
       content = await answer.json();
     } catch {
       throw answer === undefined || answer.ok
-        ? new ServiceError("offline", "The service cannot be reached. Your answers are saved in this browser.")
+        ? new ServiceError("offline", worded("The service cannot be reached. Your answers are saved in this browser."))
         : failure(answer.status, {});
     }
     if (!answer.ok) throw failure(answer.status, content ?? {});
@@ -187,9 +190,13 @@ function assigned(path) {
 /** @param {number} status @param {Partial<Api.Problem>} problem */
 function failure(status, problem) {
   if (status === 429 || status === 503) {
-    return new ServiceError("busy", "The service is busy. Try again in a few seconds.", status);
+    return new ServiceError("busy", worded("The service is busy. Try again in a few seconds."), status);
   }
   const kind = status >= 500 ? "failed" : "refused";
   if (problem.type?.endsWith("key-needed")) return new ServiceError(kind, KEY_NEEDED, status);
-  return new ServiceError(kind, problem.detail ?? `The service answered with the status ${status}.`, status);
+  return new ServiceError(
+    kind,
+    problem.detail ?? worded("The service answered with the status {status}.", { status }),
+    status,
+  );
 }

@@ -1,5 +1,7 @@
 // Saves answers in the browser, and packs them into links. A browser without storage is no error.
 
+import { worded } from "./words/words.js";
+
 const PREFIX = "dh-grader";
 // The fragment of an address is never sent to a server.
 const NAME = "#answers=";
@@ -8,7 +10,7 @@ const LONGEST = 60_000;
 /** The saved answers to one exercise of one service. */
 export class Store {
   // What the student reads if the answers are not saved.
-  unsaved = "This browser cannot save your answers: a reload loses them";
+  unsaved = worded("This browser cannot save your answers: a reload loses them");
 
   /** @param {string} base @param {string} exercise */
   constructor(base, exercise) {

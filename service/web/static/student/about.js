@@ -1,8 +1,10 @@
 // The task of an exercise: title, statement with the robot, and symbols.
 
-import { h, number, visible } from "../shared/dom.js";
+import { h, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
 import { symbolName, typeset } from "../typeset/names.js";
+import { conventionName, mostInWords } from "../shared/words/phrases.js";
+import { placed, worded } from "../shared/words/words.js";
 
 /**
  * Return the badges below the title: the convention, and for the shown parts the points; minutes are of all parts.
@@ -12,8 +14,11 @@ import { symbolName, typeset } from "../typeset/names.js";
  */
 function badges({ conventions, minutes, parts }, shown) {
   const worth = shown.reduce((sum, part) => sum + part.points, 0);
-  const texts = [...(conventions ?? []), `${number(worth)} points`];
-  if (minutes && shown.length === parts.length) texts.push(`${minutes} min`);
+  const texts = [
+    ...(conventions ?? []).map(conventionName),
+    mostInWords(worth),
+  ];
+  if (minutes && shown.length === parts.length) texts.push(worded("{minutes} min", { minutes }));
   return h("p", { class: "tags" }, ...texts.map((text) => h("span", { class: "badge" }, text)));
 }
 
@@ -41,7 +46,7 @@ export function about(exercise, shown, level, robot) {
     h("dt", {}, symbolName(name), " ", h("code", {}, visible(name))),
     h("dd", {}, ...maths(unit ? `${description} (${unit})` : description)),
   ]);
-  const head = h(level === "h1" ? "h2" : "h3", {}, "Symbols");
+  const head = h(level === "h1" ? "h2" : "h3", {}, worded("Symbols"));
   return h(
     "section",
     { class: "about", part: "about", tabindex: 0, "aria-labelledby": "title" },
@@ -50,4 +55,10 @@ export function about(exercise, shown, level, robot) {
     h("div", { class: "statement", part: "statement" }, robot?.button, robot?.figure, ...text),
     terms.length ? h("section", { class: "symbols", part: "symbols" }, head, h("dl", {}, ...terms)) : null,
   );
+}
+
+/** Return the line with the source of an exercise. @param {Api.Exercise} exercise */
+export function source(exercise) {
+  const told = placed(worded("Source: {source}"), { source: typeset(visible(exercise.source)) });
+  return h("p", { class: "quiet source", part: "source" }, ...told);
 }

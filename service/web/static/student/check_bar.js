@@ -1,11 +1,12 @@
 // The bar below an exercise: the Check button, the points, and errors of the connection.
 
 import { h, points, visible } from "../shared/dom.js";
+import { placed, worded } from "../shared/words/words.js";
 
 export class CheckBar {
   /** @param {() => void} check */
   constructor(check) {
-    this.button = h("button", { type: "button", class: "check", part: "check", onclick: check }, "Check");
+    this.button = h("button", { type: "button", class: "check", part: "check", onclick: check }, worded("Check"));
     this.total = h("p", { class: "total" });
     this.trouble = h("p", { class: "trouble-line", hidden: true });
     this.hinted = h("p", { class: "hint", hidden: true });
@@ -49,8 +50,16 @@ export class CheckBar {
   show(parts) {
     const earned = parts.reduce((sum, part) => sum + part.points, 0);
     const most = parts.reduce((sum, part) => sum + part.max_points, 0);
-    const meter = h("meter", { min: 0, max: 1, value: most ? earned / most : 0, "aria-label": "Share of the points" });
-    this.total.replaceChildren(meter, h("strong", {}, points(earned, most)), " points");
+    const meter = h("meter", {
+      min: 0,
+      max: 1,
+      value: most ? earned / most : 0,
+      "aria-label": worded("Share of the points"),
+    });
+    this.total.replaceChildren(
+      meter,
+      ...placed(worded("{points} points"), { points: h("strong", {}, points(earned, most)) }),
+    );
     this.total.classList.remove("outdated");
   }
 

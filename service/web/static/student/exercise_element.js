@@ -3,10 +3,10 @@
 // docs/embedding.md describes its attributes, properties, methods and events. `linked` is for the service's own
 // pages: the element reads answers from the address, and its title is that of the page.
 
-import { h, points, visible } from "../shared/dom.js";
+import { h, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
 import { keepProgress } from "../catalogue/progress.js";
-import { about } from "./about.js";
+import { about, source } from "./about.js";
 import { CheckBar } from "./check_bar.js";
 import { PageColours } from "./embedding/page_colours.js";
 import { Form } from "./form/form.js";
@@ -18,10 +18,11 @@ import { PracticeBar } from "./practice/practice_bar.js";
 import { Previewer } from "./previewer.js";
 import { ATTRIBUTES } from "./embedding/attributes.js";
 import { lock } from "./embedding/readonly.js";
-import { typeset } from "../typeset/names.js";
 import { answersToDraw, RobotFigure, tableWords } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
 import { answersIn, Store } from "../shared/storage.js";
+import { resultInWords } from "../shared/words/phrases.js";
+import { worded } from "../shared/words/words.js";
 
 const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("./element.css", import.meta.url).href;
@@ -116,13 +117,16 @@ export class DhExercise extends HTMLElement {
   async #load(turn) {
     const id = this.getAttribute("exercise");
     if (!id && !this.hasAttribute("practice")) {
-      return this.#tell("No exercise is chosen", "Set the attribute “exercise” to the id of an exercise.");
+      return this.#tell(
+        worded("No exercise is chosen"),
+        worded("Set the attribute “exercise” to the id of an exercise."),
+      );
     }
     const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
     this.service = new Service(base, () => this.getAttribute("token"), () => this.getAttribute("assignment"));
     this.main.setAttribute("aria-busy", "true");
     this.state.replaceChildren(
-      h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }),
+      h("div", { class: "progress", role: "progressbar", "aria-label": worded("Loading the exercise") }),
     );
     try {
       if (!id) return await this.practice.deal();
@@ -132,7 +136,7 @@ export class DhExercise extends HTMLElement {
     } catch (error) {
       if (turn !== this.#loading) return undefined;
       if (error.status === 404) this.#tell(error.message);
-      else this.#tell("The exercise could not be loaded", error.message, true);
+      else this.#tell(worded("The exercise could not be loaded"), error.message, true);
     }
     return this.main.removeAttribute("aria-busy");
   }
@@ -198,7 +202,7 @@ export class DhExercise extends HTMLElement {
     clearTimeout(this.#saving);
     const empty = this.#parts.every((part) => part.isEmpty);
     const kept = this.store.save(empty ? null : this.texts);
-    this.saved.textContent = !kept ? this.store.unsaved : empty ? "" : "Saved in this browser";
+    this.saved.textContent = !kept ? this.store.unsaved : empty ? "" : worded("Saved in this browser");
     this.dispatchEvent(new CustomEvent("changed", { bubbles: true, composed: true }));
   }
 
@@ -289,7 +293,7 @@ export class DhExercise extends HTMLElement {
         ...elements,
         this.bar.element,
       ),
-      h("p", { class: "quiet source", part: "source" }, "Source: ", ...typeset(visible(exercise.source))),
+      source(exercise),
     );
     this.main.hidden = false;
     lock(this.main, this.#parts, this.hasAttribute("readonly"));
@@ -319,7 +323,7 @@ export class DhExercise extends HTMLElement {
       ...tableWords(symbols, () => this.#parts),
       announce: (/** @type {string} */ text) => this.announce(text),
     };
-    const failed = () => this.announce(this.saved.textContent = "The 3D view could not be loaded");
+    const failed = () => this.announce(this.saved.textContent = worded("The 3D view could not be loaded"));
     return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen), failed);
   }
 
@@ -336,15 +340,16 @@ export class DhExercise extends HTMLElement {
       this.history.note(this.#restore(had));
       this.edited();
     };
-    offer(this.received, "These answers came with the link.", own ? { "Restore my own answers": back } : {});
+    const choices = own ? { [worded("Restore my own answers")]: back } : {};
+    offer(this.received, worded("These answers came with the link."), choices);
     history.replaceState(null, "", location.pathname + location.search);
   }
 
   #clear() {
     this.reset();
     this.save();
-    this.announce("All cells are empty. Press Ctrl+Z in a cell to undo.");
-    this.saved.textContent = "Cleared; press Ctrl+Z to undo";
+    this.announce(worded("All cells are empty. Press Ctrl+Z in a cell to undo."));
+    this.saved.textContent = worded("Cleared; press Ctrl+Z to undo");
     this.#parts[0]?.focus(this.#parts[0].cells[0]);
   }
 
@@ -352,10 +357,10 @@ export class DhExercise extends HTMLElement {
   async check() {
     const { answers } = this;
     const hint = this.handIn && !this.handIn.mayPractise
-      ? "This assignment has no check: hand the exercise in."
+      ? worded("This assignment has no check: hand the exercise in.")
       : Object.keys(answers).length
       ? ""
-      : "Nothing is filled in yet.";
+      : worded("Nothing is filled in yet.");
     this.bar.hint(hint);
     if (hint) return this.announce(hint);
     if (this.bar.isBusy || this.hasAttribute("readonly")) return;
@@ -386,12 +391,10 @@ export class DhExercise extends HTMLElement {
     this.bar.show(report.parts.filter(({ part }) => ids.has(part)));
     keepProgress(this.service.base, this.exercise, report.parts);
     const titles = new Map(filled.map(({ part: { id, title } }) => [id, title]));
-    const told = report.parts.filter(({ part }) => titles.has(part)).map(
-      ({ part, verdict, points: earned, max_points: most }) =>
-        `${titles.get(part)}: ${verdict}, ${points(earned, most)} points.`,
-    );
+    const told = report.parts.filter(({ part }) => titles.has(part));
     this.form.rail.update();
     import("./hints/hints.js").then(({ offerHints }) => offerHints(this, filled, report, attempt)).catch(() => {});
-    this.announce([...told, this.form.leadToSlip(filled)].join(" "));
+    const results = told.map((each) => resultInWords(titles.get(each.part) ?? "", each));
+    this.announce([...results, this.form.leadToSlip(filled)].join(" "));
   }
 }

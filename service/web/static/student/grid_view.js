@@ -3,6 +3,8 @@
 import { h, points } from "../shared/dom.js";
 import { Cell, SIGNS } from "../shared/cell.js";
 import { typeset } from "../typeset/names.js";
+import { verdictName } from "../shared/words/phrases.js";
+import { worded } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url).href;
 
@@ -34,9 +36,9 @@ function gridElement(grid, part, owner, id, rows) {
   const head = h(
     "tr",
     {},
-    h("th", { scope: "col", class: "corner" }, h("span", { class: "aloud" }, "row")),
+    h("th", { scope: "col", class: "corner" }, h("span", { class: "aloud" }, worded("row"))),
     ...heads,
-    h("th", { scope: "col", class: "worth" }, h("span", { class: "aloud" }, "points")),
+    h("th", { scope: "col", class: "worth" }, h("span", { class: "aloud" }, worded("points"))),
   );
   const body = h("tbody");
   grid.rows.forEach((row, i) => {
@@ -67,7 +69,7 @@ function headOf(column) {
 /** Return the link that explains a column; it opens beside the exercise. @param {Front.Column} column */
 function helpOf({ head, help }) {
   if (!help) return null;
-  const name = `What is ${head}?`;
+  const name = worded("What is {column}?", { column: head });
   const href = new URL(help, HOME).href;
   return h("a", { class: "what", href, target: "_blank", rel: "noopener", title: name, "aria-label": name }, "?");
 }
@@ -87,10 +89,10 @@ export class RowView {
     this.name = row.spoken || part.title;
     this.sign = h("span", { class: "sign" });
     this.isGiven = Boolean(row.isGiven);
-    this.worth = h("td", { class: "worth" }, this.isGiven && "given");
+    this.worth = h("td", { class: "worth" }, this.isGiven && worded("given"));
     this.cells = grid.columns.map((column, j) => {
-      const name = row.spoken && grid.look === "table" ? `row ${row.spoken}` : row.spoken;
-      const where = [column.spoken, name, row.isGiven && "given"];
+      const name = row.spoken && grid.look === "table" ? worded("row {row}", { row: row.spoken }) : row.spoken;
+      const where = [column.spoken, name, row.isGiven && worded("given")];
       return new Cell(
         {
           id: `${id}-${j}`,
@@ -155,7 +157,7 @@ export class RowView {
 
   /** @param {string} text */
   #showWorth(text) {
-    this.worth.textContent = this.isGiven ? "given" : text;
+    this.worth.textContent = this.isGiven ? worded("given") : text;
   }
 
   /** @param {Api.Verdict | null} verdict */
@@ -164,7 +166,7 @@ export class RowView {
     else delete this.element.dataset.verdict;
     this.sign.replaceChildren(
       ...(verdict
-        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdictName(verdict))]
         : []),
     );
   }

@@ -2,26 +2,28 @@
 // of a part (GET /v1/exercises/{id}) describes it. The rows of all its grids form one list, with the labels
 // that they have in reports.
 
+import { worded } from "../shared/words/words.js";
+
 /** @type {Record<string, Api.Quantity>} */
 const QUANTITIES = { a: "length", alpha: "angle", d: "length", theta: "angle" };
 /** @type {Record<string, string>} */
 export const SPOKEN = {
-  a: "a, link length",
-  alpha: "alpha, link twist",
-  d: "d, link offset",
-  theta: "theta, joint angle",
+  a: worded("a, link length"),
+  alpha: worded("alpha, link twist"),
+  d: worded("d, link offset"),
+  theta: worded("theta, joint angle"),
 };
 /** @type {Record<string, string>} */
 export const LETTERS = { a: "a", alpha: "α", d: "d", theta: "θ" };
 
 /** @type {Record<string, Omit<Front.Column, "label">>} */
 const FRAME_COLUMNS = {
-  axis: { head: "axis", spoken: "joint axis along which z lies", quantity: "number" },
-  z: { head: "z", spoken: "direction of z", quantity: "number" },
-  origin_x: { head: "o", index: "x", spoken: "x of the origin", quantity: "length" },
-  origin_y: { head: "o", index: "y", spoken: "y of the origin", quantity: "length" },
-  origin_z: { head: "o", index: "z", spoken: "z of the origin", quantity: "length" },
-  x: { head: "x", spoken: "direction of x", quantity: "number" },
+  axis: { head: worded("axis"), spoken: worded("joint axis along which z lies"), quantity: "number" },
+  z: { head: "z", spoken: worded("direction of z"), quantity: "number" },
+  origin_x: { head: "o", index: "x", spoken: worded("x of the origin"), quantity: "length" },
+  origin_y: { head: "o", index: "y", spoken: worded("y of the origin"), quantity: "length" },
+  origin_z: { head: "o", index: "z", spoken: worded("z of the origin"), quantity: "length" },
+  x: { head: "x", spoken: worded("direction of x"), quantity: "number" },
 };
 const DIRECTIONS = ["+x", "-x", "+y", "-y", "+z", "-z"];
 
@@ -52,16 +54,16 @@ const FORMS = {
         look: "table",
         columns: parameters(shape),
         rows: shape.rows.map((label) => ({
-          ...row(label, label === "e" ? "e, end effector" : label),
+          ...row(label, label === "e" ? worded("e, end effector") : label),
           prefill: shape.given?.[label],
           isGiven: Boolean(shape.given?.[label]),
         })),
       }],
       choices: either
         ? {
-          "": "Convention: not specified",
-          standard: "Convention: standard (distal)",
-          modified: "Convention: modified (proximal)",
+          "": worded("Convention: not specified"),
+          standard: worded("Convention: standard (distal)"),
+          modified: worded("Convention: modified (proximal)"),
         }
         : null,
       answer: (texts, choice) => ({
@@ -82,7 +84,7 @@ const FORMS = {
           ...FRAME_COLUMNS[label],
           offers: label === "axis" ? shape.joints : label === "z" || label === "x" ? DIRECTIONS : undefined,
         })),
-        rows: shape.rows.map((label) => row(label, `frame ${label}`, `{${label}}`)),
+        rows: shape.rows.map((label) => row(label, worded("frame {frame}", { frame: label }), `{${label}}`)),
       }],
       choices: null,
       answer: (texts) =>
@@ -96,11 +98,11 @@ const FORMS = {
   find_slip(shape) {
     const given = shape.given ?? [];
     const rows = shape.rows.map((label, i) => ({
-      ...row(label, label === "e" ? "e, end effector" : label),
+      ...row(label, label === "e" ? worded("e, end effector") : label),
       prefill: given[i],
     }));
     return {
-      grids: [{ title: "The mended table", look: "table", columns: parameters(shape), rows }],
+      grids: [{ title: worded("The mended table"), look: "table", columns: parameters(shape), rows }],
       choices: null,
       marks: given,
       answer: (texts, marked) => ({
@@ -116,7 +118,7 @@ const FORMS = {
   dh_row(shape) {
     return {
       grids: [{ title: "", look: "table", columns: parameters(shape), rows: [row("1", "")] }],
-      choices: { "": "It has this row:", none: "It has no DH row" },
+      choices: { "": worded("It has this row:"), none: worded("It has no DH row") },
       answer: (texts, choice) => (choice === "none" ? { none: true } : named(shape.columns, texts)),
     };
   },
@@ -129,7 +131,7 @@ const FORMS = {
       look: "matrix",
       columns: numbered(shape.columns),
       rows: shape.rows.map((label, i) => ({
-        ...row(`${name}.${label}`, `${name} row ${label}`, label),
+        ...row(`${name}.${label}`, worded("{matrix} row {row}", { matrix: name, row: label }), label),
         prefill: prefilled(shape, i),
       })),
     }));
@@ -139,7 +141,10 @@ const FORMS = {
 
   /** @param {Api.MatrixShape} shape @returns {Front.Layout} */
   matrix(shape) {
-    const rows = shape.rows.map((label, i) => ({ ...row(label, `row ${label}`), prefill: prefilled(shape, i) }));
+    const rows = shape.rows.map((label, i) => ({
+      ...row(label, worded("row {row}", { row: label })),
+      prefill: prefilled(shape, i),
+    }));
     return {
       grids: [{ title: "", look: "matrix", columns: numbered(shape.columns), rows }],
       choices: null,
@@ -153,7 +158,7 @@ const FORMS = {
       ...row(shape.rows[i], name, name),
       quantity,
     }));
-    const letter = kind === "euler_angles" ? "angle" : "value";
+    const letter = kind === "euler_angles" ? worded("angle") : worded("value");
     return {
       grids: [{
         title: "",
@@ -217,7 +222,12 @@ const row = (label, spoken, head = label) => ({ label, spoken, head });
 
 /** @param {string[]} labels @returns {Front.Column[]} */
 const numbered = (labels) =>
-  labels.map((label) => ({ label, head: label, spoken: `column ${label}`, quantity: "number" }));
+  labels.map((label) => ({
+    label,
+    head: label,
+    spoken: worded("column {column}", { column: label }),
+    quantity: "number",
+  }));
 
 /** @param {string[]} columns @param {string[]} values */
 const named = (columns, values) => Object.fromEntries(columns.map((column, i) => [column, values[i]]));

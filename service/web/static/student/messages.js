@@ -4,6 +4,8 @@ import { h, visible } from "../shared/dom.js";
 import { SIGNS } from "../shared/cell.js";
 import { typesetMessage } from "../typeset/names.js";
 import { placesInWords } from "./report/places.js";
+import { severityName, verdictName } from "../shared/words/phrases.js";
+import { placed, worded } from "../shared/words/words.js";
 
 const YOURS = "yours";
 const EXPECTED = "expected";
@@ -29,8 +31,8 @@ export function item(feedback, options = {}) {
   const badge = h(
     "span",
     { class: "badge", "data-verdict": kind },
-    isError ? h("span", { "aria-hidden": "true" }, SIGNS[verdict]) : feedback.severity,
-    isError ? h("span", { class: "aloud" }, verdict) : null,
+    isError ? h("span", { "aria-hidden": "true" }, SIGNS[verdict]) : severityName(feedback.severity),
+    isError ? h("span", { class: "aloud" }, verdictName(verdict)) : null,
   );
   const where = [place, feedback.places ? placesInWords(feedback.places, rows) : ""].filter(Boolean).join(": ");
   const text = h("p", {}, where ? h("strong", {}, ...maths(where), ": ") : null, ...maths(feedback.message));
@@ -40,7 +42,7 @@ export function item(feedback, options = {}) {
       " ",
       ...(correction.latex === undefined
         ? maths(correction.text)
-        : ["It should be ", h("code", {}, visible(correction.text)), "."]),
+        : placed(worded("It should be {formula}."), { formula: h("code", {}, visible(correction.text)) })),
     );
   }
   const example = feedback.values ? counterexample(feedback.values) : "";
@@ -55,9 +57,28 @@ function counterexample(values) {
   const given = Object.entries(values).filter(([name]) => name !== YOURS && name !== EXPECTED);
   // "with l2 = 0.4, yours gives 0.4" tells nothing.
   if (!(EXPECTED in values) && given.length === 1 && given[0][1] === values[YOURS]) return "";
-  const told = [];
-  if (given.length) told.push(`with ${given.map(([name, value]) => `${name} = ${value}`).join(", ")}`);
-  if (YOURS in values) told.push(`yours gives ${values[YOURS]}`);
-  if (EXPECTED in values) told.push(`not ${values[EXPECTED]}`);
-  return `(${told.join(", ")})`;
+  const { [YOURS]: yours, [EXPECTED]: expected } = values;
+  return exampleInWords(given.map(([name, value]) => `${name} = ${value}`).join(", "), yours, expected);
 }
+
+/** @param {string} given @param {string | number | undefined} yours @param {string | number | undefined} expected */
+function exampleInWords(given, yours, expected) {
+  if (yours === undefined) {
+    if (expected === undefined) return worded("(with {given})", { given });
+    return given
+      ? worded("(with {given}, not {expected})", { given, expected })
+      : worded("(not {expected})", { expected });
+  }
+  if (expected === undefined) {
+    return given
+      ? worded("(with {given}, yours gives {yours})", { given, yours })
+      : worded("(yours gives {yours})", { yours });
+  }
+  return given
+    ? worded("(with {given}, yours gives {yours}, not {expected})", { given, yours, expected })
+    : worded("(yours gives {yours}, not {expected})", { yours, expected });
+}
+
+/** Return an item if a part was judged with an earlier answer of the student. @param {Api.PartReport} report */
+export const followedItems = ({ follow_through: isFollowed }) =>
+  isFollowed ? [item({ severity: "note", message: worded("Counted with your own earlier answer.") })] : [];

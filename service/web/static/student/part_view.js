@@ -1,10 +1,10 @@
 // A part of an exercise: its prompt, cells and report, and the line that shows how the current cell is read.
 
-import { h, points, visible } from "../shared/dom.js";
+import { h, visible } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
 import { html } from "../shared/markup.js";
 import { lostItems } from "./report/lost_points.js";
-import { item } from "./messages.js";
+import { followedItems, item } from "./messages.js";
 import { cellsInWords } from "./report/places.js";
 import { PartGrids } from "./form/part_grids.js";
 import { pasteBox } from "./form/paste_box.js";
@@ -14,6 +14,7 @@ import { ReadingLine } from "./form/reading_line.js";
 import { SlipMarks } from "./slip/slip_marks.js";
 import { target, undoKey } from "../shared/keyboard.js";
 import { typeset } from "../typeset/names.js";
+import { earnedInWords, mostInWords, nothingTo, optionName, verdictName } from "../shared/words/phrases.js";
 
 export class PartView {
   changedAt = 0;
@@ -42,7 +43,7 @@ export class PartView {
     this.marks = marks ? new SlipMarks(this.layout.grids[0], marks, this.symbols, () => this.#chosen()) : null;
     this.mended = h("div", { class: "grids", hidden: Boolean(marks) }, ...this.grids.elements);
     this.badge = h("span", { class: "badge", hidden: true });
-    this.worth = h("span", { class: "points" }, `${points(0, part.points).split(" / ")[1]} points`);
+    this.worth = h("span", { class: "points" }, mostInWords(part.points));
     this.list = h("ul", { class: "messages", hidden: true });
     this.line = new ReadingLine(part.title, this.symbols, (text, pause) => host.announce(text, pause));
     this.reading = this.line.element;
@@ -128,7 +129,7 @@ export class PartView {
     const options = Object.entries(choices).map(([value, text]) => h("option", { value }, text));
     return h(
       "select",
-      { class: "choice", "aria-label": `${this.part.title}: option`, onchange: () => this.#chosen() },
+      { class: "choice", "aria-label": optionName(this.part.title), onchange: () => this.#chosen() },
       ...options,
     );
   }
@@ -282,7 +283,7 @@ export class PartView {
   undo(direction) {
     const cell = this.host.history[direction]();
     if (cell) this.host.form?.showCell(cell);
-    else this.host.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
+    else this.host.announce(nothingTo(direction));
   }
 
   /** @param {ClipboardEvent} event @param {Front.PartCell} cell */
@@ -311,14 +312,11 @@ export class PartView {
     const items = [...report.feedback, ...more].map((each) =>
       this.#item(each, this.#at(each), { verdict: report.verdict, rows: report.rows }, each.places?.[0])
     );
-    if (report.follow_through) {
-      items.unshift(item({ severity: "note", message: "Counted with your own earlier answer." }));
-    }
     items.push(...lostItems(report, this.symbols));
-    this.list.replaceChildren(...items);
+    this.list.replaceChildren(...followedItems(report), ...items);
     this.list.hidden = items.length === 0;
     this.setVerdict(report.verdict);
-    this.worth.textContent = `${points(report.points, report.max_points)} points`;
+    this.worth.textContent = earnedInWords(report.points, report.max_points);
     this.grids.markTabs();
   }
 
@@ -379,7 +377,7 @@ export class PartView {
   /** @param {Api.Verdict | null} verdict */
   setVerdict(verdict) {
     this.badge.hidden = !verdict;
-    this.badge.textContent = verdict ?? "";
+    this.badge.textContent = verdict ? verdictName(verdict) : "";
     if (verdict) this.badge.dataset.verdict = verdict;
     this.element.classList.remove("outdated");
   }
@@ -395,6 +393,6 @@ export class PartView {
     for (const row of this.rows) row.mark(null);
     this.marks?.show(null);
     this.grids.markTabs();
-    this.worth.textContent = `${points(0, this.part.points).split(" / ")[1]} points`;
+    this.worth.textContent = mostInWords(this.part.points);
   }
 }

@@ -1,9 +1,10 @@
 // The drawing of an exercise's robot, and the button that replaces it by the 3D view.
 
 import { h, visible } from "../shared/dom.js";
+import { worded } from "../shared/words/words.js";
 
-const CLOSED = "Move it in 3D";
-const OPEN = "Back to the drawing";
+const CLOSED = worded("Move it in 3D");
+const OPEN = worded("Back to the drawing");
 
 export class RobotFigure {
   /** @type {Front.RobotView | null} */
@@ -32,7 +33,7 @@ export class RobotFigure {
       CLOSED,
     );
     const drawing = this.drawing = h("img", {
-      alt: `Drawing of the robot: ${visible(title)}`,
+      alt: worded("Drawing of the robot: {title}", { title: visible(title) }),
       class: "loading",
     });
     this.recolour();

@@ -3,8 +3,9 @@
 import { h } from "../shared/dom.js";
 import { Playback } from "../robot/rows/playback.js";
 import { frameAt } from "../robot/rows/row_moves.js";
-import { captionText, lowered } from "../robot/rows/row_words.js";
+import { captionText, captionWithoutAmount, lowered } from "../robot/rows/row_words.js";
 import { axes, corners, frames, moves, ROWS } from "./tour_robot.js";
+import { worded } from "../shared/words/words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const SCALE = 350;
@@ -90,8 +91,8 @@ export class ArmPicture {
     this.drawing = s("svg", { viewBox: "0 0 440 370", role: "img" });
     /** @type {(text: string, act: () => void) => HTMLButtonElement} */
     const button = (text, act) => h("button", { type: "button", class: "quiet-button", onclick: act }, text);
-    this.run = button("Play", () => this.#run());
-    this.back = button("Back to the start", () => this.#start());
+    this.run = button(worded("Play"), () => this.#run());
+    this.back = button(worded("Back to the start"), () => this.#start());
     this.playback = new Playback(() => this.#draw(), () => this.#stopped());
     const buttons = ROWS[id] ? [this.run, this.back] : [];
     element.replaceChildren(this.drawing, this.caption, h("div", { class: "buttons" }, ...buttons));
@@ -131,7 +132,7 @@ export class ArmPicture {
     if (this.playback.at >= to) this.playback.at = from;
     const still = moves(this.#convention, this.#row).map(({ amount }) => Math.abs(amount) < SMALL);
     this.playback.play(to, (i) => still[i]);
-    if (this.playback.isRunning) this.run.textContent = "Pause";
+    if (this.playback.isRunning) this.run.textContent = worded("Pause");
     return undefined;
   }
 
@@ -143,20 +144,20 @@ export class ArmPicture {
   /** Say what the picture shows. */
   #tell() {
     const [row, at] = [this.#row, this.playback.at];
-    this.run.textContent = this.playback.isRunning ? "Pause" : "Play";
+    this.run.textContent = this.playback.isRunning ? worded("Pause") : worded("Play");
     if (row === undefined) {
-      this.caption.textContent = "The blue z of a joint lies along the line about which it turns.";
+      this.caption.textContent = worded("The blue z of a joint lies along the line about which it turns.");
     } else if (at <= this.#range[0]) {
       this.caption.textContent = at === 0
-        ? `The moving frame (thick) starts on frame {${row}}.`
-        : "The moving frame (thick) is where the moves before have taken it.";
+        ? worded("The moving frame (thick) starts on frame {frame}.", { frame: `{${row}}` })
+        : worded("The moving frame (thick) is where the moves before have taken it.");
     } else {
       const [convention, all] = [this.#convention, moves(this.#convention, row)];
-      const text = captionText({ row: row + 1, at, moves: all, convention, unit: "m" });
+      const caption = this.id === "table" ? captionText : captionWithoutAmount;
       // The amount is what the screen asks for.
-      this.caption.textContent = this.id === "table" ? text : text.replace(/ by .*$/, ".");
+      this.caption.textContent = caption({ row: row + 1, at, moves: all, convention, unit: "m" });
     }
-    const arm = "An arm: a column with joint 1, link 1 to the side, joint 2, and link 2 up to the tip.";
+    const arm = worded("An arm: a column with joint 1, link 1 to the side, joint 2, and link 2 up to the tip.");
     this.drawing.setAttribute("aria-label", `${arm} ${this.caption.textContent}`);
   }
 
@@ -166,7 +167,12 @@ export class ArmPicture {
     const all = frames(convention);
     const parts = axes().flatMap(([point, along], i) => [
       line([gone(point, along, i ? -0.2 : -0.62), gone(point, along, i ? 0.3 : 0.36)], "axis"),
-      label(gone(point, along, i ? 0.33 : 0.4), `axis of joint ${i + 1}`, "quiet-name", i ? [0, 12] : [0, 0]),
+      label(
+        gone(point, along, i ? 0.33 : 0.4),
+        worded("axis of joint {joint}", { joint: i + 1 }),
+        "quiet-name",
+        i ? [0, 12] : [0, 0],
+      ),
     ]);
     parts.push(line([foot, top, joint, tip], "arm"), ...[foot, top, joint, tip].map((each) => this.#dot(each)));
     const lengths = /** @type {[string, number[], number[], [number, number]][]} */ ([

@@ -3,6 +3,7 @@
 import { h } from "../shared/dom.js";
 import { ARM, ROWS } from "./tour_robot.js";
 import { typesetMessage } from "../typeset/names.js";
+import { worded } from "../shared/words/words.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
 
@@ -26,9 +27,9 @@ export class Question {
     this.show = h(
       "button",
       { type: "button", class: "quiet-button", hidden: true, onclick: () => this.#explain() },
-      "Show me",
+      worded("Show me"),
     );
-    this.check = h("button", { type: "submit", class: "check" }, "Check");
+    this.check = h("button", { type: "submit", class: "check" }, worded("Check"));
     form.append(h("div", { class: "buttons" }, this.check, this.show), this.told);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -51,7 +52,7 @@ export class Question {
     this.#turn += 1;
     this.show.hidden = true;
     this.form.reset();
-    this.#tell("", isSolved ? "You have solved this." : "");
+    this.#tell("", isSolved ? worded("You have solved this.") : "");
   }
 
   /** @returns {{ part: string, answer: unknown, row: string, cells: string[] } | null} */
@@ -73,7 +74,7 @@ export class Question {
 
   async #check() {
     const asked = this.#answer;
-    if (!asked) return this.#tell("incorrect", "Give an answer first.");
+    if (!asked) return this.#tell("incorrect", worded("Give an answer first."));
     const turn = ++this.#turn;
     this.check.setAttribute("aria-busy", "true");
     try {
@@ -90,7 +91,7 @@ export class Question {
   #judge(report, { row, cells }) {
     if (report?.verdict === "correct") {
       this.show.hidden = true;
-      this.#tell("correct", `Right. ${this.#why}`);
+      this.#tell("correct", worded("Right. {why}", { why: this.#why }));
       return this.solved();
     }
     const found = report?.rows.find(({ label }) => label === row)?.cells.filter(({ label }) => cells.includes(label)) ??
@@ -101,7 +102,9 @@ export class Question {
     this.show.hidden = false;
     return this.#tell(
       "incorrect",
-      `Not yet. ${texts.join(" ") || "Look at the picture again, and read the rule above."}`,
+      texts.length
+        ? worded("Not yet. {why}", { why: texts.join(" ") })
+        : worded("Not yet. Look at the picture again, and read the rule above."),
     );
   }
 

@@ -2,6 +2,7 @@
 
 import { h } from "../shared/dom.js";
 import { ARM } from "./tour_robot.js";
+import { worded } from "../shared/words/words.js";
 
 const CELLS = ["a", "alpha", "d", "theta"];
 
@@ -27,7 +28,7 @@ export class SpaceView {
   }
 
   #write() {
-    this.button.textContent = this.#view ? "Close the 3D view" : "Play the rows in 3D";
+    this.button.textContent = this.#view ? worded("Close the 3D view") : worded("Play the rows in 3D");
     this.button.setAttribute("aria-expanded", String(Boolean(this.#view)));
   }
 
@@ -53,7 +54,7 @@ export class SpaceView {
       this.element.append(this.#view.element);
       this.#view.open();
     } catch {
-      this.announce("The 3D view could not be loaded");
+      this.announce(worded("The 3D view could not be loaded"));
     }
     this.button.removeAttribute("aria-busy");
     return this.#write();

@@ -8,12 +8,13 @@ import { Question } from "./question.js";
 import { SpaceView } from "./space_view.js";
 import { ARM } from "./tour_robot.js";
 import { typeset } from "../typeset/names.js";
+import { worded } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url).href;
 const LAST = "table";
 const NAMES = ["a", "α", "d", "θ"];
 /** @type {Record<Api.Convention, string>} */
-const CONVENTIONS = { standard: "Standard (distal)", modified: "Modified (proximal)" };
+const CONVENTIONS = { standard: worded("Standard (distal)"), modified: worded("Modified (proximal)") };
 
 const main = byId("main", HTMLElement);
 const tour = byId("tour", HTMLElement);
@@ -45,7 +46,7 @@ function writeTable() {
         autocomplete: "off",
         autocapitalize: "off",
         spellcheck: "false",
-        "aria-label": `${name}, row ${label}`,
+        "aria-label": worded("{column}, row {row}", { column: name, row: label }),
       });
       return h("td", {}, isOwn ? input : [...typeset(texts[i][j]), j === 1 && texts[i][j] !== "0" ? "°" : ""]);
     });
@@ -54,13 +55,18 @@ function writeTable() {
   const caption = h(
     "caption",
     {},
-    ...typeset(`Write row ${labels.at(-1)}: from frame {${labels.length - 1}} to the tip.`),
+    ...typeset(
+      worded("Write row {row}: from frame {frame} to the tip.", {
+        row: labels.at(-1) ?? "",
+        frame: `{${labels.length - 1}}`,
+      }),
+    ),
   );
   const table = h(
     "table",
     { class: "worked-table" },
     caption,
-    h("tr", {}, h("th", { scope: "col" }, "row"), ...heads),
+    h("tr", {}, h("th", { scope: "col" }, worded("row")), ...heads),
     ...rows,
   );
   form.querySelector("table")?.remove();
@@ -83,7 +89,7 @@ const questions = new Map(
 
 const links = new Map(
   screens.map(({ id }, i) => {
-    const text = id === "worked" ? "Example" : String(i + 1);
+    const text = id === "worked" ? worded("Example") : String(i + 1);
     const name = screens[i].querySelector("h2")?.textContent?.trim() ?? id;
     return [
       id,
@@ -105,12 +111,12 @@ tour.append(
   h(
     "fieldset",
     { class: "conventions" },
-    h("legend", {}, "Your course's convention (not sure? Take standard)"),
+    h("legend", {}, worded("Your course's convention (not sure? Take standard)")),
     ...radios,
   ),
   h(
     "nav",
-    { "aria-label": "Screens" },
+    { "aria-label": worded("Screens") },
     h("ol", { class: "screens" }, ...[...links.values()].map((each) => h("li", {}, each))),
   ),
 );
@@ -120,7 +126,7 @@ for (const [i, screen] of screens.entries()) {
   const [before, after] = [screens[i - 1], screens[i + 1]];
   /** @type {(target: HTMLElement, text: string) => HTMLElement} */
   const link = (target, text) => h("a", { href: `#${target.id}` }, text);
-  const ways = [before ? link(before, "← Back") : h("span"), after && link(after, "Next →")];
+  const ways = [before ? link(before, worded("← Back")) : h("span"), after && link(after, worded("Next →"))];
   screen.append(h("p", { class: "ways" }, ...ways));
 }
 
@@ -137,7 +143,7 @@ function mark() {
     const isSolved = progress.solved.includes(key(id));
     link.classList.toggle("solved", isSolved);
     const name = screens.find((each) => each.id === id)?.querySelector("h2")?.textContent?.trim() ?? id;
-    link.setAttribute("aria-label", isSolved ? `${name} (solved)` : name);
+    link.setAttribute("aria-label", isSolved ? worded("{screen} (solved)", { screen: name }) : name);
     const sign = link.querySelector(".mark");
     if (sign) sign.textContent = isSolved ? " ✓" : "";
   }

@@ -1,5 +1,7 @@
 // Requests of the tutor's pages to the service.
 
+import { language } from "../shared/words/words.js";
+
 const HOME = new URL("../", import.meta.url);
 // How often a request is repeated if the service is busy, and the longest pause before that in seconds.
 const TRIES = 5;
@@ -77,7 +79,9 @@ class Refusal extends Error {
 
 /** @param {string} path @param {RequestInit} options */
 async function asked(path, options) {
-  const answer = await fetch(path, options);
+  const headers = new Headers(options.headers);
+  headers.set("Accept-Language", language);
+  const answer = await fetch(path, { ...options, headers });
   if (answer.ok) return answer;
   /** @type {Partial<Api.Problem> | null} */
   const problem = await answer.json().catch(() => null);

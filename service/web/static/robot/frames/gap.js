@@ -1,6 +1,7 @@
 // The gap between the last frame of a student's table and the given tool frame.
 
 import { column } from "../motion.js";
+import { worded } from "../../shared/words/words.js";
 
 const SMALL = 1e-6;
 
@@ -49,6 +50,7 @@ export const isClosed = ({ length, turn }) => length < SMALL && turn < SMALL;
  * @param {Gap} gap
  */
 export function gapText({ length, turn }) {
-  const turned = turn < SMALL ? "" : `turned by ${short(Math.round(turn * 10) / 10)}°`;
-  return [length < SMALL ? "" : short(length), turned].filter(Boolean).join(", ");
+  const values = { length: short(length), angle: `${short(Math.round(turn * 10) / 10)}°` };
+  if (turn < SMALL) return length < SMALL ? "" : values.length;
+  return length < SMALL ? worded("turned by {angle}", values) : worded("{length}, turned by {angle}", values);
 }

@@ -2,6 +2,7 @@
 
 import { column } from "../motion.js";
 import { gapText, isClosed, short } from "./gap.js";
+import { worded } from "../../shared/words/words.js";
 
 const PARALLEL = 0.9999;
 
@@ -15,10 +16,10 @@ const PARALLEL = 0.9999;
  */
 export function viewText({ frames, mechanism, placed }, labels, gap, placedLabels = []) {
   const lines = [];
-  if (mechanism) lines.push(`The tool of the robot is at ${point(mechanism.tool)}.`);
-  mechanism?.frames.forEach((frame, i) => lines.push(`Given frame {${labels[i]}}: ${place(frame)}.`));
-  placed?.forEach((frame, i) => lines.push(`Your frame {${placedLabels[i]}}: ${place(frame)}.`));
-  frames?.forEach((frame, i) => lines.push(`Frame {${i}} of your table: ${place(frame)}.`));
+  if (mechanism) lines.push(worded("The tool of the robot is at {point}.", { point: point(mechanism.tool) }));
+  mechanism?.frames.forEach((frame, i) => lines.push(worded("Given frame {frame}: {place}.", named(labels[i], frame))));
+  placed?.forEach((frame, i) => lines.push(worded("Your frame {frame}: {place}.", named(placedLabels[i], frame))));
+  frames?.forEach((frame, i) => lines.push(worded("Frame {frame} of your table: {place}.", named(i, frame))));
   if (gap) lines.push(gapSentence(gap));
   return lines.join(" ");
 }
@@ -30,13 +31,19 @@ export function viewText({ frames, mechanism, placed }, labels, gap, placedLabel
  */
 export function gapSentence(gap) {
   return isClosed(gap)
-    ? "The last frame of your table lies on the tool frame."
-    : `From the last frame of your table to the tool frame: ${gapText(gap)}.`;
+    ? worded("The last frame of your table lies on the tool frame.")
+    : worded("From the last frame of your table to the tool frame: {gap}.", { gap: gapText(gap) });
 }
 
-/** @param {Front.Frame} frame */
-const place = (frame) =>
-  `origin ${point(column(frame, 3))}, x ${direction(column(frame, 0))}, z ${direction(column(frame, 2))}`;
+/** @param {string | number} label @param {Front.Frame} frame */
+const named = (label, frame) => ({
+  frame: `{${label}}`,
+  place: worded("origin {origin}, x {x}, z {z}", {
+    origin: point(column(frame, 3)),
+    x: direction(column(frame, 0)),
+    z: direction(column(frame, 2)),
+  }),
+});
 
 /** @param {number[]} coordinates */
 const point = (coordinates) => `(${coordinates.map(short).join(", ")})`;
@@ -48,6 +55,9 @@ const point = (coordinates) => `(${coordinates.map(short).join(", ")})`;
  */
 function direction(vector) {
   const i = vector.findIndex((value) => Math.abs(value) > PARALLEL);
-  if (i < 0) return `towards ${point(vector)}`;
-  return `${vector[i] > 0 ? "along" : "opposite to"} the base's ${"xyz"[i]}`;
+  if (i < 0) return worded("towards {point}", { point: point(vector) });
+  const axis = "xyz"[i];
+  return vector[i] > 0
+    ? worded("along the base's {axis}", { axis })
+    : worded("opposite to the base's {axis}", { axis });
 }

@@ -3,6 +3,7 @@
 import { h } from "../../shared/dom.js";
 import { gapBetween } from "./gap.js";
 import { gapSentence, viewText } from "./view_text.js";
+import { worded } from "../../shared/words/words.js";
 
 // The pause in milliseconds after which a new gap is announced.
 const AT_REST = 1500;
@@ -17,7 +18,7 @@ export class ViewWords {
   constructor(announce) {
     this.announce = announce;
     this.text = h("p", { class: "aloud", id: "where-frames-are" });
-    this.legend = h("ul", { class: "view-legend", "aria-label": "Legend" });
+    this.legend = h("ul", { class: "view-legend", "aria-label": worded("Legend") });
   }
 
   /**
@@ -38,9 +39,9 @@ export class ViewWords {
     const { table, mechanism } = answer;
     /** @type {[string, string][]} */
     const items = [["axes", "x y z"]];
-    if (mechanism?.frames.length) items.push(["pale", "given frames"]);
-    if (mechanism && table) items.push(["chain", "your table"]);
-    if (mechanism?.comparable && table?.complete) items.push(["gap-line", "gap to the tool frame"]);
+    if (mechanism?.frames.length) items.push(["pale", worded("given frames")]);
+    if (mechanism && table) items.push(["chain", worded("your table")]);
+    if (mechanism?.comparable && table?.complete) items.push(["gap-line", worded("gap to the tool frame")]);
     this.legend.replaceChildren(...(mechanism ? items.map(legendItem) : []));
   }
 

@@ -3,8 +3,9 @@
 
 import { h } from "../../shared/dom.js";
 import { directionText, nearestAxes } from "./axis_words.js";
+import { worded } from "../../shared/words/words.js";
 
-const HINT = "Click a joint axis: z of the frame in hand lies along it. Click it again to turn z over.";
+const HINT = worded("Click a joint axis: z of the frame in hand lies along it. Click it again to turn z over.");
 // A pointer that moved farther, in pixels, has turned the view.
 const STILL = 4;
 
@@ -60,14 +61,20 @@ export class AxisClicks {
     // Several joints may have the same line: the frame keeps its own, else it gets one without a frame.
     const joint = names.find((name) => name === own) ?? names.find((name) => !used.includes(name)) ?? names[0];
     const directions = await this.#load().catch(() => null);
-    if (!directions) return this.host.announce("The directions of the axes could not be loaded");
+    if (!directions) return this.host.announce(worded("The directions of the axes could not be loaded"));
     const along = directions[shape.joints.indexOf(joint)];
     const [text, opposite] = [along, along.map((value) => -value)].map(directionText);
     const isAgain = joint === own && cell(row, "z").text.trim() === text;
     const z = isAgain ? opposite : text;
     this.part.write([[cell(row, "axis"), joint], [cell(row, "z"), z]]);
     this.#inHand = row;
-    this.host.announce(`Frame ${row.label}: z along the axis of joint ${joint}, ${z}`);
+    this.host.announce(
+      worded("Frame {frame}: z along the axis of joint {joint}, {direction}", {
+        frame: row.label,
+        joint,
+        direction: z,
+      }),
+    );
   }
 
   /** Return the directions of the axes with all joint variables 0. */

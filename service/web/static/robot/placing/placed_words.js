@@ -1,7 +1,9 @@
 // What is said of placed frames that are not drawn.
 
+import { worded, wordedFor } from "../../shared/words/words.js";
+
 /** @type {Record<string, string>} */
-const CELLS = { origin_x: "origin x", origin_y: "origin y", origin_z: "origin z" };
+const CELLS = { origin_x: worded("origin x"), origin_y: worded("origin y"), origin_z: worded("origin z") };
 
 /**
  * Return the reason of each frame that is left out, in sentences.
@@ -11,8 +13,11 @@ const CELLS = { origin_x: "origin x", origin_y: "origin y", origin_z: "origin z"
 export function leftOutText(placed) {
   if (placed?.error) return placed.error.message;
   const reasons = (placed?.left_out ?? []).map(({ row, column, error }) =>
-    `Frame ${row}, ${CELLS[column] ?? column}: ${error.message}`
+    worded("Frame {frame}, {column}: {reason}", { frame: row, column: CELLS[column] ?? column, reason: error.message })
   );
   if (!reasons.length) return "";
-  return `${reasons.join(" ")} The view leaves ${reasons.length > 1 ? "these frames" : "this frame"} out.`;
+  return [
+    ...reasons,
+    wordedFor("The view leaves this frame out.", "The view leaves these frames out.", reasons.length),
+  ].join(" ");
 }

@@ -1,5 +1,7 @@
 // Clicks on joint axes are loaded only if the exercise asks for frames and the browser draws in 3D.
 
+import { worded } from "../../shared/words/words.js";
+
 export class PlacingLoader {
   #closed = false;
   /** @type {Front.AxisClicks | null} */
@@ -21,7 +23,7 @@ export class PlacingLoader {
       this.#clicks = new AxisClicks(this.host, part, scene);
       this.stage.element.after(this.#clicks.hint);
     } catch {
-      this.host.announce("Clicks on joint axes could not be loaded");
+      this.host.announce(worded("Clicks on joint axes could not be loaded"));
     }
   }
 

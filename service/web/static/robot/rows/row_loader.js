@@ -1,6 +1,7 @@
-// The button "Play a row", and the cell in hand: both load the rest of this room when they are first used.
+// The button worded("Play a row"), and the cell in hand: both load the rest of this room when they are first used.
 
 import { h } from "../../shared/dom.js";
+import { worded } from "../../shared/words/words.js";
 
 export class RowLoader {
   /** @type {Front.RowPlayer | null} */
@@ -22,7 +23,7 @@ export class RowLoader {
     this.button = h(
       "button",
       { type: "button", class: "quiet-button", "aria-expanded": "false", hidden: true, onclick: () => this.#toggle() },
-      "Play a row",
+      worded("Play a row"),
     );
     this.panel = h("div", { class: "row-player", hidden: true });
     this.element = h("div", {}, this.button, this.panel);
@@ -61,7 +62,7 @@ export class RowLoader {
     const { RowPlayer } = await import("./row_player.js");
     const player = new RowPlayer(this.view, this.panel);
     await player.open();
-    if (this.#stop.signal.aborted) throw new Error("The view is closed.");
+    if (this.#stop.signal.aborted) throw new Error(worded("The view is closed."));
     this.#player = player;
     if (this.#shown) player.show(...this.#shown);
     if (!this.view.isFlat()) this.view.build();
@@ -74,7 +75,7 @@ export class RowLoader {
       const isOpen = (await this.#load()).toggle();
       this.button.setAttribute("aria-expanded", String(isOpen));
     } catch {
-      this.view.host.announce("The player of rows could not be loaded");
+      this.view.host.announce(worded("The player of rows could not be loaded"));
     }
     this.button.removeAttribute("aria-busy");
   }

@@ -7,6 +7,7 @@ import { axisGap, jointAfter } from "./axis_gap.js";
 import { Playback } from "./playback.js";
 import { frameAt, movesOf } from "./row_moves.js";
 import { amountText, axisText, captionText, moveText, placeText } from "./row_words.js";
+import { worded } from "../../shared/words/words.js";
 
 const STYLE = new URL("./rows.css", import.meta.url).href;
 const STEP = 0.05;
@@ -36,28 +37,38 @@ export class RowPlayer {
     this.element = element;
     this.unit = view.host.unit ?? "m";
     this.playback = new Playback(() => this.#moved(), (isEnd) => this.#stopped(isEnd));
-    this.rows = h("select", { "aria-label": "Row", onchange: (event) => this.#choose(Number(event.target.value)) });
+    this.rows = h("select", {
+      "aria-label": worded("Row"),
+      onchange: (event) => this.#choose(Number(event.target.value)),
+    });
     this.bar = h("input", {
       type: "range",
       min: 0,
       max: MOVES,
       step: STEP,
-      "aria-label": "Moves of the row",
+      "aria-label": worded("Moves of the row"),
       oninput: (event) => this.#jump(Number(event.target.value)),
     });
     this.caption = h("p", { class: "caption" });
     this.told = h("p", { class: "quiet" });
-    this.list = h("ol", { class: "moves", "aria-label": "Moves of the row" });
+    this.list = h("ol", { class: "moves", "aria-label": worded("Moves of the row") });
     /** @type {(text: string, act: () => void) => HTMLButtonElement} */
     const button = (text, act) => h("button", { type: "button", class: "quiet-button", onclick: act }, text);
-    this.run = button("Play", () => this.#run());
-    this.back = button("Previous move", () => this.#step(-1));
-    this.next = button("Next move", () => this.#step(1));
+    this.run = button(worded("Play"), () => this.#run());
+    this.back = button(worded("Previous move"), () => this.#step(-1));
+    this.next = button(worded("Next move"), () => this.#step(1));
     element.setAttribute("role", "group");
-    element.setAttribute("aria-label", "Play a row");
+    element.setAttribute("aria-label", worded("Play a row"));
     element.replaceChildren(
       h("link", { rel: "stylesheet", href: STYLE }),
-      h("div", { class: "row-buttons" }, h("label", {}, "Play row ", this.rows), this.run, this.back, this.next),
+      h(
+        "div",
+        { class: "row-buttons" },
+        h("label", {}, worded("Play row"), " ", this.rows),
+        this.run,
+        this.back,
+        this.next,
+      ),
       this.bar,
       this.caption,
       this.list,
@@ -236,7 +247,7 @@ export class RowPlayer {
     if (this.caption.textContent !== caption) this.caption.textContent = caption;
     if (!this.bar.matches(":active")) this.bar.value = String(at);
     this.bar.setAttribute("aria-valuetext", caption);
-    this.run.textContent = this.playback.isRunning ? "Pause" : "Play";
+    this.run.textContent = this.playback.isRunning ? worded("Pause") : worded("Play");
     this.back.disabled = at <= 0;
     this.next.disabled = at >= MOVES;
     const texts = moves.map((move) => moveText(move, row, convention, unit));

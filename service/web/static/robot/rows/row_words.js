@@ -2,6 +2,7 @@
 
 import { column } from "../motion.js";
 import { gapText, isClosed, short } from "../frames/gap.js";
+import { worded } from "../../shared/words/words.js";
 
 const LOWERED = "₀₁₂₃₄₅₆₇₈₉";
 /** @type {Record<string, string>} */
@@ -20,11 +21,14 @@ export const lowered = (number) => [...String(number)].map((digit) => LOWERED[Nu
  * @param {string} unit of lengths
  */
 export function moveText(move, row, convention, unit) {
-  const isModified = convention === "modified";
+  const values = { axis: axisOf(move, row, convention), amount: amountText(move, row, convention, unit) };
+  return move.turns ? worded("turn about {axis} by {amount}", values) : worded("along {axis} by {amount}", values);
+}
+
+/** Return the axis of a move. @param {Front.Move} move @param {number} row @param {Api.Convention} convention */
+function axisOf({ axis }, row, convention) {
   // In the standard convention, the moves along and about x come last; in the modified one, they come first.
-  const axis = (move.axis === "x") === isModified ? row - 1 : row;
-  const about = `${move.turns ? "turn about" : "along"} ${move.axis}${lowered(axis)}`;
-  return `${about} by ${amountText(move, row, convention, unit)}`;
+  return `${axis}${lowered((axis === "x") === (convention === "modified") ? row - 1 : row)}`;
 }
 
 /** @param {Front.Move} move @param {number} row @param {Api.Convention} convention @param {string} unit */
@@ -41,11 +45,25 @@ export function amountText({ parameter, turns, amount }, row, convention, unit) 
  * @param {{ row: number, at: number, moves: Front.Move[], convention: Api.Convention, unit: string }} shown
  */
 export function captionText({ row, at, moves, convention, unit }) {
-  if (at < SMALL) return `Row ${row} begins on frame {${row - 1}}.`;
+  if (at < SMALL) return worded("Row {row} begins on frame {frame}.", { row, frame: `{${row - 1}}` });
   const i = Math.ceil(at - SMALL) - 1;
-  const text = moveText(moves[i], row, convention, unit);
-  const still = Math.abs(moves[i].amount) < SMALL ? ", so nothing moves" : "";
-  return `${i + 1} of ${moves.length}: ${text}${still}.`;
+  const values = { number: i + 1, all: moves.length, move: moveText(moves[i], row, convention, unit) };
+  return Math.abs(moves[i].amount) < SMALL
+    ? worded("{number} of {all}: {move}, so nothing moves.", values)
+    : worded("{number} of {all}: {move}.", values);
+}
+
+/**
+ * Return the caption of a row after `at` moves, without the amount of the move.
+ *
+ * @param {{ row: number, at: number, moves: Front.Move[], convention: Api.Convention }} shown
+ */
+export function captionWithoutAmount({ row, at, moves, convention }) {
+  const i = Math.ceil(at - SMALL) - 1;
+  const values = { number: i + 1, all: moves.length, axis: axisOf(moves[i], row, convention) };
+  return moves[i].turns
+    ? worded("{number} of {all}: turn about {axis}.", values)
+    : worded("{number} of {all}: along {axis}.", values);
 }
 
 /**
@@ -53,7 +71,8 @@ export function captionText({ row, at, moves, convention, unit }) {
  *
  * @param {Front.Frame} frame
  */
-export const placeText = (frame) => `The ghost frame is at (${column(frame, 3).map(short).join(", ")}).`;
+export const placeText = (frame) =>
+  worded("The ghost frame is at {point}.", { point: `(${column(frame, 3).map(short).join(", ")})` });
 
 /**
  * Say whether frame {row} lies on the axis of a joint.
@@ -64,6 +83,6 @@ export const placeText = (frame) => `The ghost frame is at (${column(frame, 3).m
  */
 export function axisText(row, joint, gap) {
   const z = `z${lowered(row)}`;
-  if (isClosed(gap)) return `${z} lies on the axis of joint ${joint}.`;
-  return `${z} misses the axis of joint ${joint}: ${gapText(gap)}.`;
+  if (isClosed(gap)) return worded("{axis} lies on the axis of joint {joint}.", { axis: z, joint });
+  return worded("{axis} misses the axis of joint {joint}: {gap}.", { axis: z, joint, gap: gapText(gap) });
 }

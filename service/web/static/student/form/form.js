@@ -4,6 +4,7 @@
 import { KeyBar } from "./key_bar.js";
 import { Rail } from "./rail.js";
 import { Tools } from "./tools.js";
+import { worded } from "../../shared/words/words.js";
 
 export class Form {
   /** @type {Front.PartView[]} */
@@ -63,6 +64,9 @@ export class Form {
     if (!cell) return "";
     this.showCell(cell);
     const [first] = cell.messages;
-    return `First slip: ${cell.input.ariaLabel}. ${first?.querySelector("p")?.textContent ?? ""}`;
+    return worded("First slip: {cell}. {message}", {
+      cell: cell.input.ariaLabel ?? "",
+      message: first?.querySelector("p")?.textContent ?? "",
+    });
   }
 }

@@ -1,6 +1,7 @@
 // Keys for touch screens, below the row in hand: the exercise's own symbols, and signs that phones hide.
 
 import { h } from "../../shared/dom.js";
+import { worded } from "../../shared/words/words.js";
 
 const SIGNS = ["π", "°", "−", "/", "*", "(", ")", "sin(", "cos(", "θ", "α", "d"];
 /** @type {Record<string, string>} */
@@ -43,7 +44,7 @@ export class KeyBar {
   constructor(symbols, undo) {
     this.symbols = symbols;
     this.undo = undo;
-    this.keys = h("div", { class: "keys", role: "toolbar", "aria-label": "Symbols" });
+    this.keys = h("div", { class: "keys", role: "toolbar", "aria-label": worded("Symbols") });
     // A tap must not take the focus from the cell, or the phone's own keyboard would close.
     this.keys.addEventListener("mousedown", (event) => event.preventDefault());
     this.place = h("td", {}, this.keys);
@@ -69,7 +70,7 @@ export class KeyBar {
 
   /** @param {Api.Quantity} quantity */
   #fill(quantity) {
-    const undo = h("button", { type: "button", "aria-label": "Undo", onclick: this.undo }, "↶");
+    const undo = h("button", { type: "button", "aria-label": worded("Undo"), onclick: this.undo }, "↶");
     const keys = keysOf(this.symbols, quantity).map((text) =>
       h("button", { type: "button", onclick: () => this.#write(text) }, face(text))
     );

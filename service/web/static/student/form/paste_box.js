@@ -1,14 +1,15 @@
 // A box for a whole table, matrix or script, which fills the cells of a part.
 
 import { h, message } from "../../shared/dom.js";
+import { worded } from "../../shared/words/words.js";
 
 /** @type {Record<string, string>} */
 const NAMES = {
-  dh_table: "Paste a whole table or script",
-  find_slip: "Paste the mended table",
-  link_transforms: "Paste all matrices",
-  transform: "Paste a whole matrix",
-  rotation: "Paste a whole matrix",
+  dh_table: worded("Paste a whole table or script"),
+  find_slip: worded("Paste the mended table"),
+  link_transforms: worded("Paste all matrices"),
+  transform: worded("Paste a whole matrix"),
+  rotation: worded("Paste a whole matrix"),
 };
 
 /**
@@ -23,27 +24,27 @@ export function pasteBox(part, fill) {
     rows: 5,
     spellcheck: "false",
     autocapitalize: "off",
-    "aria-label": `${part.title}: text to paste`,
+    "aria-label": worded("{part}: text to paste", { part: part.title }),
     "aria-describedby": `${id}-told`,
   });
   const told = h(
     "p",
     { id: `${id}-told`, class: "quiet", role: "status" },
-    "From a spreadsheet, LaTeX, MATLAB, Python or Markdown.",
+    worded("From a spreadsheet, LaTeX, MATLAB, Python or Markdown."),
   );
   const read = async () => {
-    const wrong = field.value.trim() ? await fill(field.value) : "Nothing is pasted yet.";
+    const wrong = field.value.trim() ? await fill(field.value) : worded("Nothing is pasted yet.");
     told.replaceChildren(...message(wrong));
     told.classList.toggle("unread", Boolean(wrong));
     if (wrong) return field.focus();
     field.value = "";
     box.open = false;
   };
-  const button = h("button", { type: "button", class: "quiet-button", onclick: read }, "Fill in the cells");
+  const button = h("button", { type: "button", class: "quiet-button", onclick: read }, worded("Fill in the cells"));
   const box = h(
     "details",
     { class: "paste-box" },
-    h("summary", {}, NAMES[part.kind] ?? "Paste all values"),
+    h("summary", {}, NAMES[part.kind] ?? worded("Paste all values")),
     field,
     told,
     button,

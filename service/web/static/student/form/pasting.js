@@ -1,6 +1,7 @@
 // Texts pasted into a part. The service decides if a text is a table, and which cells it has.
 
 import { blockOf, pair, placedFrom } from "../../shared/pasted_block.js";
+import { worded, wordedFor } from "../../shared/words/words.js";
 
 // A text with one of these may hold several cells; the service decides.
 const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
@@ -42,7 +43,7 @@ export class Pasting {
    */
   async whole(text, cell) {
     const { pairs, told, notes } = await this.#read(text, cell);
-    if (!pairs) return told ?? "This text is not a table or matrix that fits here.";
+    if (!pairs) return told ?? worded("This text is not a table or matrix that fits here.");
     this.#fill(pairs, notes);
     return "";
   }
@@ -51,7 +52,14 @@ export class Pasting {
   #fill(pairs, notes) {
     this.view.write(pairs);
     this.view.focus(pairs[0][0]);
-    this.view.line.say(`The pasted text filled ${pairs.length} cells. Press Ctrl+Z to undo.`, notes);
+    this.view.line.say(
+      wordedFor(
+        "The pasted text filled 1 cell. Press Ctrl+Z to undo.",
+        "The pasted text filled {count} cells. Press Ctrl+Z to undo.",
+        pairs.length,
+      ),
+      notes,
+    );
   }
 
   /**
@@ -71,9 +79,13 @@ export class Pasting {
     const block = blockOf(text);
     const pairs = (grid?.rows && this.#placed(grid.rows, cell)) ?? (block && this.#placedBlock(block, cell));
     const misfit = grid?.rows
-      ? `The pasted text has ${grid.rows.length} rows, which do not fit here.`
+      ? wordedFor(
+        "The pasted text has 1 row, which does not fit here.",
+        "The pasted text has {count} rows, which do not fit here.",
+        grid.rows.length,
+      )
       : grid?.error?.message;
-    const told = misfit && !grid?.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
+    const told = misfit && !grid?.ok ? worded("Not read as a table or matrix: {reason}", { reason: misfit }) : misfit;
     return { pairs, told, isScript: grid?.error?.code === SCRIPT, notes: grid?.notes };
   }
 

@@ -2,6 +2,7 @@
 
 import { h } from "../../shared/dom.js";
 import { LETTERS } from "../kinds.js";
+import { worded } from "../../shared/words/words.js";
 
 /** @type {Record<string, Api.AngleUnit>} */
 const UNITS = { degrees_as_radians: "degrees", radians_as_degrees: "radians" };
@@ -67,11 +68,16 @@ export function proposal(view, { code, message }, cells) {
   if (!form) return null;
   const texts = (cells.length ? cells : view.cells).map((cell) => cell.text);
   const unit = proposedUnit(code, texts, form.angleUnit);
-  if (unit) return button(`Read angles as ${unit}`, () => form.useUnit(unit));
+  if (unit) {
+    return button(
+      unit === "degrees" ? worded("Read angles as degrees") : worded("Read angles as radians"),
+      () => form.useUnit(unit),
+    );
+  }
   const columns = shape.form === "dh_table" ? shape.columns : [];
   const order = writtenOrder(code, message, columns);
   if (!order) return null;
-  return button("Reorder columns", () => {
+  return button(worded("Reorder columns"), () => {
     const right = view.rows.flatMap(({ cells }) => reordered(cells.map(({ text }) => text), order, columns));
     view.write(view.cells.map((cell, i) => [cell, right[i]]));
     host.check();

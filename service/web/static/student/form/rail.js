@@ -2,19 +2,21 @@
 
 import { h } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
+import { verdictName } from "../../shared/words/phrases.js";
+import { worded } from "../../shared/words/words.js";
 
 /** @type {Record<string, string>} */
 const SHORT = {
-  dh_table: "Table",
-  dh_row: "Row",
-  frames: "Frames",
-  find_slip: "Slip",
-  link_transforms: "Links",
-  transform: "Pose",
-  rotation: "Rotation",
-  position: "Position",
-  euler_angles: "Angles",
-  screw_axes: "Screws",
+  dh_table: worded("Table"),
+  dh_row: worded("Row"),
+  frames: worded("Frames"),
+  find_slip: worded("Slip"),
+  link_transforms: worded("Links"),
+  transform: worded("Pose"),
+  rotation: worded("Rotation"),
+  position: worded("Position"),
+  euler_angles: worded("Angles"),
+  screw_axes: worded("Screws"),
 };
 
 /**
@@ -41,7 +43,11 @@ export class Rail {
     const steps = parts.map((part, i) =>
       h("li", {}, h("button", { type: "button", onclick: () => part.jump() }, h("span", {}, names[i]), this.#states[i]))
     );
-    this.element = h("nav", { class: "rail", "aria-label": "Parts", hidden: parts.length < 2 }, h("ol", {}, ...steps));
+    this.element = h(
+      "nav",
+      { class: "rail", "aria-label": worded("Parts"), hidden: parts.length < 2 },
+      h("ol", {}, ...steps),
+    );
   }
 
   update() {
@@ -49,7 +55,7 @@ export class Rail {
       const { verdict, done, of } = part.progress;
       const state = this.#states[i];
       const shown = verdict ? SIGNS[verdict] : done ? `${done}/${of}` : "";
-      const said = verdict ?? (done ? `${done} of ${of} filled` : "");
+      const said = verdict ? verdictName(verdict) : done ? worded("{done} of {all} filled", { done, all: of }) : "";
       if (state.dataset.said === said) return;
       state.dataset.said = said;
       if (verdict) state.dataset.verdict = verdict;

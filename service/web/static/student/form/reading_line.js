@@ -3,12 +3,13 @@
 import { h, visible } from "../../shared/dom.js";
 import { mathml } from "../../shared/markup.js";
 import { typeset, typesetMessage } from "../../typeset/names.js";
+import { worded } from "../../shared/words/words.js";
 
 // The reading of a longer text may be cut off in its cell.
 const LONG = 40;
 const help = () => [
-  h("span", { class: "with-keyboard" }, "Arrow keys and Enter move between cells. "),
-  "A table, a matrix or a block of cells can be pasted into one.",
+  h("span", { class: "with-keyboard" }, worded("Arrow keys and Enter move between cells."), " "),
+  worded("A table, a matrix or a block of cells can be pasted into one."),
 ];
 
 export class ReadingLine {
@@ -54,7 +55,7 @@ export class ReadingLine {
         " ",
         suggestion ? cell.repair(suggestion) : "",
       );
-      if (aloud) this.announce(`Not read: ${why}`, 1200);
+      if (aloud) this.announce(worded("Not read: {reason}", { reason: why }), 1200);
       return undefined;
     }
     const notes = reading.notes?.flatMap((

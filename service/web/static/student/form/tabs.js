@@ -3,6 +3,8 @@
 import { h, visible } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
 import { typeset } from "../../typeset/names.js";
+import { verdictName } from "../../shared/words/phrases.js";
+import { worded } from "../../shared/words/words.js";
 
 export class Tabs {
   /** @type {HTMLButtonElement[]} */
@@ -69,7 +71,7 @@ export class Tabs {
    * @param {boolean} isFilled
    */
   mark(i, verdict, isFilled) {
-    const said = verdict ?? (isFilled ? "filled" : "");
+    const said = verdict ? verdictName(verdict) : isFilled ? worded("filled") : "";
     const tab = this.#tabs[i];
     const mark = /** @type {HTMLElement} */ (tab.lastElementChild);
     if (mark.dataset.said === said) return;

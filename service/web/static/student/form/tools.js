@@ -2,6 +2,7 @@
 
 import { h } from "../../shared/dom.js";
 import { fragment } from "../../shared/storage.js";
+import { worded } from "../../shared/words/words.js";
 
 export class Tools {
   /**
@@ -16,33 +17,42 @@ export class Tools {
     this.saved = h("p", { class: "quiet saved" });
     this.unit = h(
       "select",
-      { "aria-label": "Angles without a unit", onchange: unitChanged },
-      h("option", { value: "radians" }, "radians"),
-      h("option", { value: "degrees" }, "degrees"),
+      { "aria-label": worded("Angles without a unit"), onchange: unitChanged },
+      h("option", { value: "radians" }, worded("radians")),
+      h("option", { value: "degrees" }, worded("degrees")),
     );
-    this.share = h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link");
+    this.share = h(
+      "button",
+      { type: "button", class: "quiet-button", onclick: () => this.#share() },
+      worded("Copy link"),
+    );
     this.element = h(
       "div",
       { class: "tools" },
-      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Angles without a unit: "), this.unit),
+      h(
+        "label",
+        { class: "unit" },
+        h("span", { "aria-hidden": "true" }, worded("Angles without a unit:"), " "),
+        this.unit,
+      ),
       this.saved,
       this.share,
-      h("button", { type: "button", class: "quiet-button", onclick: clear }, "Clear"),
+      h("button", { type: "button", class: "quiet-button", onclick: clear }, worded("Clear")),
     );
   }
 
   async #share() {
     const { service, exercise, texts } = this.host;
     const address = service.address(`exercises/${encodeURIComponent(exercise.id)}`) + fragment(texts);
-    let told = "Link copied, with your answers";
+    let told = worded("Link copied, with your answers");
     try {
       await navigator.clipboard.writeText(address);
     } catch {
       if (this.host.hasAttribute("linked")) {
         history.replaceState(null, "", new URL(address).hash);
-        told = "The link is in the address bar";
+        told = worded("The link is in the address bar");
       } else {
-        told = "The browser did not allow copying";
+        told = worded("The browser did not allow copying");
       }
     }
     this.saved.textContent = told;

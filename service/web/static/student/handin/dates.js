@@ -1,5 +1,7 @@
 // Dates of an assignment on the clocks of the course and, if they differ, of the learner.
 
+import { language, worded } from "../../shared/words/words.js";
+
 /** @type {Intl.DateTimeFormatOptions} */
 const CLOCK = { weekday: "short", day: "numeric", month: "short", year: "numeric", hour: "2-digit", minute: "2-digit" };
 
@@ -12,7 +14,12 @@ const CLOCK = { weekday: "short", day: "numeric", month: "short", year: "numeric
  */
 function clock(date, zone, more = {}) {
   const seconds = date.getUTCSeconds() ? { second: /** @type {const} */ ("2-digit") } : {};
-  return new Intl.DateTimeFormat("en-GB", { ...CLOCK, ...seconds, ...more, timeZone: zone }).format(date);
+  return new Intl.DateTimeFormat(language === "en" ? "en-GB" : language, {
+    ...CLOCK,
+    ...seconds,
+    ...more,
+    timeZone: zone,
+  }).format(date);
 }
 
 /**
@@ -26,5 +33,7 @@ export function momentIn(moment, zone, own) {
   const date = new Date(moment);
   const named = clock(date, zone, { timeZoneName: "short" });
   const mine = clock(date, own, { year: undefined });
-  return mine === clock(date, zone, { year: undefined }) ? named : `${named} (${mine} in your time zone)`;
+  return mine === clock(date, zone, { year: undefined })
+    ? named
+    : worded("{moment} ({own} in your time zone)", { moment: named, own: mine });
 }

@@ -1,6 +1,7 @@
 // The saved answers to an exercise of an assignment. If another tab has changed them, they are not overwritten.
 
 import { Store } from "../../shared/storage.js";
+import { worded } from "../../shared/words/words.js";
 
 export class DraftStore extends Store {
   /** @type {string | null} */
@@ -55,7 +56,7 @@ export class DraftStore extends Store {
   save(answers) {
     if (this.isChanged) {
       this.changed();
-      this.unsaved = "Not saved yet: choose above which answers to keep";
+      this.unsaved = worded("Not saved yet: choose above which answers to keep");
       return false;
     }
     const isSaved = super.save(answers);

@@ -17,13 +17,14 @@ import {
 import { offer } from "./notice.js";
 import { newKey, pauseAfter, PendingHandIn } from "./pending.js";
 import { DraftStore } from "./draft_store.js";
+import { worded } from "../../shared/words/words.js";
 
-const TRYING = "Not confirmed yet, trying again. Your answers are saved in this browser.";
-const TOKEN_NEEDED = "Please open this exercise from your course page.";
+const TRYING = worded("Not confirmed yet, trying again. Your answers are saved in this browser.");
+const TOKEN_NEEDED = worded("Please open this exercise from your course page.");
 // Milliseconds: the time that a site has to set a token, and until it is asked for another one.
 const PATIENCE = 10_000;
 const ASKED_AGAIN = 60_000;
-const ELSEWHERE = "These answers were changed in another tab.";
+const ELSEWHERE = worded("These answers were changed in another tab.");
 
 export class HandIn {
   #isSending = false;
@@ -56,12 +57,12 @@ export class HandIn {
     document.addEventListener("visibilitychange", this.#onVisible);
     addEventListener("online", this.#onOnline);
     addEventListener("pagehide", this.#onLeaving);
-    this.status = h("section", { class: "card hand-in-state", "aria-label": "Assignment" });
+    this.status = h("section", { class: "card hand-in-state", "aria-label": worded("Assignment") });
     this.told = h("p", { class: "hand-in-line", role: "status" });
     this.button = h(
       "button",
       { type: "button", class: "check", part: "check", onclick: () => this.submit() },
-      "Hand in",
+      worded("Hand in"),
     );
   }
 
@@ -76,7 +77,7 @@ export class HandIn {
     if (!path) return null;
     if (!host.getAttribute("token")) await tokenNeeded(host);
     const own = ownState(await host.service.own(), path, exercise);
-    if (!own) throw new Error("This exercise is not one of your assignments.");
+    if (!own) throw new Error(worded("This exercise is not one of your assignments."));
     return new HandIn(host, path, own);
   }
 
@@ -125,7 +126,7 @@ export class HandIn {
   #show() {
     const { course, assignment, exercise } = this.own;
     const badge = h("span", { class: "badge", "data-state": assignment.state }, STATES[assignment.state]);
-    const extended = assignment.is_extended ? h("span", { class: "badge" }, "extended for you") : null;
+    const extended = assignment.is_extended ? h("span", { class: "badge" }, worded("extended for you")) : null;
     this.status.replaceChildren(
       h("p", {}, h("strong", {}, visible(assignment.title)), " ", badge, " ", extended ?? ""),
       h("p", {}, datesInWords(course, assignment)),
@@ -148,8 +149,8 @@ export class HandIn {
     const { bar, answers } = this.host;
     if (this.#isSending || bar.isBusy || this.host.hasAttribute("readonly")) return;
     if (!Object.keys(answers).length) {
-      bar.hint("Nothing is filled in yet.");
-      return this.host.announce("Nothing is filled in yet.");
+      bar.hint(worded("Nothing is filled in yet."));
+      return this.host.announce(worded("Nothing is filled in yet."));
     }
     bar.isBusy = true;
     await this.refresh();
@@ -232,8 +233,10 @@ export class HandIn {
   async #handedIn({ attempt, report }, { answers }) {
     await this.refresh();
     const { exercise } = this.own;
-    const name = exercise.attempts.some(({ id }) => id === attempt.id) ? attemptName(exercise, attempt.id) : "Points";
-    this.#tell(`Handed in. ${name}: ${attemptPoints(attempt, exercise)}.`);
+    const name = exercise.attempts.some(({ id }) => id === attempt.id)
+      ? attemptName(exercise, attempt.id)
+      : worded("Points");
+    this.#tell(worded("Handed in. {attempt}: {points}.", { attempt: name, points: attemptPoints(attempt, exercise) }));
     this.channel.postMessage("handed in");
     this.#dispatch("submitted", attempt);
     // The report marks the cells only if they still have the answers that were handed in.
@@ -260,7 +263,10 @@ export class HandIn {
       this.store.keepMine();
       this.host.edited();
     };
-    offer(this.host.received, ELSEWHERE, { "Show those answers": take, "Keep these answers": keep });
+    offer(this.host.received, ELSEWHERE, {
+      [worded("Show those answers")]: take,
+      [worded("Keep these answers")]: keep,
+    });
     this.host.announce(ELSEWHERE);
   }
 }

@@ -1,6 +1,7 @@
 // The question before the last attempt at an exercise.
 
 import { h, visible } from "../../shared/dom.js";
+import { worded } from "../../shared/words/words.js";
 
 /**
  * Ask whether to use the last attempt; `empty` are the titles of the parts that are not filled in.
@@ -13,14 +14,14 @@ export function lastAttempt(place, empty) {
   const dialog = h(
     "dialog",
     { class: "card", "aria-labelledby": "last-attempt" },
-    h("h2", { id: "last-attempt" }, "Hand in your last attempt?"),
-    h("p", {}, "You cannot hand this exercise in again."),
-    empty.length ? h("p", {}, `Not filled in: ${visible(empty.join(", "))}.`) : null,
+    h("h2", { id: "last-attempt" }, worded("Hand in your last attempt?")),
+    h("p", {}, worded("You cannot hand this exercise in again.")),
+    empty.length ? h("p", {}, worded("Not filled in: {parts}.", { parts: visible(empty.join(", ")) })) : null,
     h(
       "form",
       { method: "dialog", class: "choices" },
-      h("button", { class: "check", value: "yes" }, "Hand in"),
-      h("button", { class: "quiet-button", value: "no", autofocus: true }, "Not yet"),
+      h("button", { class: "check", value: "yes" }, worded("Hand in")),
+      h("button", { class: "quiet-button", value: "no", autofocus: true }, worded("Not yet")),
     ),
   );
   place.append(dialog);

@@ -1,6 +1,7 @@
 // A notice above the parts of an exercise, with choices that remove it; and a failure in place of an exercise.
 
 import { h, visible } from "../../shared/dom.js";
+import { worded } from "../../shared/words/words.js";
 
 /**
  * Show a text with a button for each choice.
@@ -34,6 +35,6 @@ export function trouble(title, text, again) {
     { class: "card trouble", role: "alert" },
     h("p", {}, h("strong", {}, visible(title))),
     text ? h("p", {}, visible(text)) : null,
-    again ? h("button", { type: "button", class: "quiet-button", onclick: again }, "Try again") : null,
+    again ? h("button", { type: "button", class: "quiet-button", onclick: again }, worded("Try again")) : null,
   );
 }

@@ -2,9 +2,15 @@
 
 import { number } from "../../shared/dom.js";
 import { momentIn } from "./dates.js";
+import { worded, wordedFor } from "../../shared/words/words.js";
 
 /** @type {Record<Api.AssignmentState, string>} */
-export const STATES = { not_open: "not open yet", open: "open", late: "late", closed: "closed" };
+export const STATES = {
+  not_open: worded("not open yet"),
+  open: worded("open"),
+  late: worded("late"),
+  closed: worded("closed"),
+};
 
 /**
  * Return the state of an exercise, or null if the learner has no such assignment or exercise.
@@ -30,7 +36,7 @@ export function ownState({ learner, courses }, path, id) {
  */
 export function whyClosed({ course, assignment, exercise }) {
   if (assignment.state === "not_open" || assignment.state === "closed") return datesInWords(course, assignment);
-  return exercise.attempts_left === 0 ? "You have no attempts left at this exercise." : "";
+  return exercise.attempts_left === 0 ? worded("You have no attempts left at this exercise.") : "";
 }
 
 /**
@@ -43,17 +49,21 @@ export function whyClosed({ course, assignment, exercise }) {
 export function datesInWords({ zone }, { state, opens, due, closes, late_worth: worth }, own) {
   const at = (/** @type {string | undefined} */ moment) => moment ? momentIn(moment, zone, own) : "";
   const late = closes && closes !== due
-    ? `Late attempts until ${at(closes)} earn ${percent(worth)} of their points.`
+    ? worded("Late attempts until {moment} earn {share} of their points.", {
+      moment: at(closes),
+      share: percent(worth),
+    })
     : "";
   switch (state) {
     case "not_open":
-      return [`Opens ${at(opens)}.`, due ? `Due ${at(due)}.` : ""].filter(Boolean).join(" ");
+      return [worded("Opens {moment}.", { moment: at(opens) }), due ? worded("Due {moment}.", { moment: at(due) }) : ""]
+        .filter(Boolean).join(" ");
     case "closed":
-      return `Closed since ${at(closes ?? due)}.`;
+      return worded("Closed since {moment}.", { moment: at(closes ?? due) });
     case "late":
-      return `It was due ${at(due)}. ${late}`;
+      return [worded("It was due {moment}.", { moment: at(due) }), late].filter(Boolean).join(" ");
   }
-  return due ? [`Due ${at(due)}.`, late].filter(Boolean).join(" ") : "No due date.";
+  return due ? [worded("Due {moment}.", { moment: at(due) }), late].filter(Boolean).join(" ") : worded("No due date.");
 }
 
 /**
@@ -63,8 +73,8 @@ export function datesInWords({ zone }, { state, opens, due, closes, late_worth: 
  * @param {Pick<Api.OwnExercise, "attempts_left">} exercise
  */
 export function attemptsInWords({ limit }, { attempts_left: left }) {
-  if (left === undefined || limit === undefined) return "Attempts are not limited";
-  return left ? `${left} of ${limit} attempts left` : "No attempts left";
+  if (left === undefined || limit === undefined) return worded("Attempts are not limited");
+  return left ? worded("{left} of {limit} attempts left", { left, limit }) : worded("No attempts left");
 }
 
 /**
@@ -73,9 +83,11 @@ export function attemptsInWords({ limit }, { attempts_left: left }) {
  * @param {Pick<Api.OwnExercise, "points" | "earned" | "best">} exercise
  */
 export function pointsInWords({ points: most, earned, best }) {
-  if (earned === undefined) return `${number(most)} points, nothing handed in`;
-  const counted = `${number(earned)} of ${number(most)} points count`;
-  return best !== undefined && best > earned + 1e-9 ? `${counted}; best attempt: ${number(best)}` : counted;
+  if (earned === undefined) return worded("{points} points, nothing handed in", { points: number(most) });
+  const counted = { points: number(earned), most: number(most) };
+  return best !== undefined && best > earned + 1e-9
+    ? worded("{points} of {most} points count; best attempt: {best}", { ...counted, best: number(best) })
+    : worded("{points} of {most} points count", counted);
 }
 
 /**
@@ -86,8 +98,13 @@ export function pointsInWords({ points: most, earned, best }) {
 export function hintsInWords({ points, hints = [] }) {
   if (!hints.length) return "";
   const price = hints.reduce((sum, each) => sum + each.price, 0);
-  const cost = price ? `: −${number(Math.min(price, 1) * points)} in the next attempt` : "";
-  return `${hints.length} ${hints.length === 1 ? "hint" : "hints"} taken${cost}`;
+  if (!price) return wordedFor("1 hint taken", "{count} hints taken", hints.length);
+  return wordedFor(
+    "1 hint taken: −{points} in the next attempt",
+    "{count} hints taken: −{points} in the next attempt",
+    hints.length,
+    { points: number(Math.min(price, 1) * points) },
+  );
 }
 
 /**
@@ -100,7 +117,7 @@ export function hintsInWords({ points, hints = [] }) {
 export function attemptName({ attempts }, id) {
   const counted = attempts.filter(({ ordinal }) => ordinal !== undefined);
   const place = counted.findIndex((each) => each.id === id);
-  return place < 0 ? "Not counted: nothing could be read" : `Attempt ${place + 1}`;
+  return place < 0 ? worded("Not counted: nothing could be read") : worded("Attempt {number}", { number: place + 1 });
 }
 
 /**
@@ -114,8 +131,13 @@ export function attemptPoints(
   { points: worth },
 ) {
   const scale = most ? worth / most : 0;
-  const lost = hints ? `, −${number(hints * scale)} for hints` : "";
-  return `${number(points * scale)} of ${number(worth)} points${lost}${isLate ? ", late" : ""}`;
+  const values = { points: number(points * scale), most: number(worth), lost: number(hints * scale) };
+  if (hints) {
+    return isLate
+      ? worded("{points} of {most} points, −{lost} for hints, late", values)
+      : worded("{points} of {most} points, −{lost} for hints", values);
+  }
+  return isLate ? worded("{points} of {most} points, late", values) : worded("{points} of {most} points", values);
 }
 
 /** @param {number} share */
@@ -128,5 +150,5 @@ const percent = (share) => `${number(100 * share)} %`;
  * @param {boolean} mayBeRecorded
  */
 export function refusalInWords(reason, mayBeRecorded) {
-  return `${mayBeRecorded ? "Not confirmed" : "Not handed in"}: ${reason}`;
+  return mayBeRecorded ? worded("Not confirmed: {reason}", { reason }) : worded("Not handed in: {reason}", { reason });
 }

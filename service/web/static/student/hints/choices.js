@@ -3,6 +3,7 @@
 import { h, visible } from "../../shared/dom.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { tableWords } from "../robot_figure.js";
+import { worded } from "../../shared/words/words.js";
 
 const COLUMNS = /** @type {const} */ (["a", "alpha", "d", "theta"]);
 const HEADS = { a: "a", alpha: "α", d: "d", theta: "θ" };
@@ -41,7 +42,7 @@ class ChoicesBox {
     this.button = h(
       "button",
       { type: "button", class: "quiet-button", onclick: () => this.#ask() },
-      "Show another valid choice of frames",
+      worded("Show another valid choice of frames"),
     );
     this.note = h("p", { class: "quiet", role: "status" });
     this.list = h("ul", { hidden: true });
@@ -65,8 +66,8 @@ class ChoicesBox {
       const body = { part: this.part.part.id, rows, angle_unit: this.host.angleUnit };
       const { choices } = await this.host.service.choices(this.host.exercise.id, body);
       this.note.textContent = choices.length
-        ? "Each of these tables describes the same robot. They would earn full marks, too."
-        : "No other choice was found for this table.";
+        ? worded("Each of these tables describes the same robot. They would earn full marks, too.")
+        : worded("No other choice was found for this table.");
       this.list.replaceChildren(...choices.map((choice) => this.#item(choice)));
       this.list.hidden = choices.length === 0;
       this.button.hidden = true;
@@ -98,7 +99,11 @@ class ChoicesBox {
         )
       ),
     );
-    const button = h("button", { type: "button", class: "quiet-button", "aria-expanded": "false" }, "Show it in 3D");
+    const button = h(
+      "button",
+      { type: "button", class: "quiet-button", "aria-expanded": "false" },
+      worded("Show it in 3D"),
+    );
     const item = h("li", {}, h("p", {}, ...maths(change)), h("div", { class: "choice-table" }, table), button);
     button.onclick = () => this.#toggle(button, item, rows);
     return item;
@@ -125,7 +130,7 @@ class ChoicesBox {
       button.setAttribute("aria-expanded", "true");
       this.#view.open();
     } catch {
-      this.note.textContent = "The 3D view could not be loaded.";
+      this.note.textContent = worded("The 3D view could not be loaded.");
     }
   }
 

@@ -7,6 +7,7 @@ import { priceInWords, pricesOf, tryFirst } from "./prices.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { offerChoices } from "./choices.js";
 import { offerSolution } from "./solution.js";
+import { worded } from "../../shared/words/words.js";
 
 const STYLE = new URL("./hints.css", import.meta.url).href;
 const STEPS = 3;
@@ -107,7 +108,9 @@ class HintBox {
     this.list.hidden = steps.length === 0;
     this.list.replaceChildren(...steps.map((step, i) => this.#step(step, step.title !== steps[i - 1]?.title)));
     this.button.hidden = steps.length === STEPS || !this.#isTried;
-    const name = steps.length ? `Hint ${steps.length + 1} of ${STEPS}` : "Hint";
+    const name = steps.length
+      ? worded("Hint {step} of {steps}", { step: steps.length + 1, steps: STEPS })
+      : worded("Hint");
     const price = this.prices ? priceInWords(this.prices, this.topic, steps.length + 1) : "";
     this.button.textContent = [name, price].filter(Boolean).join(": ");
     const isOpen = steps.length > 0 && steps.length < STEPS && !this.#isTried;
@@ -125,7 +128,7 @@ class HintBox {
         ? h("img", {
           class: "rule",
           src: this.host.colours.figure(this.host.service.address(picture)),
-          alt: visible(`${title}: the picture of this rule`),
+          alt: visible(worded("{rule}: the picture of this rule", { rule: title })),
         })
         : null,
       lesson
@@ -135,8 +138,8 @@ class HintBox {
           h(
             "a",
             { href: this.host.service.address(lesson), target: "_blank", rel: "noopener" },
-            "See it move in DH in ten minutes",
-            h("span", { class: "aloud" }, " (in a new tab)"),
+            worded("See it move in DH in ten minutes"),
+            h("span", { class: "aloud" }, " ", worded("(in a new tab)")),
           ),
         )
         : null,

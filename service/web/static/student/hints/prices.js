@@ -1,6 +1,7 @@
 // The prices of hints at a report on handed-in answers.
 
 import { number } from "../../shared/dom.js";
+import { worded } from "../../shared/words/words.js";
 
 /**
  * Return what the hints at the report of an attempt cost, or null if it has none.
@@ -26,11 +27,18 @@ export function priceInWords({ prices, taken, points }, topic, step) {
   const isTaken = taken.some((each) =>
     each.step === step && each.part === topic.part && each.row === topic.row && each.cell === topic.cell
   );
-  if (isTaken) return "you have taken it";
+  if (isTaken) return worded("you have taken it");
   const price = prices[step - 1];
-  return price ? `costs ${number(price * points)} of ${number(points)} points of each later attempt` : "";
+  return price
+    ? worded("costs {price} of {points} points of each later attempt", {
+      price: number(price * points),
+      points: number(points),
+    })
+    : "";
 }
 
 /** @param {Front.HintPrices | null} prices */
 export const tryFirst = (prices) =>
-  `Change your answer and ${prices ? "hand it in" : "check it"} again. Then the next hint opens.`;
+  prices
+    ? worded("Change your answer and hand it in again. Then the next hint opens.")
+    : worded("Change your answer and check it again. Then the next hint opens.");

@@ -4,10 +4,11 @@ import { h, visible } from "../../shared/dom.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { cellsOf } from "../handin/answer_cells.js";
 import { layoutOf } from "../kinds.js";
+import { worded } from "../../shared/words/words.js";
 
-const NOTE =
-  "Entries that are written differently are marked. Both may be right: the same value has many forms, and many " +
-  "choices of frames are valid.";
+const NOTE = worded(
+  "Entries that are written differently are marked. Both may be right: the same value has many forms, and many choices of frames are valid.",
+);
 
 /**
  * Add a button for the solution below an exercise with full marks, until the answers change.
@@ -39,7 +40,7 @@ export function offerSolution(host, parts, report) {
   const button = h(
     "button",
     { type: "button", class: "quiet-button", onclick: show },
-    "Compare with the model solution",
+    worded("Compare with the model solution"),
   );
   place.append(button, note);
   host.bar.element.append(place);
@@ -70,8 +71,8 @@ export function besides(exercise, model, answers) {
         h(
           "div",
           { class: "side-by-side" },
-          h("section", {}, h("h4", {}, "Your answer"), ...boxes[0]),
-          h("section", {}, h("h4", {}, "Model solution"), ...boxes[1]),
+          h("section", {}, h("h4", {}, worded("Your answer")), ...boxes[0]),
+          h("section", {}, h("h4", {}, worded("Model solution")), ...boxes[1]),
         ),
       ];
     }),
@@ -81,7 +82,7 @@ export function besides(exercise, model, answers) {
 
 /** @param {unknown} answer */
 function plain(answer) {
-  if (answer === null) return [h("p", { class: "quiet" }, "Nothing.")];
+  if (answer === null) return [h("p", { class: "quiet" }, worded("Nothing."))];
   const text = typeof answer === "string" ? answer : JSON.stringify(answer, null, 1);
   return [h("pre", { tabindex: 0 }, text.split("\n").map(visible).join("\n"))];
 }

@@ -4,8 +4,10 @@ import { h } from "../../shared/dom.js";
 import { inConvention, robotOf, slipIn } from "./robot_ids.js";
 import { keepSolved, solvedOf } from "./solved.js";
 import { favoured, noteDealt, noteGraded } from "./spaced.js";
+import { conventionName } from "../../shared/words/phrases.js";
+import { worded, wordedFor } from "../../shared/words/words.js";
 
-const LEVELS = ["1: first robots", "2: arms", "3: offsets and wrists", "4: any angle"];
+const LEVELS = [worded("1: first robots"), worded("2: arms"), worded("3: offsets and wrists"), worded("4: any angle")];
 const CONVENTIONS = ["standard", "modified"];
 const MOST = LEVELS.length;
 
@@ -23,18 +25,18 @@ export class PracticeBar {
     this.convention = h(
       "select",
       { id: "practice-convention", onchange: () => this.#switch() },
-      ...CONVENTIONS.map((value) => h("option", { value }, value)),
+      ...CONVENTIONS.map((value) => h("option", { value }, conventionName(value))),
     );
-    this.easier = this.#button("Easier", () => this.deal(this.#level - 1));
-    this.another = this.#button("Another like this", () => this.deal(this.#level));
-    this.harder = this.#button("Harder", () => this.deal(this.#level + 1));
-    this.link = h("a", {}, "Link to this robot");
+    this.easier = this.#button(worded("Easier"), () => this.deal(this.#level - 1));
+    this.another = this.#button(worded("Another like this"), () => this.deal(this.#level));
+    this.harder = this.#button(worded("Harder"), () => this.deal(this.#level + 1));
+    this.link = h("a", {}, worded("Link to this robot"));
     this.done = h("p", { class: "practice-done" });
     this.element = h(
       "section",
-      { class: "practice", "aria-label": "Practice", hidden: true },
-      h("p", {}, h("label", { for: "practice-level" }, "Level"), " ", this.level),
-      h("p", {}, h("label", { for: "practice-convention" }, "Convention"), " ", this.convention),
+      { class: "practice", "aria-label": worded("Practice"), hidden: true },
+      h("p", {}, h("label", { for: "practice-level" }, worded("Level")), " ", this.level),
+      h("p", {}, h("label", { for: "practice-convention" }, worded("Convention")), " ", this.convention),
       h("div", { class: "practice-next" }, this.easier, this.another, this.harder),
       this.done,
       h("p", { class: "practice-link" }, this.link),
@@ -110,8 +112,8 @@ export class PracticeBar {
     const count = solved.length;
     this.done.classList.toggle("is-done", isDone);
     this.done.replaceChildren(
-      ...(isDone ? [h("strong", {}, "✓ Done"), " · "] : []),
-      `${count} ${count === 1 ? "robot" : "robots"} of this level solved`,
+      ...(isDone ? [h("strong", {}, "✓ ", worded("Done")), " · "] : []),
+      wordedFor("1 robot of this level solved", "{count} robots of this level solved", count),
     );
   }
 }

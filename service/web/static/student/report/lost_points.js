@@ -3,6 +3,7 @@
 import { h, number } from "../../shared/dom.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { matrixOf } from "./places.js";
+import { severityName } from "../../shared/words/phrases.js";
 
 // A message of the report says this already.
 const NOTHING_READ = new Set(["no_answer", "not_read"]);
@@ -20,7 +21,7 @@ export function lostItems({ lost = [], little_worth: little }, symbols) {
   const places = entries.length === 1 ? entries[0].message : entries.map(lostAt).join("; ");
   return [
     ...(told.length ? [note(`−${number(sum(told))}`, places, symbols)] : []),
-    ...(little ? [note("info", little.message, symbols)] : []),
+    ...(little ? [note(severityName("info"), little.message, symbols)] : []),
   ];
 }
 

@@ -1,5 +1,7 @@
 // The places of a message in words.
 
+import { worded, wordedFor } from "../../shared/words/words.js";
+
 /** @type {Record<string, string>} */
 const NAMES = { alpha: "α", theta: "θ" };
 // The label of a row of a matrix in a list of matrices, such as A2.1.
@@ -31,9 +33,10 @@ export function placesInWords(places, rows = []) {
 
 /** @param {[string, string[]]} place @param {string[]} labels @param {Map<string, number>} sizes */
 function inWords([matrix, cells], labels, sizes) {
-  if (!matrix) return `${rowsInWords(labels)}${columns(cells)}`;
+  if (!matrix) return rowsInWords(labels, cells);
   if (!cells.length && isWhole(matrix, labels, [...sizes.keys()])) return matrix;
-  return `${matrix} ${rowsInWords(labels.map((label) => label.slice(matrix.length + 1)))}${columns(cells)}`;
+  const rows = rowsInWords(labels.map((label) => label.slice(matrix.length + 1)), cells);
+  return worded("{matrix} {rows}", { matrix, rows });
 }
 
 /** @param {string} matrix @param {string[]} labels @param {string[]} all */
@@ -41,14 +44,12 @@ function isWhole(matrix, labels, all) {
   return labels.length > 1 && labels.length >= all.filter((label) => matrixOf(label) === matrix).length - 1;
 }
 
-/** @param {string[]} labels */
-function rowsInWords(labels) {
-  return `row${labels.length > 1 ? "s" : ""} ${labels.join(", ")}`;
-}
-
-/** @param {string[]} labels */
-function columns(labels) {
-  return labels.length ? ` ${cellsInWords(labels)}` : "";
+/** @param {string[]} labels @param {string[]} cells */
+function rowsInWords(labels, cells) {
+  const values = { rows: labels.join(", "), cells: cells.length ? cellsInWords(cells) : "" };
+  return cells.length
+    ? wordedFor("row {rows} {cells}", "rows {rows} {cells}", labels.length, values)
+    : wordedFor("row {rows}", "rows {rows}", labels.length, values);
 }
 
 /**
@@ -57,8 +58,9 @@ function columns(labels) {
  * @param {string[]} labels
  */
 export function cellsInWords(labels) {
-  const noun = /^\d+$/.test(labels[0]) ? `column${labels.length > 1 ? "s" : ""} ` : "";
-  return `${noun}${labels.map((label) => NAMES[label] ?? label).join(", ")}`;
+  const columns = labels.map((label) => NAMES[label] ?? label).join(", ");
+  if (!/^\d+$/.test(labels[0])) return columns;
+  return wordedFor("column {columns}", "columns {columns}", labels.length, { columns });
 }
 
 /**

@@ -2,6 +2,7 @@
 
 import { h } from "../../shared/dom.js";
 import { answersToDraw, tableWords } from "../robot_figure.js";
+import { worded } from "../../shared/words/words.js";
 
 /**
  * Return a button that opens the 3D view of the table in a part, and the place of the view.
@@ -20,7 +21,7 @@ export function playedTable(exercise, part, host) {
   const button = h(
     "button",
     { type: "button", class: "quiet-button", "aria-expanded": "false" },
-    "Play this table in 3D",
+    worded("Play this table in 3D"),
   );
   const toggle = async () => {
     if (view) {
@@ -40,7 +41,7 @@ export function playedTable(exercise, part, host) {
     }
     button.setAttribute("aria-expanded", String(view !== null));
   };
-  button.onclick = () => toggle().catch(() => say("The 3D view could not be loaded."));
+  button.onclick = () => toggle().catch(() => say(worded("The 3D view could not be loaded.")));
   const place = h("div", { class: "played-table" }, button, told);
   return place;
 }

@@ -3,6 +3,8 @@
 import { h } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
 import { typeset } from "../../typeset/names.js";
+import { verdictName } from "../../shared/words/phrases.js";
+import { worded } from "../../shared/words/words.js";
 
 /** Return the text of a cell with the sign for degrees. @param {string} text */
 const withDegrees = (text) => text.replace(/(\d)deg\b/g, "$1°");
@@ -28,7 +30,7 @@ export class SlipMarks {
     });
     const rows = grid.rows.map((row, i) => {
       const cells = grid.columns.map((column, j) => {
-        const label = `${column.spoken}, row ${row.spoken}: `;
+        const label = `${worded("{column}, row {row}", { column: column.spoken, row: row.spoken })}: `;
         const button = this.#toggle(label, typeset(withDegrees(given[i][j]), symbols));
         this.#buttons.set(`${row.label}.${column.label}`, button);
         return button;
@@ -40,19 +42,19 @@ export class SlipMarks {
           class: "quiet-button",
           onclick: () => this.#toggleAll(cells),
         },
-        h("span", { class: "aloud" }, "mark row "),
+        h("span", { class: "aloud" }, worded("mark row"), " "),
         row.head,
       );
       return h("tr", {}, h("th", { scope: "row" }, whole), ...cells.map((cell) => h("td", {}, cell)));
     });
-    const corner = h("th", { scope: "col", class: "corner" }, h("span", { class: "aloud" }, "row"));
+    const corner = h("th", { scope: "col", class: "corner" }, h("span", { class: "aloud" }, worded("row")));
     const table = h(
       "table",
       { class: "table" },
       h("thead", {}, h("tr", {}, corner, ...heads)),
       h("tbody", {}, ...rows),
     );
-    const legend = h("legend", {}, "The given table: mark what is wrong ", this.#sign);
+    const legend = h("legend", {}, worded("The given table: mark what is wrong"), " ", this.#sign);
     this.element = h("fieldset", { class: "slip-marks" }, legend, h("div", { class: "scroll" }, table));
   }
 
@@ -102,7 +104,7 @@ export class SlipMarks {
     if (verdict) this.element.dataset.verdict = verdict;
     else delete this.element.dataset.verdict;
     const signs = verdict
-      ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+      ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdictName(verdict))]
       : [];
     this.#sign.replaceChildren(...signs);
   }

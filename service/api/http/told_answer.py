@@ -1,0 +1,45 @@
+"""Answers whose sentences are in the language of the reader: their documentation and headers."""
+
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any, Final
+
+from fastapi import Response
+
+from service.api.http.language import LANGUAGE_FIELD
+from service.translations import Language
+
+_PARAMETER: Final = {
+    "name": LANGUAGE_FIELD,
+    "in": "query",
+    "required": False,
+    "description": "The language of sentences for people: `en`, `de`, `es`, `fr` or `zh`. Default: "
+    "`Accept-Language`. A sentence without a translation is in English, and so is an answer in a "
+    "language that the service does not have.",
+    "schema": {"type": "string", "maxLength": 35},
+}
+# Caches keep an answer for each language.
+VARY: Final = {"Vary": "Accept-Language, Cookie"}
+
+
+def in_languages(options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of a route with the parameter ``lang`` in its documentation."""
+    extra = options.get("openapi_extra", {})
+    parameters = [*extra.get("parameters", ()), _PARAMETER]
+    return {**options, "openapi_extra": {**extra, "parameters": parameters}}
+
+
+def language_header(language: Language) -> dict[str, str]:
+    """Return the header that names the language of an answer."""
+    return {"Content-Language": language.tag}
+
+
+def told_json(
+    content: bytes | str,
+    language: Language,
+    status: HTTPStatus = HTTPStatus.OK,
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """Return an answer in JSON that says in which language it is."""
+    named = {**language_header(language), **(headers or {})}
+    return Response(content, status, named, "application/json")

@@ -1,0 +1,47 @@
+"""The dictionaries of the scripts: their sentences in each language but English."""
+
+import json
+import re
+from collections.abc import Iterable
+from typing import Any, Final
+
+from service.translations import Language
+
+# A sentence in a script: the first argument of `worded`, or the first two of `wordedFor`.
+_TEXT: Final = r"\s*(\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
+_WORDED: Final = re.compile(rf"\bworded\({_TEXT}")
+_COUNTED: Final = re.compile(rf"\bwordedFor\({_TEXT},{_TEXT}")
+# The place in words.js for the names of the dictionaries.
+_PLACE: Final = "const FILES = {};"
+
+
+def dictionary(language: Language, scripts: Iterable[str]) -> str:
+    """Return the module with the sentences of all scripts that the language has."""
+    words: dict[str, str] = {}
+    counts: dict[str, tuple[str, str]] = {}
+    translation = language.translation
+    if translation is not None:
+        for script in scripts:
+            for match in _WORDED.finditer(script):
+                text = _unquoted(match[1])
+                if (told := translation.gettext(text)) != text:
+                    words[text] = told
+            for match in _COUNTED.finditer(script):
+                one, many = _unquoted(match[1]), _unquoted(match[2])
+                forms = (translation.ngettext(one, many, 1), translation.ngettext(one, many, 2))
+                if forms != (one, many):
+                    counts[one] = forms
+    found: dict[str, Any] = {"tag": language.tag, "words": words, "counts": counts}
+    return f"export default {json.dumps(found, ensure_ascii=False, sort_keys=True)};\n"
+
+
+def with_dictionaries(script: str, names: dict[str, str]) -> str:
+    """Return words.js with the addresses of the dictionaries, by the codes of their languages."""
+    return script.replace(_PLACE, f"const FILES = {json.dumps(names)};")
+
+
+def _unquoted(text: str) -> str:
+    """Return the text of a string of JavaScript."""
+    if text[0] == "'":
+        text = '"' + text[1:-1].replace("\\'", "'").replace('"', '\\"') + '"'
+    return str(json.loads(text))

@@ -1,0 +1,49 @@
+"""A German of a few sentences, which a test writes by hand."""
+
+from collections.abc import Mapping
+from gettext import NullTranslations
+from typing import Any, cast
+
+import pytest
+
+from service.grading import Report
+from service.translations import LANGUAGES, Language, Sentence
+
+
+class _Words(NullTranslations):
+    def __init__(self, words: Mapping[str, str]) -> None:
+        super().__init__()
+        self._words = words
+
+    def gettext(self, message: str) -> str:
+        return self._words.get(message, message)
+
+    def ngettext(self, one: str, many: str, count: int) -> str:
+        return self.gettext(one if count == 1 else many)
+
+
+def german(words: Mapping[str, str]) -> Language:
+    """Return German with these translations of templates."""
+    made = Language("de", "Deutsch", "de")
+    made.__dict__["translation"] = _Words(words)
+    return made
+
+
+def offer_german(patch: pytest.MonkeyPatch, words: Mapping[str, str]) -> Language:
+    """Let the service offer German with these translations."""
+    made = german(words)
+    patch.setitem(cast("dict[str, Language]", LANGUAGES), "de", made)
+    return made
+
+
+def as_sentence(text: str) -> str:
+    """Return a plain text as a sentence without values."""
+    is_plain = not isinstance(text, Sentence) and not {"{", "}"} & set(text)
+    return Sentence(text) if is_plain else text
+
+
+def messages_in(report: Report | Mapping[str, Any]) -> list[str]:
+    """Return the messages of lost points of a report or its JSON."""
+    if isinstance(report, Report):
+        return [each.message for part in report.parts for each in part.lost]
+    return [each["message"] for part in report["parts"] for each in part["lost"]]

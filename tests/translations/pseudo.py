@@ -1,0 +1,50 @@
+"""A language that is English with accents, and a third longer: what it lacks is not translatable.
+
+``python -m tests.translations.pseudo serve`` starts the service with it.
+"""
+
+import re
+from gettext import NullTranslations
+from typing import Final
+
+from service.translations import LANGUAGES, Language
+
+_ACCENTED: Final = str.maketrans(
+    "aceinosuyzACEINOSUYZ", "áćéíñóśúýźÁĆÉÍÑÓŚÚÝŹ"
+)  # Latin letters that all fonts have
+# Places of values, tags, entities, code and escapes stay as they are.
+_KEPT: Final = re.compile(r"(%\(\w+\)\w|\{\{|\}\}|\{\w*\}|<[^>]+>|&\w+;|`[^`]*`)")
+_MORE: Final = " ťéxť"
+
+
+class PseudoTranslation(NullTranslations):
+    """Every sentence, with accents."""
+
+    def gettext(self, message: str) -> str:
+        """Return a text with accents that is a third longer."""
+        pieces = _KEPT.split(message)
+        told = "".join(
+            each if i % 2 else each.translate(_ACCENTED) for i, each in enumerate(pieces)
+        )
+        letters = sum(map(len, pieces[::2]))
+        return told + _MORE * max(1, round(letters / 3 / len(_MORE)))
+
+    def ngettext(self, one: str, many: str, count: int) -> str:
+        """Return the text for a count with accents."""
+        return self.gettext(one if count == 1 else many)
+
+
+PSEUDO: Final = Language("qps", "Þśéúđó", "qps-Ploc")
+vars(PSEUDO)["translation"] = PseudoTranslation()
+
+
+def offer_pseudo() -> None:
+    """Offer the language in this process."""
+    LANGUAGES[PSEUDO.code] = PSEUDO  # type: ignore[index]
+
+
+if __name__ == "__main__":
+    from service.cli import main
+
+    offer_pseudo()
+    main()
