@@ -13,9 +13,10 @@ def axes_of_row(axis: str, label: str, last: int) -> str:
     """Return the names of the two axes ``x`` or ``z`` that a row leads between.
 
     ``label`` is the label of the row; ``last`` is the number of the last joint. A row without a
-    label, and the second row after the last joint, have axes without names.
+    label, a fixed row before the first joint, and the second row after the last joint have axes
+    without names.
     """
-    if label.isdecimal():
+    if label.isdecimal() and label != "0":
         return listed([f"{axis}{int(label) - 1}", f"{axis}{label}"])
     if label == "e":
         return say("{first} and the last {axis} axis", first=f"{axis}{last}", axis=axis)

@@ -12,11 +12,8 @@ from service.grading.report import Severity
 from service.kinematics.dh import Convention
 from service.translations import Sentence, say, template
 
-# Compared fixed rows by their labels.
-_FIXED: Final = {
-    "0": template("row {row} with the fixed row before the first joint"),
-    "e": template("row {row} with the end effector"),
-}
+_END_EFFECTOR: Final = template("row {row} with the end effector")
+_FIXED_BEFORE: Final = template("row {row} with the fixed row {label} before the last joint")
 _FIXED_BEHIND: Final = template("row {row} with the fixed row {label} behind the last joint")
 _MATCHED = register(
     of=StudentTable,
@@ -101,7 +98,10 @@ def row_places(
 def _compared(row: int, judged: JudgedRow) -> Sentence:
     if judged.joint is not None:
         return say("row {row} with joint {joint}", row=row, joint=judged.joint.index)
-    return say(_FIXED.get(judged.label, _FIXED_BEHIND), row=row, label=judged.label)
+    if judged.label == "e":
+        return say(_END_EFFECTOR, row=row)
+    fixed = _FIXED_BEFORE if judged.label.startswith("0") else _FIXED_BEHIND
+    return say(fixed, row=row, label=judged.label)
 
 
 def missing_row(judged: JudgedRow) -> Finding:

@@ -9,6 +9,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain, count, repeat
+from string import ascii_lowercase
 
 import numpy as np
 from numpy.typing import NDArray
@@ -323,15 +325,13 @@ def departures_of(frames: Matrices, grading: Grading) -> float:
 def _labels(roles: Sequence[Role]) -> list[str]:
     """Return row labels: the joint's number; "e", "e2" … for fixed rows after the last joint.
 
-    Fixed rows before the last joint have the label "0".
+    Fixed rows before the last joint have the labels "0", "0b", "0c" …
     """
     last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
+    behind = chain(["e"], (f"e{i}" for i in count(2)))
+    before = chain(["0"], (f"0{letter}" for letter in ascii_lowercase[1:]), repeat("0z"))
     return [
-        str(role.joint.index)
-        if role.joint
-        else f"e{i - last if i > last + 1 else ''}"
-        if i > last
-        else "0"
+        str(role.joint.index) if role.joint else next(behind if i > last else before)
         for i, role in enumerate(roles)
     ]
 

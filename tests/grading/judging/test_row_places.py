@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
+from service.grading import Submission, grade
 from tests.grading.support.robots import SCARA, Row
 from tests.grading.support.submitting import graded_table
 
@@ -49,3 +50,14 @@ def test_an_end_row_in_its_place_gets_no_message(
     rows = [[formula.source for formula in row] for row in reference.rows]
     report = graded_table(exercise, rows)
     assert [each.code for each in report.feedback if each.code == "rows_matched"] == []
+
+
+def test_each_fixed_row_before_the_last_joint_has_a_label_of_its_own(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    rows = "a1, 0, 0, q1\n0, 0, 1, 0\n0, 0, -1, 0\na2, 0, 0, q2"
+    report = grade(catalogue["planar-rr"], Submission({"table": rows})).parts[0]
+    assert [row.label for row in report.rows] == ["1", "0", "0b", "2"]
+    [message] = [each.message for each in report.feedback if each.code == "rows_matched"]
+    assert "row 2 with the fixed row 0 before the last joint" in message
+    assert "row 3 with the fixed row 0b before the last joint" in message
