@@ -143,9 +143,10 @@ def faults(found: Catalog) -> Iterator[str]:
                     yield f"{what} of {text!r} differ from those of {sources[-1]!r}"
 
 
-def _places(text: str) -> set[str | None]:
-    # Those of templates of pages look like %(name)s.
-    return {name for _, name, _, _ in Formatter().parse(text)} | set(_IN_PAGES.findall(text))
+def _places(text: str) -> set[str]:
+    # The text after the last place has no name. Those of templates of pages look like %(name)s.
+    names = {name for _, name, _, _ in Formatter().parse(text) if name is not None}
+    return names | set(_IN_PAGES.findall(text))
 
 
 def _quotations(text: str) -> list[str]:
