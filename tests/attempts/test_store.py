@@ -121,11 +121,11 @@ def test_a_failing_job_does_not_affect_others(store: AttemptStore) -> None:
 
 
 def test_a_failed_write_is_reported_and_the_next_one_works(store: AttemptStore) -> None:
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))
     with pytest.raises(StoreDownError):
         record(store, NEW)
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         connection.execute(text("ALTER TABLE hidden RENAME TO attempts"))
     assert record(store, NEW)
 

@@ -27,7 +27,7 @@ def test_points_of_a_tutor_count_and_can_be_withdrawn(
     attempt = recorded(store, catalogue["scara"], "ada", NO_TWIST)
     earned = []
     for points, reason in ((5.0, "the sheet was wrong"), (None, "it was not")):
-        with store.engine.begin() as connection:
+        with store.engine.execution_options(writes=True).begin() as connection:
             override(connection, attempt.id, points, reason, "Dr. Lee", NOON)
             found = history(connection, attempt.id)
         assert found is not None
@@ -48,9 +48,15 @@ def test_points_out_of_range_are_refused(
 ) -> None:
     attempt = recorded(store, catalogue["scara"], "ada", NO_TWIST)
     for points in (-0.5, 1000.0, float("nan")):
-        with store.engine.begin() as connection, pytest.raises(UnusablePointsError):
+        with (
+            store.engine.execution_options(writes=True).begin() as connection,
+            pytest.raises(UnusablePointsError),
+        ):
             override(connection, attempt.id, points, "", "", NOON)
-    with store.engine.begin() as connection, pytest.raises(UnknownAttemptError):
+    with (
+        store.engine.execution_options(writes=True).begin() as connection,
+        pytest.raises(UnknownAttemptError),
+    ):
         override(connection, "0" * 32, 1.0, "", "", NOON)
 
 
@@ -62,12 +68,12 @@ def test_nothing_of_a_forgotten_learner_is_left(
     recorded(store, scara, "ada", RIGHT, 2)
     other = recorded(store, scara, "grace", RIGHT)
     regrading = Regrading(replace(scara, version="2"), FeedbackLevel.FULL)
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         regrading.enqueue(connection)
         regrading.work(connection)
         override(connection, first.id, 1.0, "because", "me", NOON)
         connection.execute(regrade_queue.insert().values(attempt=first.number, exercise="scara"))
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         assert forget(connection, "ada") == LearnerData(2, 2, 1, 0)
         assert forget(connection, "ada") == LearnerData(0, 0, 0, 0)
     with store.engine.connect() as connection:
@@ -86,12 +92,12 @@ def test_a_learner_can_be_forgotten_while_a_regrade_begins(
     regrading = Regrading(replace(catalogue["scara"], version="2"), FeedbackLevel.FULL)
 
     def forgotten() -> LearnerData:
-        with store.engine.begin() as connection:
+        with store.engine.execution_options(writes=True).begin() as connection:
             return forget(connection, "ada")
 
     waiting = text("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
     with ThreadPoolExecutor(1) as thread:
-        with store.engine.begin() as connection:
+        with store.engine.execution_options(writes=True).begin() as connection:
             regrading.enqueue(connection)
             deleted = thread.submit(forgotten)
             end = time.monotonic() + ANSWER

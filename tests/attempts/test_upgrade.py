@@ -63,7 +63,7 @@ def make_old(url: str, revision: str) -> None:
     engine = create_engine(parsed)
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS))
-    with engine.begin() as connection:
+    with engine.execution_options(writes=True).begin() as connection:
         config.attributes["connection"] = connection
         command.upgrade(config, revision)
         connection.execute(
@@ -98,7 +98,7 @@ def store(oldest: str) -> Iterator[AttemptStore]:
 
 def test_keys_without_a_recorded_secret_get_that_of_the_next_key(store: AttemptStore) -> None:
     right, other, now = Secret("right" * 8), Secret("other" * 8), datetime.now(UTC)
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         key = add_key(connection, "a", "d", (), None, now, now + timedelta(days=1))
         assert fits(connection, right)
         assert fits(connection, other)

@@ -179,6 +179,6 @@ def test_unknown_attempts_and_exercises_are_not_found(tutor_of: Tutor, catalogue
 
 
 def test_reading_gets_503_while_the_database_is_down(tutor_of: Tutor, store: AttemptStore) -> None:
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))
     assert {tutor_of().get(path).status_code for path in PATHS} == {503}

@@ -52,7 +52,7 @@ def test_a_database_without_its_tables_is_not_ready_and_the_log_says_why(
     store: AttemptStore, catalogue: Mapping[str, Exercise], caplog: pytest.LogCaptureFixture
 ) -> None:
     app = application(catalogue, store=store)
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))
     with caplog.at_level(logging.WARNING):
         (answer,) = asked(app, "/readyz")

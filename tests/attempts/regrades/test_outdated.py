@@ -208,7 +208,10 @@ def test_workers_do_not_wait_for_one_another(
     recorded_all(store, [new_attempt(catalogue["scara"], f"l{i}", RIGHT) for i in range(BATCH + 2)])
     regrading = Regrading(corrected, FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
-    with store.engine.begin() as one, store.engine.begin() as another:
+    with (
+        store.engine.execution_options(writes=True).begin() as one,
+        store.engine.begin() as another,
+    ):
         assert len(regrading.work(one)) == BATCH
         assert len(regrading.work(another)) == 2
         assert regrading.work(another) == []

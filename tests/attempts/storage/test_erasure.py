@@ -108,10 +108,10 @@ def test_no_data_is_left_of_learners_whose_rows_were_rewritten(
                 report=f'{{"read": "{padding}"}}', submission=str(submission),
             )  # fmt: skip
             if draw.random() < 0.3:
-                with store.engine.begin() as connection:
+                with store.engine.execution_options(writes=True).begin() as connection:
                     override(connection, attempt.id, 1.0, f"{learner} asked", "me", NOON)
     regrading = Regrading(replace(scara, version="2"), FeedbackLevel.FULL)
-    with store.engine.begin() as connection:
+    with store.engine.execution_options(writes=True).begin() as connection:
         regrading.enqueue(connection)
     draw.shuffle(learners)
     for learner in learners[:30]:
