@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from service.bundles.variants import platform_seeds
-from service.catalogue import load_exercise
+from service.catalogue import Exercise, load_exercise
 from service.solutions import solve
 from service.variants.variant import hidden_variant
 from tests.installed.environment import checked, run, unpack
@@ -37,10 +37,14 @@ def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
     return file
 
 
+def variant_of(folder: Path, seeds: Mapping[str, str]) -> Exercise:
+    """Return the variant with these seeds."""
+    return hidden_variant(load_exercise(folder / "arm.toml"), seeds["arm"])
+
+
 def answers(folder: Path, seeds: Mapping[str, str]) -> dict[str, Any]:
     """Return the model answer of a variant."""
-    variant = hidden_variant(load_exercise(folder / "arm.toml"), seeds["arm"])
-    return {"answers": {"table": solve(variant).parts[0].answer}}
+    return {"answers": {"table": solve(variant_of(folder, seeds)).parts[0].answer}}
 
 
 @pytest.mark.journey
@@ -56,14 +60,15 @@ def test_gradescope_gives_each_account_a_variant(programs: Path, tmp_path: Path)
     handed_in.parent.mkdir()
     about.write_text(json.dumps({"users": [{"id": 1}]}))
     seeds = platform_seeds(about, place / "source" / "variants.json")
-    mine = answers(tmp_path, seeds)
-    handed_in.write_text(json.dumps(mine), encoding="utf-8")
+    handed_in.write_text(json.dumps(answers(tmp_path, seeds)), encoding="utf-8")
+    mine = variant_of(tmp_path, seeds).title
 
     def differs(account: int) -> bool:
         about.write_text(json.dumps({"users": [{"id": account}]}))
-        return answers(tmp_path, platform_seeds(about, place / "source" / "variants.json")) != mine
+        other = platform_seeds(about, place / "source" / "variants.json")
+        return variant_of(tmp_path, other).title != mine
 
-    # The secret is random, so some accounts may get the same numbers.
+    # The secret is random, so some accounts get the same lengths. The lengths are in the title.
     other = next(filter(differs, range(2, 100)))
     numbers = {}
     for account in (1, other):
