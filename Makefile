@@ -25,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test journeys thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -48,8 +48,8 @@ test: $(dev) ## lint, type-check and test on every core
 	echo '$(pytest)'; $(pytest); tested=$$?; \
 	wait $$checker; checked=$$?; cat "$$types"; [ $$tested = 0 ] && [ $$checked = 0 ]; }
 
-journeys: $(dev) ## the tests of long ways through browsers and processes, of which `make test` has a sample
-	$(pytest) -m "journey and not campaign"
+long: $(dev) ## the tests that take seconds: browsers, processes, samples of campaigns
+	$(pytest) -m "long and not campaign"
 
 thorough: $(dev) ## the same tests, and all of which the suite has a sample (takes long)
 	$(pytest) -m "campaign or not campaign" --hypothesis-profile thorough --ignore tests/installed

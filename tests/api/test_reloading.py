@@ -51,6 +51,7 @@ def until(client: httpx.Client, expected: str) -> None:
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_a_file_is_changed_broken_mended_and_joined_by_another(
     client: httpx.Client, folder: Path, log: Path
 ) -> None:

@@ -311,6 +311,7 @@ def expected() -> dict[str, dict[str, int]]:
     return {row[0]: dict(zip(headings, map(int, row[1:]), strict=True)) for row in rows}
 
 
+@pytest.mark.long
 def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
     statuses = expected()
     assert set(statuses) == routes_of(guarded.app) == set(RIGHTS)
@@ -405,6 +406,7 @@ async def _told(guarded: Guarded, credential: str, mark: str) -> list[str]:
     return found
 
 
+@pytest.mark.long
 def test_nothing_of_another_course_or_learner_is_told_or_changed(guarded: Guarded) -> None:
     mark = "zora9"
     new = NewLearner(learner="zora", name=mark, email=f"{mark}@example.edu")

@@ -9,7 +9,7 @@ from tests.attack.floods import KINDS, of_kind
 from tests.attack.in_process import InProcess, Post
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_honest_clients_are_served_while_others_send_half_heads() -> None:
     broken = attack(0.3, 0.02, "half heads")
     # Waiting times are not checked here, because they depend on the machine.

@@ -8,7 +8,7 @@ from tests.attack.interface import SECRET, faults, with_key
 from tests.server.raw import service
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("keyed", [False, pytest.param(True, marks=pytest.mark.campaign)])
 def test_the_service_follows_its_openapi_document(tmp_path: Path, keyed: bool) -> None:
     phases = "examples,fuzzing" if keyed else "examples"

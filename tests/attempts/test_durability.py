@@ -152,6 +152,7 @@ def _record(url: str, exercise: Exercise, told: Connection) -> None:
     asyncio.run(clients())
 
 
+@pytest.mark.long
 def test_acknowledged_attempts_are_in_the_file_once(
     sqlite_url: str, catalogue: Mapping[str, Exercise], killable: Any
 ) -> None:

@@ -104,6 +104,7 @@ def kill_before(url: str, statement: int, killable: Any) -> bool:
     return bool(process.exitcode)
 
 
+@pytest.mark.long
 def test_a_killed_migration_is_finished_by_the_next_start(old: OldDatabase, killable: Any) -> None:
     killed = []
     for statement in SOME:

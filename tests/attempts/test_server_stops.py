@@ -70,7 +70,7 @@ class Course:
         assert (await self._client.get("/readyz")).status_code == 200
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_every_acknowledged_attempt_is_recorded_once_however_the_server_stops(
     postgresql: Any,
     postgresql_url: str,
@@ -100,7 +100,7 @@ def test_every_acknowledged_attempt_is_recorded_once_however_the_server_stops(
     assert sorted((key, found) for key, found in rows) == sorted(course.ids.items())
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_service_ends_in_time_although_its_database_does_not_react(
     postgresql: Any, tmp_path: Path
 ) -> None:

@@ -107,7 +107,7 @@ def rows(page: Page) -> Any:
     return page.locator("#list tbody tr")
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_tutor_works_with_recorded_attempts(
     recording: Recording, visit: Opening, tmp_path: Path
 ) -> None:

@@ -53,9 +53,9 @@ def total(page: Page) -> Locator:
 @pytest.mark.parametrize(
     "exercise",
     [
-        pytest.param("spatial-rrr", marks=pytest.mark.journey),
+        pytest.param("spatial-rrr", marks=pytest.mark.long),
         "planar-rrr",
-        pytest.param("rrrp", marks=pytest.mark.journey),
+        pytest.param("rrrp", marks=pytest.mark.long),
     ],
 )
 def test_an_exercise_is_solved_by_keyboard(
@@ -123,7 +123,7 @@ def test_a_table_in_four_formats_fills_the_grid(visit: Opening, service: str) ->
     assert values(cells(page, 1))[16:20] == ["c2", "-s2", "0", "L1*c2"]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_answers_are_previewed_marked_saved_and_shared(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -61,7 +61,7 @@ def violations(shown: Page | Frame, axe: str) -> list[str]:
     return found
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_pages_are_accessible(visit: Opening, service: str, axe: str) -> None:
     # The pages' policy allows only their own scripts, so the checker needs ``bypass_csp``.
     page = visit(bypass_csp=True, viewport={"width": 1280, "height": 900}).page
@@ -134,7 +134,7 @@ def test_other_sites_may_show_figures_but_not_solutions(
     opened.complaints.clear()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_an_exercise_can_be_read_with_scripts_blocked(visit: Opening, service: str) -> None:
     opened = visit(java_script_enabled=False)
     page = opened.page
@@ -155,7 +155,7 @@ HOSTILE_PAGES = (
 )  # fmt: skip
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
     page = visit().page
     page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")

@@ -46,7 +46,7 @@ def cell(page: Page, row: int, column: int) -> Locator:
     return page.locator(".entry input").nth(4 * row - 4 + column)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_seven_joint_arm_can_be_moved(
     visit: Opening, service: str, axe: str, figure: Callable[[str], None]
 ) -> None:
@@ -121,7 +121,7 @@ def test_a_table_can_be_written_and_shared(visit: Opening, service: str) -> None
     assert [url for url in friend.requests if "robot=" in url.partition("#")[0]] == []
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_an_element_that_is_moved_on_its_page_is_there_once(visit: Opening, service: str) -> None:
     page = visit(viewport=SMALL).page
     page.goto(f"{service}/play")

@@ -56,7 +56,7 @@ def tool(page: Page) -> str:
     return page.locator(".pose-numbers code").first.inner_text()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_joint_moves_the_robot_and_the_student_s_table(
     visit: Opening, service: str, axe: str
 ) -> None:
@@ -138,7 +138,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
 
 
 # The tool frame is at the right of one robot, and above the other.
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("robot", ["planar-rr", "stanford-arm"])
 def test_a_phone_shows_the_given_frames_with_their_names(
     robot: str, visit: Opening, service: str

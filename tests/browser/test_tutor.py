@@ -72,6 +72,7 @@ def test_a_tutor_looks_at_a_solution_and_writes_an_exercise(
     assert (tmp_path / "scara.toml").read_text(encoding="utf-8") == written + "\n# ü\n"
 
 
+@pytest.mark.long
 def test_a_class_is_graded_in_the_browser(
     visit: Opening, service: str, axe: str, tmp_path: Path
 ) -> None:

@@ -122,6 +122,7 @@ def test_planar_rrr_in_the_distal_convention(catalogue: Mapping[str, Exercise]) 
     ]
 
 
+@pytest.mark.long
 @together("number", ["0", "1", "pi/2"])
 @together("exercise_id", without_most_real_robots(WITH_TABLE))
 def test_a_table_of_one_number_never_passes(

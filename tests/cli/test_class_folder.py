@@ -46,6 +46,7 @@ def entries(run: subprocess.CompletedProcess[bytes]) -> list[dict[str, Any]]:
     return found
 
 
+@pytest.mark.long
 def test_all_usable_submissions_are_graded(entries: list[dict[str, Any]]) -> None:
     assert len(entries) == COUNT + len(BROKEN)
     broken = {Path(entry["file"]).name: entry["error"] for entry in entries if "error" in entry}
@@ -90,7 +91,7 @@ def test_a_file_without_permission_is_reported(folder: Path) -> None:
         os.seteuid(0)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_ends_the_run_and_leaves_no_files_or_processes(
     folder: Path, tmp_path: Path, number: signal.Signals

@@ -46,6 +46,7 @@ def administrator(database: str) -> str:
     return text
 
 
+@pytest.mark.long
 def test_every_route_of_courses_has_a_method(tmp_path: Path) -> None:
     database = str(tmp_path / "attempts.db")
     key = administrator(database)

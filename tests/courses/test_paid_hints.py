@@ -222,7 +222,7 @@ def test_the_statistics_count_hints_and_misconceptions_by_attempt(class_: Class)
     assert curves["half_turn"] == [2, 1, 0]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_thief_with_all_hints_gains_nothing_below_their_price(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -261,6 +261,7 @@ def test_a_thief_with_all_hints_gains_nothing_below_their_price(
     assert earned == sorted(earned, reverse=True)
 
 
+@pytest.mark.long
 def test_the_solution_for_right_answers_waits_for_the_assignment(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:

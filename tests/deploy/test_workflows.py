@@ -44,7 +44,7 @@ def bash(script: str, folder: Path, **variables: str) -> subprocess.CompletedPro
     )
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_action_grades_a_repository(repository: Path) -> None:
     step = ACTION["runs"]["steps"][-1]
     inputs = {name: f"${{{{ inputs.{name} }}}}" for name in ACTION["inputs"]}

@@ -6,6 +6,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from service import client
 from service.client import Retries
 from tests.api.serving import Served
@@ -15,6 +17,7 @@ _EXAMPLE = re.compile(r"^```python\n(.*?)^```\n(.*?)^```text\n(.*?)^```$", re.DO
 _SHOWN = "http://127.0.0.1:8000"
 
 
+@pytest.mark.long
 def test_the_examples_print_the_shown_output(server: Served) -> None:
     examples = _EXAMPLE.findall(PAGE)
     assert len(examples) == PAGE.count("```python") == 4

@@ -9,7 +9,7 @@ from tests.docs.walkthrough import Reader, blocks, matches
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("page", "commands"),
     [

@@ -70,7 +70,7 @@ MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
 })"""
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: Path) -> None:
     """A text's box is as high as the font; its upper and lower 4 pixels are empty."""
     shown = [*map(drawn, SHIPPED), *(reference_figure(SHIPPED[name]) for name in FRAMED)]
@@ -87,6 +87,7 @@ def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: P
 PHONE: Final = (340, 384)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_figure_is_legible_on_a_phone(name: str) -> None:
     """All letters, indices included, are at least 12 CSS pixels high."""

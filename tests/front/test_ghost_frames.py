@@ -77,6 +77,7 @@ def rows_of(client: httpx.Client, exercise: Exercise) -> list[dict[str, Any]]:
     return rows
 
 
+@pytest.mark.long
 def test_a_ghost_goes_through_the_partial_products_to_the_frame_of_the_service() -> None:
     robots = [each for each in SHIPPED.values() if isinstance(each.reference, Robot)]
     with httpx.Client(transport=InProcess(app), base_url="http://service") as client:

@@ -46,6 +46,7 @@ def offences(source: str) -> Iterator[str]:
 FILES = sorted(SERVICE.rglob("*.py"))
 
 
+@pytest.mark.long
 def test_the_program_executes_no_input() -> None:
     assert len(FILES) > 30
     found = {
@@ -124,6 +125,7 @@ print("heavy after:", sorted(heavy & {name.partition(".")[0] for name in sys.mod
 """
 
 
+@pytest.mark.long
 def test_grading_imports_no_algebra_system_and_opens_nothing() -> None:
     result = subprocess.run(
         [sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=False

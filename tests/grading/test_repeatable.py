@@ -47,6 +47,7 @@ def test_reports_are_equal_in_one_process(catalogue: Mapping[str, Exercise]) -> 
     assert b"yours" in reports.pop()
 
 
+@pytest.mark.long
 def test_reports_are_equal_for_every_hash_seed(catalogue: Mapping[str, Exercise]) -> None:
     here = as_bytes(catalogue[STANFORD.exercise], wrong_answers())
     processes = [

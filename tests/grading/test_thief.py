@@ -150,6 +150,7 @@ def _same(one: str, other: str, exercise: Exercise) -> bool:
     return bool(np.allclose(numbers[0], numbers[1]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 8))
 def test_no_hint_contains_the_value_of_its_cell(
     exercise_id: str, catalogue: Mapping[str, Exercise]

@@ -84,6 +84,7 @@ def subsets(cells: list[Place], rng: random.Random) -> Iterator[list[Place]]:
         yield rng.sample(cells, count)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 4))
 def test_an_unread_cell_of_a_right_answer_affects_only_itself(
     exercise_id: str, catalogue: Mapping[str, Exercise]

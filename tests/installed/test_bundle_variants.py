@@ -47,7 +47,7 @@ def answers(folder: Path, seeds: Mapping[str, str]) -> dict[str, Any]:
     return {"answers": {"table": solve(variant_of(folder, seeds)).parts[0].answer}}
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_gradescope_gives_each_account_a_variant(programs: Path, tmp_path: Path) -> None:
     file = bundle(programs, tmp_path, "gradescope")
     assert (tmp_path / "hw.secret").stat().st_mode & 0o077 == 0
@@ -84,7 +84,7 @@ def test_gradescope_gives_each_account_a_variant(programs: Path, tmp_path: Path)
     assert numbers[1] != numbers[other]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_prairielearn_chooses_by_its_own_variant_seed(programs: Path, tmp_path: Path) -> None:
     file = bundle(programs, tmp_path, "prairielearn", "--image", "course/grader")
     unpack(file, tmp_path)

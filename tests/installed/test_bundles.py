@@ -64,6 +64,7 @@ def test_gradescope_gets_a_valid_result(
         assert_nothing_ran(place, text, done.stdout, done.stderr)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sorts", [("hostile",), ALL])
 def test_prairielearn_gets_a_valid_result(
     sorts: tuple[str, ...], programs: Path, tmp_path: Path

@@ -64,7 +64,7 @@ def test_a_submission_gets_the_same_points_from_wheel_and_http(
         assert graded["report"][figure] == over_http[figure]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_wheel_holds_the_templates_of_reports_and_pages(programs: Path, tmp_path: Path) -> None:
     (tmp_path / "wrong.json").write_text(json.dumps({"answers": WRONG}), encoding="utf-8")
     options = ("grade", "wrong.json", "--exercise", "planar-rrr", "--format", "html")

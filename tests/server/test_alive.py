@@ -12,6 +12,7 @@ from service.server.alive import main
 from tests.server.raw import ROOT, service
 
 
+@pytest.mark.long
 def test_the_health_check_uses_the_port_and_fails_if_nobody_answers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -58,6 +58,7 @@ def waits(
     return sorted(found)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("apart", [False, True], ids=["one address", "six addresses"])
 @pytest.mark.parametrize("pause", [0.0, 0.1, 3.0], ids=["no pause", "short pause", "long pause"])
 def test_costly_requests_on_sixteen_connections_hardly_delay_honest_clients(

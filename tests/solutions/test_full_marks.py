@@ -55,6 +55,7 @@ def test_each_shorthand_reads_back_to_its_meaning(
         assert read(name, exercise.vocabulary).text() == meaning
 
 
+@pytest.mark.long
 def test_the_longest_entry_is_within_the_limit(
     catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:

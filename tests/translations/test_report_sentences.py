@@ -6,6 +6,8 @@ from functools import cache
 from string import Formatter
 from unicodedata import lookup
 
+import pytest
+
 from service.grading import FeedbackLevel, Submission, grade
 from service.grading.report import PartReport, messages_of
 from service.translations import Sentence, told
@@ -111,6 +113,7 @@ def is_prose(value: str) -> bool:
     return False
 
 
+@pytest.mark.long
 def test_every_message_and_correction_is_a_sentence() -> None:
     assert [text for text in texts() if not isinstance(text, Sentence)] == []
 

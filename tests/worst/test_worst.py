@@ -28,6 +28,7 @@ def target() -> Iterator[Target]:
     target.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KNOWN)
 def test_a_known_costly_body_is_within_the_promise(
     name: str, target: Target, figure: Callable[[str], None]
@@ -40,6 +41,7 @@ def test_a_known_costly_body_is_within_the_promise(
     assert ratio < GUARD
 
 
+@pytest.mark.long
 def test_each_kind_of_body_is_changed() -> None:
     mutator = Mutator(random.Random(1), cells())
     for attack in KNOWN.values():

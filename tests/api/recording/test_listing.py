@@ -126,6 +126,7 @@ def test_every_field_of_an_attempt_is_documented(tutor_of: Tutor) -> None:
         )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", PATHS)
 def test_only_callers_with_the_right_read(tutor_of: Tutor, path: str) -> None:
     def status(*options: Any, **headers: str) -> int:

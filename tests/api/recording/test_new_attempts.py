@@ -211,6 +211,7 @@ def test_while_the_database_is_down_grading_goes_on(course_of: Any, store: Attem
     assert graded.status_code == 200
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "learner",
     [
@@ -247,6 +248,7 @@ def test_no_learner_has_a_character_that_is_not_seen() -> None:
                 taken.validate_python(f"a{character}")
 
 
+@pytest.mark.long
 def test_a_page_of_another_origin_cannot_record(
     catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any
 ) -> None:

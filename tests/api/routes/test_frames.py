@@ -69,6 +69,7 @@ def parameters(exercise: Exercise) -> set[str]:
 TABLES = [name for name, exercise in SHIPPED.items() if isinstance(exercise.reference, Robot)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sampled(TABLES))
 def test_a_mechanism_tells_nothing_that_the_statement_does_not(
     client: httpx.Client, name: str

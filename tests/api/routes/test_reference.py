@@ -20,7 +20,7 @@ def sources(html: str) -> list[str]:
     return re.findall(r'(?:src|href)="([^"]+)"', html)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_page_names_no_other_host(server: Served) -> None:
     with httpx.Client(base_url=server.address, trust_env=False, timeout=ANSWER) as client:
         page = client.get(PAGE)
@@ -31,6 +31,7 @@ def test_the_page_names_no_other_host(server: Served) -> None:
         assert all(client.get(f"/{each}").status_code == 200 for each in addresses)
 
 
+@pytest.mark.long
 def test_the_browser_is_told_to_load_and_call_nothing_else(server: Served) -> None:
     page = httpx.get(f"{server.address}{PAGE}", trust_env=False, timeout=ANSWER)
     policy = page.headers["content-security-policy"]

@@ -169,7 +169,7 @@ def _worker(url: str, exercise: Exercise) -> None:
                 time.sleep(0.02)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_attempts_of_a_killed_worker_are_regraded_once_by_another(
     postgresql_url: str,
     catalogue: Mapping[str, Exercise],

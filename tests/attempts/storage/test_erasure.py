@@ -34,6 +34,7 @@ def until_erased(text: str, path: str) -> None:
         time.sleep(0.02)
 
 
+@pytest.mark.long
 def test_deleted_data_stays_until_the_last_reader_ends(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -53,6 +54,7 @@ def test_deleted_data_stays_until_the_last_reader_ends(
     store.close()
 
 
+@pytest.mark.long
 def test_a_running_store_finishes_the_erasure_of_another_program(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,7 +30,7 @@ def card(page: Page, title: str) -> str:
     return page.locator(".exercises > li", has=link).inner_text()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_exercises_are_grouped_searched_and_marked_as_done(visit: Opening, service: str) -> None:
     page = visit().page
     page.goto(service)
@@ -91,7 +91,7 @@ ROTATIONS = [
 ]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_without_scripts_the_catalogue_is_a_plain_list(visit: Opening, service: str) -> None:
     opened = visit(java_script_enabled=False)
     page = opened.page

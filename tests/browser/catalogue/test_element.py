@@ -37,6 +37,7 @@ LIGHT_PAGE = "body { background: white; color: #222; font-family: Georgia, serif
 DARK_PAGE = "body { background: #111; color: #eee }"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("style", "system", "is_dark"),
     [

@@ -49,7 +49,7 @@ def hand_in(link: str, address: str) -> None:
         assert answer.status == 201
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_path: Path) -> None:
     database = str(tmp_path / "attempts.db")
     key = administrator(database)

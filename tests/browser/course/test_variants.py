@@ -16,7 +16,7 @@ from tests.browser.test_pages import violations
 EXERCISE = "planar-rr-numbers"
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_tutor_sees_and_deals_variants(
     visit: Callable[..., Visit], axe: str, tmp_path: Path
 ) -> None:

@@ -67,7 +67,7 @@ def open_homework(page: Page, link: str) -> None:
     page.locator(".assignment").get_by_role("link").click()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_whole_way(visit: Callable[..., Visit], tmp_path: Path) -> None:
     database, folder = str(tmp_path / "attempts.db"), tmp_path / "exercises"
     folder.mkdir()

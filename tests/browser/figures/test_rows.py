@@ -48,7 +48,7 @@ def text(page: Page, name: str) -> str:
     return page.locator(f".row-player {name}").inner_text()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_row_is_played_by_keyboard(visit: Opening, service: str, axe: str) -> None:
     opened = visit(bypass_csp=True, viewport={"width": 1280, "height": 900})
     page = opened.page
@@ -116,7 +116,7 @@ def test_a_row_is_played_by_keyboard(visit: Opening, service: str, axe: str) -> 
     expect(page.locator("td.moving")).to_have_count(0)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_row_of_seven_joints_moves_smoothly(
     visit: Opening, service: str, figure: Callable[[str], None]
 ) -> None:

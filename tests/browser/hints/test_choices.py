@@ -14,7 +14,7 @@ Opening = Callable[..., Visit]
 TABLE = ["a1", "0", "0", "q1", "a2", "0", "0", "q2"]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_other_choices_after_full_marks(visit: Opening, service: str, axe: str) -> None:
     page = visit(bypass_csp=True).page
     page.add_init_script(axe)

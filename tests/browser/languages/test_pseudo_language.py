@@ -55,6 +55,7 @@ def fits(page: Page) -> None:
         assert page.evaluate(OVERFLOW) <= 0, f"the page scrolls sideways at {width} px"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", ["", "practice", "play", "learn", "learn-dh", "tutor/sign-in"])
 def test_a_page_is_told_and_fits(pseudo: str, visit: Opening, path: str) -> None:
     page = visit().page

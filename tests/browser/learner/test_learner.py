@@ -74,7 +74,7 @@ def hand_in(page: Page) -> None:
     page.locator(".bar").get_by_role("button", name="Hand in").click()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     opened = visit(bypass_csp=True, viewport={"width": 1280, "height": 900})
     page = opened.page
@@ -171,6 +171,7 @@ def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     opened.complaints.clear()
 
 
+@pytest.mark.long
 def test_a_learner_sees_the_own_variant(course: Course, visit: Opening) -> None:
     opened = visit()
     page = opened.page

@@ -23,7 +23,7 @@ def hand_in(page: Page, alpha: str) -> None:
         page.locator(".bar").get_by_role("button", name="Hand in").click()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_hints_have_a_price_and_the_report_says_it(
     course: Course, visit: Opening, axe: str
 ) -> None:

@@ -31,7 +31,7 @@ def framed(page: Page, text: str) -> Frame:
     return found
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @checked
 def test_the_pages_in_frames_are_accessible(course: Course, axe: str) -> None:
     course.context.add_init_script(axe)
@@ -61,7 +61,7 @@ def test_the_pages_in_frames_are_accessible(course: Course, axe: str) -> None:
     course.complaints.clear()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @checked
 def test_the_pages_of_admins_are_accessible(course: Course, axe: str) -> None:
     text, until = new_key_text(), NOW + timedelta(days=1)

@@ -8,6 +8,7 @@ from tests.browser.lti.conftest import Course
 from tests.lti.platform import DL, deep_linking
 
 
+@pytest.mark.long
 def test_a_learner_gets_in_by_the_storage_of_the_platform(course: Course) -> None:
     page = course.opened("ada")
     frame = page.frame_locator("iframe")
@@ -20,7 +21,7 @@ def test_a_learner_gets_in_by_the_storage_of_the_platform(course: Course) -> Non
     assert course.context.cookies(course.platform.tool) == []
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_without_storage_the_exercise_opens_in_a_window(course: Course) -> None:
     course.platform.storage = False
     page = course.opened("ada")
@@ -30,7 +31,7 @@ def test_without_storage_the_exercise_opens_in_a_window(course: Course) -> None:
     expect(opened.value.get_by_role("button", name="Hand in")).to_be_visible()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_tutor_opens_the_course_in_a_window(course: Course) -> None:
     page = course.opened("turing")
     button = page.frame_locator("iframe").get_by_role("button", name="Open the course")
@@ -49,7 +50,7 @@ DRAWN = """async () => {
 SIZES = {"wide": (1280, 900), "narrow": (375, 800)}
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("size", SIZES)
 def test_a_tutor_picks_exercises_in_a_frame(course: Course, axe: str, size: str) -> None:
     platform = course.platform

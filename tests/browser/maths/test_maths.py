@@ -45,7 +45,7 @@ def plain(page: Page) -> list[str]:
     return [text for text in page.evaluate(TEXTS) if PLAIN.search(text)]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_every_exercise_is_typeset_and_fits_a_phone(
     visit: Callable[..., Visit], service: str, catalogue: Mapping[str, Exercise]
 ) -> None:

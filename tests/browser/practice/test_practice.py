@@ -30,7 +30,7 @@ def model_cells(service: str, exercise: str) -> list[str]:
     return [str(row[name]) for row in rows for name in ("a", "alpha", "d", "theta")]
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("size", SIZES)
 def test_a_student_solves_a_robot_and_takes_another(
     size: str, visit: Opening, service: str, axe: str

@@ -17,7 +17,7 @@ DEGREES = [
 ]  # fmt: skip
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_angles_are_read_as_degrees_where_the_report_proposes_it(
     visit: Opening, service: str, axe: str
 ) -> None:

@@ -23,7 +23,7 @@ RIGHT = [
 ]  # fmt: skip
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_frames_are_placed_by_keyboard_and_a_broken_rule_is_shown(
     visit: Opening, service: str, axe: str
 ) -> None:
@@ -60,7 +60,7 @@ def test_a_table_of_frames_is_pasted(visit: Opening, service: str) -> None:
     assert [each.input_value() for each in cells(page).all()[:18]] == RIGHT
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_placed_frames_are_in_the_view_and_lead_to_full_marks_on_a_phone(
     visit: Opening, service: str, axe: str
 ) -> None:
@@ -99,7 +99,7 @@ def test_placed_frames_are_in_the_view_and_lead_to_full_marks_on_a_phone(
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_click_on_a_joint_axis_puts_z_there_and_a_second_turns_it_over(
     visit: Opening, service: str
 ) -> None:

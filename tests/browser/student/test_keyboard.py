@@ -16,7 +16,7 @@ IS_FOCUSED = "each => each.matches(':focus')"
 LAST_ROW = slice(12, 16)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_stanford_arm_is_typed_from_an_empty_page_to_full_marks(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -22,7 +22,7 @@ NAMES = {
 }
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_stanford_arm_is_tapped_from_an_empty_page_to_full_marks(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise], axe: str
 ) -> None:

@@ -36,7 +36,7 @@ def follow_by_keyboard(page: Page, name: str) -> None:
     page.keyboard.press("Enter")
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("convention", ["standard", "modified"])
 def test_six_screens_are_solved_by_keyboard(
     visit: Opening, service: str, axe: str, convention: str
@@ -91,7 +91,7 @@ def test_six_screens_are_solved_by_keyboard(
     expect(page.get_by_role("heading", level=2)).to_contain_text("A worked example")
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("look", [{"color_scheme": "dark"}, {"forced_colors": "active"}])
 def test_the_screens_have_enough_contrast(
     visit: Opening, service: str, axe: str, look: dict[str, str]
@@ -105,7 +105,7 @@ def test_the_screens_have_enough_contrast(
     assert violations(page, "") == []
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_arm_is_shown_in_3d_by_demand(visit: Opening, service: str) -> None:
     page = visit().page
     page.goto(f"{service}/learn-dh?convention=modified#table")
@@ -125,7 +125,7 @@ def test_the_page_can_be_read_with_scripts_blocked(visit: Opening, service: str)
     opened.complaints.clear()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_each_column_head_leads_to_its_screen(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rrr-faded")
@@ -139,7 +139,7 @@ def test_each_column_head_leads_to_its_screen(visit: Opening, service: str) -> N
         beside.close()
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_given_rows_are_filled_in_and_cannot_be_changed(
     visit: Opening, service: str, axe: str
 ) -> None:

@@ -30,7 +30,7 @@ def saved(page: Page, button: str, folder: Path) -> Path:
     return file
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_platforms_zip_file_gives_gradebook_and_feedback_pages(
     visit: Callable[..., Visit], service: str, tmp_path: Path
 ) -> None:

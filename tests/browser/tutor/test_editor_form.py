@@ -10,7 +10,7 @@ from tests.browser.steps import cells
 from tests.browser.test_pages import violations
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_unsaved_text_is_tried_in_the_real_form(
     visit: Callable[..., Visit], service: str, axe: str
 ) -> None:

@@ -16,7 +16,7 @@ from tests.browser.test_tutor import NARROW, wide
 from tests.importing.test_arms import ARMS
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
     visit: Callable[..., Visit], axe: str, tmp_path: Path, figure: Callable[[str], None]
 ) -> None:

@@ -17,7 +17,7 @@ def shown(page: Page, selector: str) -> int:
     return len([each for each in page.locator(selector).all() if each.is_visible()])
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_an_exercise_is_printed_with_its_report(visit: Callable[..., Visit], service: str) -> None:
     page = visit(color_scheme="dark").page
     open_exercise(page, service, "planar-rr")

@@ -13,7 +13,7 @@ NARROW: Final = {"width": 390, "height": 844}
 BACKGROUND: Final = "getComputedStyle(document.body).backgroundColor"
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_the_reference_is_accessible_light_and_dark(
     visit: Callable[..., Visit], service: str, axe: str
 ) -> None:
@@ -33,6 +33,7 @@ def test_the_reference_is_accessible_light_and_dark(
     assert page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"]
 
 
+@pytest.mark.long
 def test_the_reference_follows_the_choice_of_colours(
     visit: Callable[..., Visit], service: str
 ) -> None:

@@ -209,6 +209,7 @@ def test_no_file_contains_a_forgotten_learner(run: Run, course: list[str], tmp_p
     assert "ada" in run("attempts", "export").output
 
 
+@pytest.mark.long
 def test_forget_reports_data_that_is_still_in_a_file(
     run: Run, course: list[str], tmp_path: Path
 ) -> None:

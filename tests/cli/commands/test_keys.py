@@ -61,6 +61,7 @@ def test_a_key_is_created_shown_once_listed_and_revoked(monkeypatch: pytest.Monk
     assert run("create", "c", "--exercise", "scarra").exit_code != 0
 
 
+@pytest.mark.long
 def test_a_public_service_needs_keys_or_an_explicit_setting(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -79,6 +80,7 @@ def test_a_public_service_needs_keys_or_an_explicit_setting(
     assert "DH_GRADER_SECRET" in refused("127.0.0.1")
 
 
+@pytest.mark.long
 def test_a_wrong_secret_is_refused_until_all_keys_are_revoked(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -248,6 +248,7 @@ def no_exercises(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(database.parent / "nothing"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [

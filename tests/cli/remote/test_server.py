@@ -59,6 +59,7 @@ def graded_posts(server: Served) -> int:
     return server.log.read_text(encoding="utf-8").count("/grade HTTP/1.1")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "what",
     [
@@ -80,7 +81,7 @@ def test_a_server_and_this_program_give_the_same_document(
     assert list(Path().glob(".*")) == []
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_after_a_kill_the_next_run_requests_exactly_the_rest(
     run: Run, homework: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -29,7 +29,7 @@ SQLITE = pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 POSTGRESQL = pytest.mark.parametrize("database", ["postgresql"], indirect=True)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @SQLITE
 def test_hand_ins_of_a_class_at_once_are_in_time_and_recorded_once(
     database: tuple[str, str], tmp_path: Path
@@ -40,7 +40,7 @@ def test_hand_ins_of_a_class_at_once_are_in_time_and_recorded_once(
     assert len(outcome.attempts) == 15
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @POSTGRESQL
 def test_a_confirmed_hand_in_survives_a_kill_and_the_limit_holds(
     database: tuple[str, str], tmp_path: Path

@@ -8,6 +8,7 @@ from tests.shipped import REAL_ROBOTS, shipped_exercises
 from tests.together import together
 
 
+@pytest.mark.long
 @together("name", REAL_ROBOTS)
 def test_valid_tables_are_accepted_and_wrong_ones_refused(name: str) -> None:
     found = run(name, tables=1, seed=29)

@@ -98,6 +98,7 @@ def test_no_template_turns_escaping_off(file: Path) -> None:
     )
 
 
+@pytest.mark.long
 def test_only_listed_functions_pass_unescaped_html() -> None:
     assert set(calls("own_html")) == set(TRUSTED)
     assert list(calls("Markup")) == ["formats/shared/html_templates.py own_html"]

@@ -177,6 +177,7 @@ ONCE_GAINED = [
 ]
 
 
+@pytest.mark.long
 def test_an_empty_row_or_cell_earns_no_more() -> None:
     found = run(range(len(shipped_robots())), EACH, seed=3, unseen=0, policies=(GIVEN,))
     assert found.tries.total() >= EACH * len(shipped_robots())

@@ -50,6 +50,7 @@ def sample() -> Found:
     return run(numbers, EACH, seed=2, unseen=UNSEEN, policies=(GIVEN,))
 
 
+@pytest.mark.long
 def test_right_cells_of_other_rows_stay_right(sample: Found) -> None:
     robots = all_robots(UNSEEN, 2)
     assert total(sample, "") > 0.8 * EACH * len(robots)

@@ -142,7 +142,7 @@ def test_the_service_sends_what_it_has_committed(journey: Journey) -> None:
     assert journey.gradebook.grades() == {"ada": 0}
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_killed_sender_loses_no_score(journey: Journey, replicas: Replicas) -> None:
     killed(journey, replicas, 1)
 

@@ -30,6 +30,7 @@ def one_slip_each() -> Sequence[ArmTrial]:
     return [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
 
 
+@pytest.mark.long
 def test_slips_in_rows_and_columns_are_named(figure: Callable[[str], None]) -> None:
     found = one_slip_each()
     for kind in CLASSES:

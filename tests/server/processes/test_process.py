@@ -70,7 +70,7 @@ def test_a_begun_request_is_answered_and_idle_connections_are_closed(
         check_end(running)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_an_incomplete_body_does_not_delay_the_shutdown_and_is_reset(tmp_path: Path) -> None:
     # On a busy machine, its usual timeout may be over before it is asked to end.
     with (
@@ -83,7 +83,7 @@ def test_an_incomplete_body_does_not_delay_the_shutdown_and_is_reset(tmp_path: P
             half.recv(100)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("options", [(), ("--workers", "2")], ids=["alone", "workers"])
 def test_a_second_signal_ends_it_at_once(tmp_path: Path, options: tuple[str, ...]) -> None:
     with service(tmp_path, *options) as running, running.connect(preview()[:HALF]):
@@ -101,6 +101,7 @@ def test_a_second_signal_ends_it_at_once(tmp_path: Path, options: tuple[str, ...
         until(lambda: not any(map(runs, staff)))
 
 
+@pytest.mark.long
 def test_answers_are_complete_if_the_service_ends_while_sending_them(tmp_path: Path) -> None:
     pipelined = 200
     with service(tmp_path, module=IMPATIENT) as running:
@@ -115,7 +116,7 @@ def test_answers_are_complete_if_the_service_ends_while_sending_them(tmp_path: P
         assert len(found) < 20 * pipelined
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_answers_that_the_shutdown_interrupts_log_no_error(tmp_path: Path) -> None:
     hanging = b"GET /hanging HTTP/1.1\r\nHost: x\r\n\r\n"
     with service(tmp_path, module=IMPATIENT) as running:
@@ -129,7 +130,7 @@ def test_answers_that_the_shutdown_interrupts_log_no_error(tmp_path: Path) -> No
         assert "Exception" not in running.log
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_a_running_thread_does_not_delay_the_shutdown(tmp_path: Path) -> None:
     working = b"GET /working HTTP/1.1\r\nHost: x\r\n\r\n"
     with service(tmp_path, module=IMPATIENT) as running, running.connect(working) as line:
@@ -140,7 +141,7 @@ def test_a_running_thread_does_not_delay_the_shutdown(tmp_path: Path) -> None:
 
 
 # The shutdown comes while the process of the check starts, and while it works.
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.parametrize("seconds", [0.0, 4.0])
 def test_a_check_of_the_editor_does_not_delay_the_shutdown(tmp_path: Path, seconds: float) -> None:
     body = json.dumps({"id": "arm", "text": COSTLY}).encode()
@@ -202,7 +203,7 @@ def check_draft(running: Service, draft: str) -> None:
     ] * 6
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_workers_share_connections_and_drafts_and_a_killed_one_is_replaced(
     tmp_path: Path,
 ) -> None:
@@ -225,7 +226,7 @@ def test_workers_share_connections_and_drafts_and_a_killed_one_is_replaced(
         check_end(running)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_workers_end_when_their_supervisor_is_killed(tmp_path: Path) -> None:
     with service(tmp_path, "--workers", "2") as running:
         until(lambda: running.log.count("startup complete") == 2)
@@ -244,7 +245,7 @@ def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         assert running.end() == 0
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_many_open_connections_do_not_prevent_answers_and_take_little_memory(
     lasting: Service,
 ) -> None:
@@ -278,6 +279,7 @@ def test_addresses_can_be_left_out_of_the_log(lasting: Service) -> None:
     assert "Ada" not in lasting.log
 
 
+@pytest.mark.long
 def test_a_port_in_use_is_reported(lasting: Service, tmp_path: Path) -> None:
     with (
         pytest.raises(AssertionError, match=r"(?i)address already in use"),

@@ -34,7 +34,7 @@ def logged(folder: Path) -> tuple[list[dict[str, Any]], str]:
         return lines, running.log
 
 
-@pytest.mark.journey
+@pytest.mark.long
 def test_every_line_is_an_object_and_contains_no_answer(tmp_path: Path) -> None:
     lines, text = logged(tmp_path)
     for line in lines:

@@ -118,6 +118,7 @@ def test_refused_requests_are_counted_under_their_route() -> None:
         assert f"dh_grader_requests_total{labels} {2.0 if status == 200 else 1.0}" in own
 
 
+@pytest.mark.long
 def test_metrics_contain_the_memory_and_are_shown_to_other_machines_only_if_set_to_all() -> None:
     here, elsewhere = ("127.0.0.1", 1), ("192.0.2.7", 1)
     own = told(here, metrics="local").text

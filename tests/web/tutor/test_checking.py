@@ -108,7 +108,7 @@ def test_the_end_of_the_service_ends_a_check(checking: Checking) -> None:
         checking.checked(QUICK)
 
 
-@pytest.mark.journey
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc")
 def test_the_process_ends_after_the_service_was_killed() -> None:
     with subprocess.Popen(

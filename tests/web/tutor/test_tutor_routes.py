@@ -158,6 +158,7 @@ def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> No
     assert tutor.check(SCARA, "../scara")["findings"][0]["level"] == "unusable"
 
 
+@pytest.mark.long
 def test_only_a_few_checks_may_wait(tutor: Tutor) -> None:
     async def all_at_once() -> list[int]:
         body = {"id": "scara", "text": SCARA}

@@ -8,6 +8,7 @@ from service.catalogue import Exercise
 from tests.grading.judging.marking.sums import run
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("answers", [1, pytest.param(1000, marks=pytest.mark.campaign)])
 def test_points_add_up(answers: int, catalogue: Mapping[str, Exercise]) -> None:
     graded, found = run(catalogue, answers, seed=1)

@@ -19,6 +19,7 @@ def tutor(catalogue: Mapping[str, Exercise]) -> Tutor:
     return Tutor(catalogue)
 
 
+@pytest.mark.long
 def test_a_robot_is_imported_as_by_the_command(tutor: Tutor, tmp_path: Path) -> None:
     [arm] = ARMS.glob("panda-*.urdf")
     table = tmp_path / "pasted.txt"
@@ -41,6 +42,7 @@ def test_a_robot_is_imported_as_by_the_command(tutor: Tutor, tmp_path: Path) -> 
         assert finding["text"].startswith("1 right, 1 equivalent, 0 wrong")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["doctype", "loop", "nan", "xacro", "eleven joints", "deep"])
 def test_a_hostile_file_is_refused_with_the_reason(tutor: Tutor, name: str) -> None:
     text, reason = REFUSED[name]
