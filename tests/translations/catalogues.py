@@ -12,6 +12,7 @@ import json
 import re
 import sys
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from io import BytesIO
 from pathlib import Path
 from string import Formatter
@@ -32,6 +33,7 @@ _KEYWORDS: Final[dict[str, dict[str, Any]]] = {
     "javascript": {"worded": None, "wordedFor": (1, 2)},
 }
 DOMAINS: Final = ("sentences", "pages")
+_NO_DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)
 # What a text quotes: a name or a piece of a formula.
 _IN_PAGES: Final = re.compile(r"%\(\w+\)s")
 _QUOTED: Final = re.compile(r"`[^`]+`")
@@ -115,6 +117,8 @@ def as_po(found: Catalog) -> bytes:
 
 def as_mo(found: Catalog) -> bytes:
     """Return the compiled catalogue, without the sentences that have no translation."""
+    # The text has no date, so the header would have that of today.
+    found.creation_date = _NO_DATE
     out = BytesIO()
     write_mo(out, found)
     return out.getvalue()
