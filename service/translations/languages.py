@@ -1,6 +1,6 @@
 """The languages that sentences are told in, and the choice of one for a reader."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from gettext import GNUTranslations, NullTranslations
@@ -27,11 +27,20 @@ class Language:
     @cached_property
     def translation(self) -> NullTranslations | None:
         """The catalogue of the language; None for English, the language of the templates."""
+        return self._catalogue(DOMAINS)
+
+    @cached_property
+    def translation_of_scripts(self) -> NullTranslations | None:
+        """The same catalogue, but of a text that reports have, too, the words of the pages."""
+        return self._catalogue(DOMAINS[::-1])
+
+    def _catalogue(self, domains: Sequence[str]) -> NullTranslations | None:
+        """Return the texts of these domains; the first one with a text counts."""
         if self.code == "en":
             return None
-        found = NullTranslations()
         # A template that no catalogue has stays English.
-        for domain in DOMAINS:
+        found = NullTranslations()
+        for domain in reversed(domains):
             file = _FOLDER / self.code / f"{domain}.mo"
             if file.is_file():
                 with file.open("rb") as content:

@@ -31,13 +31,18 @@ _NAME: Final = re.compile(
     r"(?P<frame>\{[0-9A-Za-z](?:[-−+]?[0-9])?\})"
     rf"|(?P<stem>[A-Za-z{greek.CLASS}]+)(?P<digits>[0-9₀-₉]*)"
     rf"(?:_(?P<below>{_INDEX}))?(?:\^(?P<above>{_INDEX}|\*))?"
-    r")(?![^\W²³]|[{@])"
+    # In l’axe, the l is no symbol.
+    r")(?![^\W²³]|[{@]|['’][^\W\d_]{2})"
 )
 # A hyphen that is a sign: before a number or a name, and after nothing that it could join.
 _SIGN: Final = re.compile(
     rf"(?<![^\s(\[,;=])-(?=[0-9({greek.CLASS}]|[A-Za-z][0-9_]|(?:{'|'.join(_SPELLED)})(?![A-Za-z]))"
 )
-_AXIS: Final = re.compile(r"[xyz](?=[\s-]+ax[ei]s(?![A-Za-z]))")
+# An axis by its letter, in each language: the x axis, die x-Achse, x 轴, l’axe x, el eje x.
+_AXIS: Final = re.compile(
+    r"[xyz](?=[\s-]+(?:ax[ei]s|Achsen?)(?![A-Za-z])|\s?轴)"
+    r"|(?:(?<=\baxe |\beje )|(?<=\baxes |\bejes )|(?<=\bAchse ))[xyz](?![\w'’])"
+)
 # A formula, an argument in brackets, and the signs that must stay in one line with them.
 _FORMULA: Final = r'(?:<span class="math inline">)?<math[^>]*>(?:(?!</math>).)*</math>(?:</span>)?'
 _RUN: Final = re.compile(

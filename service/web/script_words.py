@@ -19,7 +19,7 @@ def dictionary(language: Language, scripts: Iterable[str]) -> str:
     """Return the module with the sentences of all scripts that the language has."""
     words: dict[str, str] = {}
     counts: dict[str, tuple[str, str]] = {}
-    translation = language.translation
+    translation = language.translation_of_scripts
     if translation is not None:
         for script in scripts:
             for match in _WORDED.finditer(script):

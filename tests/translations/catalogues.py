@@ -103,6 +103,8 @@ def updated(code: str, domain: str) -> Catalog:
 def as_po(found: Catalog) -> bytes:
     """Return the text of a catalogue, sorted by files, without line numbers and dates."""
     out = BytesIO()
+    # Babel's own comment names a holder of rights and a year.
+    found.header_comment = "# Translations of DH Grader; the terms are those of glossary.md."
     write_po(
         out, found, width=100, omit_header=False, include_lineno=False, sort_by_file=True,
         ignore_obsolete=True,

@@ -7,7 +7,9 @@ import re
 from gettext import NullTranslations
 from typing import Final
 
-from service.translations import LANGUAGES, Language
+import pytest
+
+from service.translations import ENGLISH, LANGUAGES, Language
 
 _ACCENTED: Final = str.maketrans(
     "aceinosuyzACEINOSUYZ", "áćéíñóśúýźÁĆÉÍÑÓŚÚÝŹ"
@@ -35,12 +37,18 @@ class PseudoTranslation(NullTranslations):
 
 
 PSEUDO: Final = Language("qps", "Þśéúđó", "qps-Ploc")
-vars(PSEUDO)["translation"] = PseudoTranslation()
+vars(PSEUDO).update(translation=PseudoTranslation(), translation_of_scripts=PseudoTranslation())
 
 
 def offer_pseudo() -> None:
     """Offer the language in this process."""
     LANGUAGES[PSEUDO.code] = PSEUDO  # type: ignore[index]
+
+
+def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Offer only English in this test."""
+    for code in [code for code in LANGUAGES if code != ENGLISH.code]:
+        monkeypatch.delitem(LANGUAGES, code)  # type: ignore[arg-type]
 
 
 if __name__ == "__main__":

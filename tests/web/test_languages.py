@@ -13,7 +13,7 @@ from service.api.http.language import LANGUAGE_COOKIE
 from service.catalogue import Exercise
 from service.translations import LANGUAGES
 from service.web import web_routes
-from tests.translations.pseudo import PSEUDO
+from tests.translations.pseudo import PSEUDO, without_others
 
 PAGES = ("/", "/exercises/scara", "/practice", "/play", "/learn", "/learn-dh", "/docs")
 SWITCH = '<details class="languages">'
@@ -34,11 +34,6 @@ class Client:
             return await client.get(path, headers=dict(headers))
 
 
-@pytest.fixture(scope="module")
-def english(catalogue: Mapping[str, Exercise]) -> Client:
-    return Client(catalogue)
-
-
 @pytest.fixture
 def client(catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch) -> Client:
     """Return a client of a service that offers a second language."""
@@ -46,10 +41,12 @@ def client(catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch) -
     return Client(catalogue)
 
 
-@pytest.mark.skipif(len(LANGUAGES) > 1, reason="other languages are offered")
 @pytest.mark.parametrize("path", PAGES)
-def test_with_one_language_there_is_no_switch(english: Client, path: str) -> None:
-    page = english.get(f"{path}?lang=qps")
+def test_with_one_language_there_is_no_switch(
+    catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch, path: str
+) -> None:
+    without_others(monkeypatch)
+    page = Client(catalogue).get(f"{path}?lang=qps")
     assert '<html lang="en">' in page.text
     assert SWITCH not in page.text
     assert "words-qps" not in page.text

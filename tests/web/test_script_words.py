@@ -10,7 +10,7 @@ from service.translations import LANGUAGES
 from service.web.assets import FOLDER, load_assets
 from service.web.script_words import dictionary
 from tests.translations.catalogues import extracted
-from tests.translations.pseudo import PSEUDO
+from tests.translations.pseudo import PSEUDO, without_others
 
 SCRIPTS = [file.read_text("utf-8") for file in FOLDER.rglob("*.js") if "vendor" not in file.parts]
 
@@ -47,6 +47,7 @@ def test_the_script_with_the_words_names_the_dictionary(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "words.js").write_text('const FILES = {};\nworded("Check");\n', encoding="utf-8")
+    without_others(monkeypatch)
     plain = load_assets(tmp_path)
     assert plain.words(PSEUDO) is None
     assert plain.by_plain_name["words.js"].content.startswith(b"const FILES = {};")

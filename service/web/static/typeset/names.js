@@ -20,10 +20,13 @@ const NAME = new RegExp(
     String.raw`|(?<![\p{L}\p{N}_\\@#$'’}])(?:` +
     String.raw`(?<frame>\{[0-9A-Za-z](?:[\-−+]?[0-9])?\})` +
     `|(?<stem>[A-Za-z${LETTERS}]+)(?<digits>[0-9₀-₉]*)(?:_(?<below>${INDEX}))?(?:\\^(?<above>${INDEX}|\\*))?` +
-    String.raw`)(?![\p{L}\p{Nd}_]|[\{@])`,
+    // In l’axe, the l is no symbol.
+    String.raw`)(?![\p{L}\p{Nd}_]|[\{@]|['’]\p{L}{2})`,
   "gu",
 );
-const AXIS = /^[xyz][\s-]+ax[ei]s(?![A-Za-z])/;
+// An axis by its letter, in each language: the x axis, die x-Achse, x 轴, l’axe x, el eje x.
+const AXIS =
+  /[xyz](?=[\s-]+(?:ax[ei]s|Achsen?)(?![A-Za-z])|\s?轴)|(?<=(?<![\p{L}\d_])(?:axes?|ejes?|Achse) )[xyz](?![\p{L}\d_'’])/uy;
 const SIGN = new RegExp(
   String.raw`(?<![^\s(\[,;=])-(?=[0-9(${LETTERS}]|[A-Za-z][0-9_]|(?:${SPELLED.join("|")})(?![A-Za-z]))`,
   "gu",
@@ -108,7 +111,8 @@ function nameOf(match, symbols) {
   const name = { stem, below: plain + below, above };
   const isLetter = stem.length === 1 && (name.below || above || LETTERS.includes(stem));
   const isGreek = SPELLED.includes(stem) || (Object.hasOwn(GREEK, stem) && name.below);
-  const isAxis = !name.below && AXIS.test(match.input?.slice(match.index) ?? "");
+  AXIS.lastIndex = match.index ?? 0;
+  const isAxis = !name.below && AXIS.test(match.input ?? "");
   if (isAxis || isLetter || isGreek || below.length === 1 || /^\d+$/.test(below)) return name;
   const written = match[0].split("^")[0];
   return symbols.has(written) && (!WORDS.has(written) || written === match.input) ? name : null;
