@@ -48,7 +48,7 @@ def offer_pseudo() -> None:
 def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """Offer only English in this test."""
     for code in [code for code in LANGUAGES if code != ENGLISH.code]:
-        monkeypatch.delitem(LANGUAGES, code)  # type: ignore[arg-type]
+        monkeypatch.delitem(LANGUAGES, code)
 
 
 if __name__ == "__main__":
