@@ -165,16 +165,17 @@ export class ArmPicture {
     const [convention, row] = [this.#convention, this.#row];
     const [foot, top, joint, tip] = corners();
     const all = frames(convention);
-    const parts = axes().flatMap(([point, along], i) => [
-      line([gone(point, along, i ? -0.2 : -0.62), gone(point, along, i ? 0.3 : 0.36)], "axis"),
-      label(
-        gone(point, along, i ? 0.33 : 0.4),
-        worded("axis of joint {joint}", { joint: i + 1 }),
-        "quiet-name",
-        i ? [0, 12] : [0, 0],
-      ),
-    ]);
+    const parts = axes().map(([point, along], i) =>
+      line([gone(point, along, i ? -0.2 : -0.62), gone(point, along, i ? 0.3 : 0.36)], "axis")
+    );
     parts.push(line([foot, top, joint, tip], "arm"), ...[foot, top, joint, tip].map((each) => this.#dot(each)));
+    // The words lie above the arm: in some languages they are long.
+    parts.push(
+      ...axes().map(([point, along], i) => {
+        const name = worded("axis of joint {joint}", { joint: i + 1 });
+        return label(gone(point, along, i ? 0.33 : 0.4), name, "quiet-name", i ? [16, 12] : [0, 0]);
+      }),
+    );
     const lengths = /** @type {[string, number[], number[], [number, number]][]} */ ([
       ["h", foot, top, [-22, 0]],
       ["w", top, joint, [2, 20]],
