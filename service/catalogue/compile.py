@@ -8,7 +8,6 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -184,11 +183,8 @@ def _joint_variable(joint: Joint, symbol: SymbolSpec | None) -> Variable:
             if joint.prismatic
             else say("joint angle of joint {joint}", joint=joint.index)
         )
-        variable = _variable(
-            joint.variable, SymbolSpec(kind=kind, description=meaning), joint.index
-        )
-        # The model of the file makes a plain text of the sentence.
-        return replace(variable, description=meaning)
+        described = SymbolSpec(kind=kind, description=meaning)
+        return _variable(joint.variable, described, joint.index)
     if symbol.kind != kind:
         raise FieldError(
             f"symbols.{joint.variable}.kind",

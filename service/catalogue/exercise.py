@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from gettext import NullTranslations
 from typing import Final
 
 from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
-from service.catalogue.files.schema import CheckSpec, TranslationSpec, ViewSpec
+from service.catalogue.files.schema import CheckSpec, PartTextsSpec, TranslationSpec, ViewSpec
 from service.catalogue.level import ExerciseLevel
 from service.catalogue.part import PartSpec
 from service.catalogue.robots.formulas import FormulaField, FormulaGrid, fields_of
@@ -16,10 +17,11 @@ from service.catalogue.robots.variables import Variable
 from service.catalogue.varying.vary import Vary
 from service.expressions import Vocabulary
 from service.kinematics.dh import Convention
-from service.translations import ENGLISH, Language, told
+from service.translations import ENGLISH, Language, Sentence, told
 
 _ANY_TIME: Final = AttemptsSpec()
 _UNTRANSLATED: Final = TranslationSpec()
+_UNTRANSLATED_PART: Final = PartTextsSpec()
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +125,10 @@ class Exercise:
 
 
 def in_language(exercise: Exercise, language: Language) -> Exercise:
-    """Return the exercise with its texts in a language; texts without a translation stay."""
+    """Return the exercise with its texts in a language; texts without a translation stay.
+
+    The file has the translations of its texts, or the texts are sentences of the catalogues.
+    """
     if language == ENGLISH:
         return exercise
     if language.code not in exercise.told:
@@ -142,14 +147,24 @@ def _translated(exercise: Exercise, language: Language) -> Exercise:
     )
     return replace(
         exercise,
-        title=texts.title or exercise.title,
-        summary=texts.summary or exercise.summary,
-        statement=texts.statement or exercise.statement,
+        title=texts.title or told(exercise.title, translation),
+        source=told(exercise.source, translation),
+        summary=texts.summary or told(exercise.summary, translation),
+        statement=texts.statement or told(exercise.statement, translation),
         variables=tuple(variables),
         parts=tuple(
-            part.model_copy(update=texts.parts[part.id].model_dump(exclude_none=True))
-            if part.id in texts.parts
-            else part
+            _translated_part(part, texts.parts.get(part.id, _UNTRANSLATED_PART), translation)
             for part in exercise.parts
         ),
     )
+
+
+def _translated_part(
+    part: PartSpec, texts: PartTextsSpec, translation: NullTranslations | None
+) -> PartSpec:
+    sentences = {
+        name: told(text, translation)
+        for name, text in (("title", part.title), ("prompt", part.prompt))
+        if isinstance(text, Sentence)
+    }
+    return part.model_copy(update=sentences | texts.model_dump(exclude_none=True))

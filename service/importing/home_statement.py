@@ -12,10 +12,47 @@ import numpy as np
 from service.kinematics.chain import ALPHA, A, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import Sentence, bulleted, joined, paragraph, say, template
+from service.translations.sentence import SentenceValue
 
 _SAME = 1e-6
-_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+# The numbers of joints, from one.
+_REVOLUTE = (
+    template("one revolute joint"),
+    template("two revolute joints"),
+    template("three revolute joints"),
+    template("four revolute joints"),
+    template("five revolute joints"),
+    template("six revolute joints"),
+    template("seven revolute joints"),
+    template("eight revolute joints"),
+    template("nine revolute joints"),
+    template("ten revolute joints"),
+)
+_PRISMATIC = (
+    template("one prismatic joint"),
+    template("two prismatic joints"),
+    template("three prismatic joints"),
+    template("four prismatic joints"),
+    template("five prismatic joints"),
+    template("six prismatic joints"),
+    template("seven prismatic joints"),
+    template("eight prismatic joints"),
+    template("nine prismatic joints"),
+    template("ten prismatic joints"),
+)
 Letters = Mapping[tuple[int, int], str]
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A direction in words: templates of its sentences, and the values that all of them have."""
+
+    slides: str
+    turns: str
+    points: str
+    its_points: str
+    values: Mapping[str, SentenceValue]
 
 
 @dataclass(frozen=True)
@@ -50,32 +87,30 @@ class UnevenLettersError(ValueError):
     """A length and a crooked angle meet in one coordinate, so letters give no readable text."""
 
 
-def home_statement(robot: HomeRobot, convention: Convention) -> str:
+def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
     """Return the statement of an exercise about the robot.
 
     Raises UnevenLettersError if a coordinate is not a sum of letters.
     """
-    tool_frame = tool_label(robot, convention)
-    wrapped = [*_joints_in_words(robot)]
     lettered = any(name[0].isalpha() for name in robot.letters.values())
-    units = "" if lettered else " All lengths are in metres."
-    at_home = (
-        f"The robot has {_structure_in_words(robot.structure)}.{units} At home all joint variables "
-        f"are 0. These are the axes at home, in the base frame {{0}}:"
+    at_home = paragraph(
+        _structure_in_words(robot.structure),
+        "" if lettered else say("All lengths are in metres."),
+        say("At home all joint variables are 0."),
+        say("These are the axes at home, in the base frame {{0}}:"),
     )
-    positive = "Each joint variable counts positive about or along the direction that is named."
-    *_, tool = _origins(robot)
-    end = robot.frames(**robot.lengths())[-1]
-    x, z = (
-        (f"x{tool_frame}", f"z{tool_frame}") if tool_frame != "e" else ("its x axis", "its z axis")
+    positive = say(
+        "Each joint variable counts positive about or along the direction that is named."
     )
-    given = (
-        f"The base frame {{0}} and the tool frame {{{tool_frame}}} are given. At home the origin "
-        f"of {{{tool_frame}}} is at {tool}, {x} points {_way(end[:3, 0])} and {z} points "
-        f"{_way(end[:3, 2])}. The frames on the joints are yours to choose by the "
-        f"{convention.value} convention."
+    tool_frame = tool_label(robot, convention)
+    given = paragraph(
+        say("The base frame {{0}} and the tool frame {{{tool}}} are given.", tool=tool_frame),
+        _tool_in_words(robot, tool_frame),
+        say("The frames on the joints are yours to choose by the standard convention.")
+        if convention is Convention.STANDARD
+        else say("The frames on the joints are yours to choose by the modified convention."),
     )
-    return "\n\n".join([at_home, "\n".join(wrapped), positive, given])
+    return joined("\n\n", [at_home, bulleted([*_joints_in_words(robot)]), positive, given])
 
 
 def tool_label(robot: HomeRobot, convention: Convention) -> str:
@@ -89,38 +124,82 @@ def tool_label(robot: HomeRobot, convention: Convention) -> str:
     return "e" if fixed or len(robot.table) > len(robot.structure) else str(len(robot.table))
 
 
-def _structure_in_words(structure: str) -> str:
-    words = [
-        f"{_COUNTS[count]} {kind} joint{'' if count == 1 else 's'}"
-        for kind, count in (("revolute", structure.count("R")), ("prismatic", structure.count("P")))
-        if count
-    ]
-    return f"{' and '.join(words)} ({structure})"
+def _structure_in_words(structure: str) -> Sentence:
+    revolute, prismatic = structure.count("R"), structure.count("P")
+    if revolute and prismatic:
+        return say(
+            "The robot has {revolute} and {prismatic} ({structure}).",
+            revolute=say(_REVOLUTE[revolute - 1]),
+            prismatic=say(_PRISMATIC[prismatic - 1]),
+            structure=structure,
+        )
+    joints = _REVOLUTE[revolute - 1] if revolute else _PRISMATIC[prismatic - 1]
+    return say("The robot has {joints} ({structure}).", joints=say(joints), structure=structure)
 
 
-def _joints_in_words(robot: HomeRobot) -> Iterator[str]:
+def _joints_in_words(robot: HomeRobot) -> Iterator[Sentence]:
     at_home = robot.frames(**robot.lengths())
     for i, (letter, origin) in enumerate(zip(robot.structure, _origins(robot), strict=False)):
         way = _way(at_home[i, :3, 2])
         if letter == "P":
-            yield f"- Joint {i + 1} slides {way}."
+            yield say(way.slides, joint=i + 1, **way.values)
         else:
-            yield f"- Joint {i + 1} turns about the axis through {origin}, {way}."
+            yield say(way.turns, joint=i + 1, point=origin, **way.values)
 
 
-def _way(direction: Numbers) -> str:
+def _tool_in_words(robot: HomeRobot, tool_frame: str) -> Sentence:
+    *_, origin = _origins(robot)
+    end = robot.frames(**robot.lengths())[-1]
+    x, z = _way(end[:3, 0]), _way(end[:3, 2])
+    if tool_frame == "e":
+        x_points = say(x.its_points, axis="x", **x.values)
+        z_points = say(z.its_points, axis="z", **z.values)
+    else:
+        x_points = say(x.points, axis=f"x{tool_frame}", **x.values)
+        z_points = say(z.points, axis=f"z{tool_frame}", **z.values)
+    return say(
+        "At home the origin of {{{tool}}} is at {point}, {x_points} and {z_points}.",
+        tool=tool_frame,
+        point=origin,
+        x_points=x_points,
+        z_points=z_points,
+    )
+
+
+def _way(direction: Numbers) -> _Way:
     """Return a direction in words, in the axes of frame {0}."""
     for axis, name in enumerate(("x0", "y0", "z0")):
         if abs(direction[axis]) > 1 - _SAME:
-            return f"along {name}" if direction[axis] > 0 else f"opposite to {name}"
-    return _tilted(direction) or f"along ({', '.join(number_text(each) for each in direction)})"
+            return _along(name) if direction[axis] > 0 else _opposite(name)
+    numbers = f"({', '.join(number_text(each) for each in direction)})"
+    return _tilted(direction) or _along(numbers)
 
 
-def _tilted(direction: Numbers) -> str:
-    """Return a direction between two axes, 15°, 30° or 45° from one of them; else an empty text.
+def _along(direction: str) -> _Way:
+    return _Way(
+        template("Joint {joint} slides along {direction}."),
+        template("Joint {joint} turns about the axis through {point}, along {direction}."),
+        template("{axis} points along {direction}"),
+        template("its {axis} axis points along {direction}"),
+        {"direction": direction},
+    )
 
-    >>> _tilted(np.array([-0.5, 0, 0.75**0.5]))
-    '30° from z0 towards -x0'
+
+def _opposite(direction: str) -> _Way:
+    return _Way(
+        template("Joint {joint} slides opposite to {direction}."),
+        template("Joint {joint} turns about the axis through {point}, opposite to {direction}."),
+        template("{axis} points opposite to {direction}"),
+        template("its {axis} axis points opposite to {direction}"),
+        {"direction": direction},
+    )
+
+
+def _tilted(direction: Numbers) -> _Way | None:
+    """Return a direction between two axes, 15°, 30° or 45° from one of them; else None.
+
+    >>> _tilted(np.array([-0.5, 0, 0.75**0.5])).values
+    {'angle': 30, 'start': 'z0', 'towards': '-x0'}
     """
     signed = [
         (abs(each), ("-" if each < 0 else "") + name)
@@ -130,8 +209,17 @@ def _tilted(direction: Numbers) -> str:
     angle = math.degrees(math.atan2(side, main))
     steps = round(angle / 15)
     if least > _SAME or abs(angle - 15 * steps) > _SAME:
-        return ""
-    return f"{15 * steps}° from {start} towards {towards}"
+        return None
+    return _Way(
+        template("Joint {joint} slides {angle}° from {start} towards {towards}."),
+        template(
+            "Joint {joint} turns about the axis through {point}, {angle}° from {start} towards "
+            "{towards}."
+        ),
+        template("{axis} points {angle}° from {start} towards {towards}"),
+        template("its {axis} axis points {angle}° from {start} towards {towards}"),
+        {"angle": 15 * steps, "start": start, "towards": towards},
+    )
 
 
 def _origins(robot: HomeRobot) -> list[str]:

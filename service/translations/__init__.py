@@ -14,6 +14,8 @@ from service.translations.languages import (
 )
 from service.translations.sentence import (
     Sentence,
+    bulleted,
+    joined,
     listed,
     paragraph,
     say,
@@ -28,6 +30,8 @@ __all__ = [
     "Language",
     "Sentence",
     "accepted_language",
+    "bulleted",
+    "joined",
     "language_named",
     "listed",
     "paragraph",

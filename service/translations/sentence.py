@@ -90,6 +90,20 @@ def paragraph(*sentences: str) -> str:
     return say("{first} {second}", first=paragraph(*said[:-1]), second=said[-1])
 
 
+def joined(separator: str, sentences: Sequence[str]) -> Sentence:
+    """Return complete sentences with a separator between them that all languages have.
+
+    Such a separator is a line break; ``paragraph`` has the blank, which Chinese has not.
+    """
+    values = {f"sentence{i}": sentence for i, sentence in enumerate(sentences)}
+    return Sentence(separator.join(f"{{{name}}}" for name in values), values)
+
+
+def bulleted(sentences: Sequence[str]) -> Sentence:
+    """Return sentences as the items of a Markdown list."""
+    return joined("\n", [Sentence("- {item}", {"item": each}) for each in sentences])
+
+
 def told(text: str, translation: Translation | None) -> str:
     """Return a sentence in a language; None is English. A text without a template stays."""
     if translation is None or not isinstance(text, Sentence):

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import pytest
 
-from service.translations import listed, say, say_count, told
+from service.translations import bulleted, joined, listed, say, say_count, told
 
 
 class German(NullTranslations):
@@ -41,6 +41,14 @@ def test_the_words_of_a_list_may_be_sentences() -> None:
     assert told(listed(words), German()) == "eine Zeile, a, eine Zeile und d"
     assert told(listed(words[:1]), German()) == "eine Zeile"
     assert listed([]) == ""
+
+
+def test_paragraphs_and_items_are_told_in_the_language_too() -> None:
+    text = joined(
+        "\n\n", ["a {b}", bulleted([say("one row"), say("Exchange {cells}.", cells="d")])]
+    )
+    assert text == "a {b}\n\n- one row\n- Exchange d."
+    assert told(text, German()) == "a {b}\n\n- eine Zeile\n- Vertauschen Sie d."
 
 
 def test_sentences_within_a_sentence_are_told_in_the_language_too() -> None:

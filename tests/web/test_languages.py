@@ -86,6 +86,21 @@ def test_a_problem_is_told_in_the_language_of_its_reader(client: Client) -> None
     assert {"Accept", "Accept-Language"} <= set(page.headers["vary"].split(", "))
 
 
+def test_a_generated_robot_is_told_on_its_page_and_over_http(client: Client) -> None:
+    name = "practice-2-standard~5"
+    page = client.get(f"/exercises/{name}?lang=de").text
+    shown = client.get(f"/v1/exercises/{name}?lang=de").json()
+    for text in (
+        "Übungsroboter 5, Stufe 2",
+        "Von DH Grader erzeugt",
+        "sind alle Gelenkvariablen 0",
+    ):
+        assert text in page
+        assert text in shown["title"] + shown["source"] + shown["statement"]
+    assert shown["parts"][0]["prompt"].startswith("Geben Sie die DH-Tabelle in der Standardkonv")
+    assert "At home" not in page + shown["statement"]
+
+
 def test_the_dictionary_of_the_scripts_is_preloaded(client: Client) -> None:
     page = client.get("/exercises/scara?lang=qps")
     [name] = re.findall(r'rel="modulepreload" href="\.\./static/(words-qps-\w+\.js)"', page.text)

@@ -15,8 +15,12 @@ from pydantic import (
     Field,
     StrictInt,
     StringConstraints,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
 )
 from pydantic.fields import FieldInfo
+
+from service.translations import Sentence
 
 
 def _no_boolean(value: object) -> object:
@@ -41,6 +45,12 @@ def _showable(text: str) -> str:
     return text
 
 
+def _as_sentence(value: object, checked: ValidatorFunctionWrapHandler) -> object:
+    """Return a valid text; a sentence stays one, so that it can be told in other languages."""
+    text = checked(value)
+    return value if isinstance(value, Sentence) and value == text else text
+
+
 def advice(text: str) -> FieldInfo:
     """Return field metadata with the advice for a text that does not match the pattern."""
     field: FieldInfo = Field(json_schema_extra={"advice": text})
@@ -49,9 +59,12 @@ def advice(text: str) -> FieldInfo:
 
 NotBool = BeforeValidator(_no_boolean)
 Formula = Annotated[str | float, NotBool]
-LooseText = Annotated[str, AfterValidator(_showable)]
+LooseText = Annotated[str, AfterValidator(_showable), WrapValidator(_as_sentence)]
 Text = Annotated[
-    str, StringConstraints(strip_whitespace=True, min_length=1), AfterValidator(_showable)
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1),
+    AfterValidator(_showable),
+    WrapValidator(_as_sentence),
 ]
 IDENTIFIER = r"[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*"
 Identifier = Annotated[

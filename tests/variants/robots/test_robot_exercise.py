@@ -3,15 +3,20 @@
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
+from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
+from service.catalogue import Exercise, in_language
 from service.kinematics.dh import Convention
+from service.translations import ENGLISH, LANGUAGES
 from service.variants.robots.generate import generated
+from tests.translations.pseudo import PSEUDO
 from tests.variants.robots.checks import (
     drawn,
     form,
@@ -92,6 +97,54 @@ def test_a_statement_of_another_robot_is_noticed() -> None:
     words = exercise.statement.replace("along z0", "opposite to z0", 1)
     assert not is_the_robot_of_its_statement(replace(exercise, statement=words), 1)
     assert form(exercise) != form(replace(exercise, statement=words))
+
+
+def texts(exercise: Exercise) -> str:
+    """Return all that students read, each on a line."""
+    return "\n".join([
+        exercise.title, exercise.source, exercise.summary, exercise.statement,
+        *(each.title for each in exercise.parts), *(each.prompt for each in exercise.parts),
+        *(each.description for each in exercise.variables),
+    ])  # fmt: skip
+
+
+def words(text: str) -> set[str]:
+    """Return the words of a text, but not those of one or two letters, which are often names."""
+    return set(re.findall(r"(?<!\w)[^\W\d_]{3,}(?!\w)", text))
+
+
+def values(text: str) -> Counter[str]:
+    """Return the numbers, letters of lengths, axes and frames in a text."""
+    return Counter(re.findall(r"-?(?<![A-Za-z])(?:[adhxyz]|theta)?\d+(?:\.\d+)?|\{\w\}", text))
+
+
+@pytest.mark.parametrize("convention", Convention)
+@pytest.mark.parametrize("level", LEVELS)
+def test_all_texts_are_told_in_other_languages(level: int, convention: Convention) -> None:
+    for number in range(100, 110):
+        exercise = drawn(level, number, convention)
+        english = texts(exercise)
+        accented = texts(in_language(exercise, PSEUDO))
+        assert words(english) & words(accented) <= {exercise.structure}, exercise.id
+        for language in [PSEUDO, *LANGUAGES.values()]:
+            assert values(texts(in_language(exercise, language))) == values(english), language
+        german = texts(in_language(exercise, LANGUAGES["de"]))
+        names = {exercise.structure, "Denavit", "Hartenberg", "Grader"}
+        assert words(english) & words(german) <= names, exercise.id
+        assert in_language(exercise, ENGLISH) is exercise
+
+
+def test_a_german_robot() -> None:
+    exercise = in_language(drawn(4, 3, Convention.MODIFIED), LANGUAGES["de"])
+    assert exercise.title == "Übungsroboter 3, Stufe 4"
+    assert exercise.summary == "Sieben Gelenke (RPPRRRR), Längen in Metern."
+    for sentence in (
+        "Der Roboter hat fünf Drehgelenke und zwei Schubgelenke (RPPRRRR). Alle Längen sind in",
+        "- Gelenk 2 verschiebt sich längs der Richtung, die um 30° von -x0 zu z0 hin geneigt ist.",
+        "\n- Gelenk 5 dreht um die Achse durch (0, -0.2 - 0.46, 0.54), längs x0.\n",
+        "0.54), seine x-Achse zeigt entgegen y0 und seine z-Achse zeigt entgegen z0. Die Koord",
+    ):
+        assert sentence in exercise.statement
 
 
 def test_the_hardest_level_has_odd_twists() -> None:
