@@ -21,7 +21,7 @@ from service.contract.exercises import (
     ExerciseView,
     PracticeRobot,
 )
-from service.contract.grading import GradeManyResponse, GradeResult
+from service.contract.grading import GradeManyResponse, GradeResult, Hint, HintRequest
 from service.contract.preview import PreviewAnswer, PreviewRequest
 from service.expressions import AngleUnit, Kind
 from service.formats.documents.json import read_report
@@ -109,6 +109,27 @@ def grade(
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
     body = encoded(GradeRequest.model_validate(fields | {"echo": echo}))
     return HttpCall(f"{_path(exercise)}/grade", read_report, body, idempotency_key or _new_key())
+
+
+def hint(
+    exercise: str,
+    answers: Mapping[str, Any],
+    part: str,
+    code: str,
+    step: int = 1,
+    *,
+    row: str | None = None,
+    cell: str | None = None,
+    angle_unit: AngleUnit = "radians",
+) -> HttpCall[Hint]:
+    """Return a step of the hint for the message ``code`` in the report on these answers.
+
+    ``row`` and ``cell`` are the place of the message. Raises pydantic.ValidationError.
+    """
+    fields = {"answers": dict(answers), "angle_unit": angle_unit, "part": part, "code": code}
+    place = {"row": row, "cell": cell, "step": step}
+    body = encoded(HintRequest.model_validate(fields | place))
+    return HttpCall(f"{_path(exercise)}/hints", Hint.model_validate_json, body)
 
 
 def preview(

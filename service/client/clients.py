@@ -50,6 +50,7 @@ class _Methods:
     exercise = _Method(calls.exercise)
     next_robot = _Method(calls.next_robot)
     grade = _Method(calls.grade)
+    hint = _Method(calls.hint)
     preview = _Method(calls.preview)
     courses = _Method(course_calls.courses)
     create_course = _Method(course_calls.create_course)

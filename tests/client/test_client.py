@@ -110,6 +110,23 @@ def test_many_submissions_are_graded_in_order_and_in_few_requests(
     assert {part.verdict for part in results[0].report.parts} == {Verdict.MISSING}
 
 
+def test_a_hint_explains_a_message_in_steps(server: Served, using: Using) -> None:
+    answers = {"position": ["-a1 c1 - a2 c12", "-a1 s1 - a2 s12"]}
+    report = using(server.address, lambda client: client.grade("planar-rr", answers))
+    [part] = [each for each in report.parts if each.part == "position"]
+    [message] = part.feedback
+    given = ("planar-rr", answers, "position", message.code)
+    assert message.places is not None
+    at = {"row": message.places[0].row, "cell": message.places[0].cell}
+    first, second, third = [
+        using(server.address, lambda client, step=step: client.hint(*given, step, **at))
+        for step in (1, 2, 3)
+    ]
+    assert (first.step, second.step, third.step) == (1, 2, 3)
+    assert second.title == "The position"
+    assert len({first.text, second.text, third.text}) == 3
+
+
 def test_preview_returns_the_reading_of_a_text(server: Served, using: Using) -> None:
     read = using(
         server.address,
