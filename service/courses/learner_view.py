@@ -13,7 +13,7 @@ from service.attempts.hints import hints_of
 from service.attempts.policy import points_after
 from service.attempts.results.listing import LISTED
 from service.attempts.storage.tables import attempts, course_learners, courses
-from service.catalogue import Exercise
+from service.catalogue import Exercise, in_language
 from service.contract.own_courses import (
     OwnAssignment,
     OwnAttempt,
@@ -24,6 +24,7 @@ from service.contract.own_courses import (
 from service.courses.dealing import own_variant
 from service.courses.terms import LearnerTerms, learner_terms
 from service.courses.times import local
+from service.translations import ENGLISH, Language
 
 # Full marks, but for rounding.
 _FULL = 1 - 1e-9
@@ -70,8 +71,12 @@ def own_view(
     only: str | None,
     catalogue: Mapping[str, Exercise],
     now: datetime,
+    language: Language = ENGLISH,
 ) -> OwnCourses:
-    """Return the courses of a learner; with ``only``, this course."""
+    """Return the courses of a learner; with ``only``, this course.
+
+    The titles of exercises are in ``language``.
+    """
     mine = course_learners.c.learner == learner
     if only is not None:
         mine &= course_learners.c.course == only
@@ -95,6 +100,7 @@ def own_view(
             exercise = catalogue.get(name)
             if exercise is not None:
                 exercise = own_variant(connection, terms, learner, exercise)
+                exercise = in_language(exercise, language)
             place = (terms.number, name)
             state = _exercise(name, exercise, terms, done.get(place, []), now)
             found.append(state.model_copy(update={"hints": taken.get(place, [])}))

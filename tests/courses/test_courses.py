@@ -86,6 +86,16 @@ def test_a_later_due_date_and_an_extension_give_late_attempts_their_points_back(
     assert points(class_) == [near(whole)] * 2
 
 
+def test_learners_read_the_titles_of_exercises_in_their_language(class_: Class) -> None:
+    class_.assign()
+    told = class_.ask("GET", "/v1/me?lang=de")
+    assert told.headers["content-language"] == "de"
+    assert told.headers["cache-control"] == "no-store"
+    [course] = told.json()["courses"]
+    assert course["assignments"][0]["exercises"][0]["title"] == "SCARA-Roboter"
+    assert class_.own()["title"] == "SCARA manipulator"
+
+
 def test_an_extension_may_give_more_attempts(class_: Class) -> None:
     class_.assign(limit=1)
     assert [class_.hand_in(key).status_code for key in "ab"] == [201, 403]

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import pytest
 
-from service.translations import bulleted, joined, listed, say, say_count, told
+from service.translations import LANGUAGES, bulleted, joined, listed, say, say_count, told
 
 
 class German(NullTranslations):
@@ -71,6 +71,13 @@ def test_a_sentence_counts(count: int, english: str, german: str) -> None:
     sentence = say_count("one row", "{count} rows", count=count)
     assert sentence == english
     assert told(sentence, German()) == german
+
+
+def test_an_empty_sentence_stays_empty() -> None:
+    german = LANGUAGES["de"].translation
+    assert german is not None
+    assert german.gettext("") != ""
+    assert told(say(""), german) == ""
 
 
 def test_braces_in_a_value_are_no_places() -> None:

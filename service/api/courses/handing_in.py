@@ -19,15 +19,16 @@ from service.api.courses.asking import (
     write,
 )
 from service.api.http.bodies import read_body
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.http.problems import ProblemError
-from service.api.http.told_answer import in_languages
+from service.api.http.told_answer import in_languages, told_json
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
 from service.api.recording.attempting import AttemptTerms, Recorder
 from service.api.recording.new_attempts import IDEMPOTENCY_KEY, not_recorded
-from service.api.recording.store import private
+from service.api.recording.store import NO_STORE
 from service.api.routes.solutions import SolvedExercises
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.attempts import AttemptRequest, AttemptResponse
@@ -65,16 +66,23 @@ def routes(
         operation_id="getOwnView",
         summary="Show a learner's own courses",
         response_description="The assignments, the attempts that are left, and the points.",
-        **reading(OwnCourses),
+        **in_languages(reading(OwnCourses)),
     )
     async def show_own_view(request: Request) -> Response:
-        """Show the assignments and attempts of the learner with this link or token."""
+        """Show the assignments and attempts of the learner with this link or token.
+
+        The titles of exercises are in the reader's language.
+        """
         from service.courses.learner_view import own_view
 
         caller = access.caller(request)
         learner, now = _learner(caller, None), datetime.now(UTC)
-        view = await read(store, lambda it: own_view(it, learner, caller.course, catalogue, now))
-        return private(view)
+        language = language_of(request)
+        view = await read(
+            store, lambda it: own_view(it, learner, caller.course, catalogue, now, language)
+        )
+        content = view.model_dump_json(exclude_none=True)
+        return told_json(content, language, headers=NO_STORE)
 
     @router.post(
         "/courses/{course_id}/assignments/{assignment_id}/attempts",

@@ -30,14 +30,14 @@ def test_frames_are_placed_by_keyboard_and_a_broken_rule_is_shown(
     page = visit(bypass_csp=True).page
     page.add_init_script(axe)
     open_exercise(page, service, "planar-rrr-frames")
-    first = page.get_by_label("joint axis along which z lies, row frame 1")
+    first = page.get_by_label("joint axis along which z lies, frame 1")
     assert first.evaluate("input => [...input.list.options].map((each) => each.value)") == [*"123"]
     for i, text in enumerate([*RIGHT[:-1], "+z"]):
         cells(page).nth(i).press_sequentially(text)
         expect(cells(page).nth(i)).to_have_value(text)
         page.keyboard.press("Tab")
     check(page)
-    x = page.get_by_label("direction of x, row frame 3")
+    x = page.get_by_label("direction of x, frame 3")
     expect(x).to_have_attribute("aria-invalid", "true")
     expect(part(page, 0)).to_contain_text("x must be perpendicular to z of its own frame.")
     assert typed_names(page) == []
@@ -108,8 +108,8 @@ def test_a_click_on_a_joint_axis_puts_z_there_and_a_second_turns_it_over(
     page.get_by_role("button", name="Move it in 3D").click()
     expect(page.locator(".axis-hint")).to_contain_text("Click a joint axis")
     expect(page.locator("#where-frames-are")).to_contain_text("Given frame {0}")
-    axis = page.get_by_label("joint axis along which z lies, row frame 2")
-    z = page.get_by_label("direction of z, row frame 2")
+    axis = page.get_by_label("joint axis along which z lies, frame 2")
+    z = page.get_by_label("direction of z, frame 2")
     axis.focus()
     box = page.locator(".stage canvas").bounding_box()
     assert box is not None

@@ -71,6 +71,19 @@ def matrices(texts: list[str]) -> list[str]:
     return [f"A{i // 4 + 1} = [{'; '.join(rows[i : i + 4])}]" for i in range(0, len(rows), 4)]
 
 
+@pytest.mark.parametrize("exercise", ["planar-rr", "dh-conditions"])
+def test_unreadable_cells_do_not_make_the_page_wider(
+    visit: Opening, service: str, exercise: str
+) -> None:
+    page = visit(**PHONE).page
+    open_exercise(page, service, exercise)
+    for cell in page.locator(".part input").all()[:24]:
+        if cell.is_visible():
+            cell.fill("no value (")
+    check(page, tap=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["viewport"]["width"]
+
+
 def test_a_key_writes_at_the_caret_and_can_be_undone(visit: Opening, service: str) -> None:
     page = visit(**PHONE).page
     open_exercise(page, service, "planar-rr")

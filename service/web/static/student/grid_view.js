@@ -91,7 +91,8 @@ export class RowView {
     this.isGiven = Boolean(row.isGiven);
     this.worth = h("td", { class: "worth" }, this.isGiven && worded("given"));
     this.cells = grid.columns.map((column, j) => {
-      const name = row.spoken && grid.look === "table" ? worded("row {row}", { row: row.spoken }) : row.spoken;
+      const isNumber = row.spoken && grid.look === "table" && !grid.hasNamedRows;
+      const name = isNumber ? worded("row {row}", { row: row.spoken }) : row.spoken;
       const where = [column.spoken, name, row.isGiven && worded("given")];
       return new Cell(
         {

@@ -84,6 +84,7 @@ const FORMS = {
           ...FRAME_COLUMNS[label],
           offers: label === "axis" ? shape.joints : label === "z" || label === "x" ? DIRECTIONS : undefined,
         })),
+        hasNamedRows: true,
         rows: shape.rows.map((label) => row(label, worded("frame {frame}", { frame: label }), `{${label}}`)),
       }],
       choices: null,
