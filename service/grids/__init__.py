@@ -7,7 +7,7 @@ This package knows nothing about robots. It imports only spans, errors and funct
 from service.grids.cutting.grid import Grid, GridCell, GridError
 from service.grids.cutting.limits import GRID_LIMITS, GridLimits
 from service.grids.cutting.source_text import SourceText
-from service.grids.registry import FORMATS, read_grid, read_robot
+from service.grids.registry import FORMATS, FULL_WIDTH, read_grid, read_robot
 from service.grids.scripts.given_values import ASSIGNMENT
 from service.grids.scripts.robot_table import RobotTable
 from service.grids.several import NamedGrid, read_grids
@@ -15,6 +15,7 @@ from service.grids.several import NamedGrid, read_grids
 __all__ = [
     "ASSIGNMENT",
     "FORMATS",
+    "FULL_WIDTH",
     "GRID_LIMITS",
     "Grid",
     "GridCell",

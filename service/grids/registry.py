@@ -28,7 +28,7 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
 # Separators and signs of Chinese keyboards.
-_FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］｛｝＆＠　", ",;()|=-+:[]{}&@ ")
+FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］｛｝＆＠　", ",;()|=-+:[]{}&@ ")
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"
@@ -79,7 +79,7 @@ def _limited(text: str) -> SourceText:
         )
         raise GridError("too_long", message, (most, len(text)))
     plain = SourceText.of(text)
-    plain = SourceText(text.translate(_FULL_WIDTH), plain.starts, plain.ends)
+    plain = SourceText(text.translate(FULL_WIDTH), plain.starts, plain.ends)
     source = without_fence(plain.strip("\ufeff"))
     if not source.text.strip():
         raise GridError("empty", say("Nothing is written here."), (0, len(text)))

@@ -68,6 +68,10 @@ def test_windows_line_ends_and_blank_lines_change_nothing(name: str) -> None:
         ("[1 ...\n 2; 3 4]", [["1", "2"], ["3", "4"]]),
         ("[1, 2,; 3, 4;]", [["1", "2"], ["3", "4"]]),
         ("syms q1 q2\nA = [1 2; 3 4];", [["1", "2"], ["3", "4"]]),
+        # Scilab, but not the // of Mathematica and Python
+        ("[1 2; // one\n3 4]; // two", [["1", "2"], ["3", "4"]]),
+        ("{{1, 2}, {3, 4}} // MatrixForm", [["1", "2"], ["3", "4"]]),
+        ("[[q1, 4 // 2], [3, 4]]", [["q1", "4 // 2"], ["3", "4"]]),
         (">> A = [1 2; 3 4]", [["1", "2"], ["3", "4"]]),
         ("T(q1, q2) = [1 2; 3 4]", [["1", "2"], ["3", "4"]]),
         ("[[1 2]; [3 4]]", [["1", "2"], ["3", "4"]]),
@@ -124,6 +128,9 @@ def test_windows_line_ends_and_blank_lines_change_nothing(name: str) -> None:
         (r"T = A_1 A_2 = \begin{bmatrix} a & b \end{bmatrix}", [["a", "b"]]),
         ("\\begin{matrix} a % first\n & 5\\% \\end{matrix}", [["a", "5\\%"]]),
         (r"\begin{tabular}{cc} $a_1$ & $x$ + $y$ \end{tabular}", [["a_1", "x  +  y"]]),
+        (r"\begin{NiceTabular}{cc}[hvlines] a & b \end{NiceTabular}", [["a", "b"]]),
+        (r"\begin{bNiceMatrix}[margin] a & b \end{bNiceMatrix}", [["a", "b"]]),
+        (r"\begin{bNiceMatrix} [a] + b & c \end{bNiceMatrix}", [["[a] + b", "c"]]),
         # HTML
         ("<table><tr><td>x<sup>2</sup><td>90<sup>o</sup></table>", [["x^(2)", "90°"]]),
         ("<tr><th>a<sub>i-1</sub></th><th>&alpha;&nbsp;</th></tr>", [["a_{i-1}", "α"]]),
@@ -147,6 +154,10 @@ def test_windows_line_ends_and_blank_lines_change_nothing(name: str) -> None:
         ("|a \\| b|c|\n|-|-|\n|`d`|**e**|", [["a \\| b", "c"], ["d", "e"]]),
         ("| | a |\n|---|---|\n| 1 | b |", [["", "a"], ["1", "b"]]),
         ("+---+---+\n| a | b |\n+===+===+\n| c | d |\n+---+---+", [["a", "b"], ["c", "d"]]),
+        ("||a||b||\n|c|d|", [["a", "b"], ["c", "d"]]),
+        # quotation marks of word processors around whole cells
+        ("„a“;“b”\n« c »;»d«", [["a", "b"], ["c", "d"]]),
+        ("«a» + «b»; c\nd; e", [["«a» + «b»", "c"], ["d", "e"]]),
         # columns
         ("a   b\n-------\n1   q1 + 90", [["a", "b"], ["1", "q1 + 90"]]),
         ("a  link length\n1  2x", [["a", "link length"], ["1", "2x"]]),

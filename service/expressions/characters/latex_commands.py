@@ -25,9 +25,10 @@ PLAIN: Final = {
     "lbrace": "{", "rbrace": "}", "lbrack": "[", "rbrack": "]",
     "vert": "|", "lvert": "|", "rvert": "|", "mid": "|", "star": MARKER,
 }  # fmt: skip
-FRACTIONS: Final = frozenset({"frac", "tfrac", "dfrac", "cfrac"})
-# A number and its unit in the package siunitx.
-QUANTITIES: Final = frozenset({"SI", "qty"})
+FRACTIONS: Final = frozenset({"frac", "tfrac", "dfrac", "cfrac", "nicefrac", "sfrac", "flatfrac"})
+# Numbers and units in the package siunitx.
+QUANTITIES: Final = frozenset({"SI", "qty", "si", "unit", "num"})
+UNITS: Final = frozenset({"si", "unit"})
 ANGLE_UNITS: Final = {
     **dict.fromkeys(("degree", "deg", "°", "degrees", "arcdegree"), "°"),
     **dict.fromkeys(("radian", "rad"), " rad "),

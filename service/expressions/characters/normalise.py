@@ -150,6 +150,8 @@ class _Normaliser(CharacterWriter):
         if self.source[after - 1] == "*" and name not in latex_commands.STYLES:
             after -= 1
         if name in latex_commands.PLAIN:
+            # Empty braces only end the name of a command.
+            after += 2 * self.source.startswith("{}", after)
             return self._emit(latex_commands.PLAIN[name], at, after)
         if name in latex_commands.FUNCTIONS:
             return self._function(latex_commands.FUNCTIONS[name], at, after)
@@ -173,7 +175,7 @@ class _Normaliser(CharacterWriter):
         if name == "ang":
             return self._emit("°", after, self._braced(at, after, end, depth))
         if name in latex_commands.QUANTITIES:
-            return self._quantity(at, after, end, depth)
+            return self._quantity(name, at, after, end, depth)
         if (stop := self._without_meaning(name, at, after, end)) is not None:
             return self._emit(" ", at, stop)
         causes: dict[str, Cause] = {"pm": "plus_minus", "mp": "plus_minus", "infty": "not_finite"}
@@ -225,7 +227,8 @@ class _Normaliser(CharacterWriter):
         self._range(start, stop, depth + 1)
         if "$" in inside:
             self._without_blanks(first)
-        if is_word and self.source[after : after + 1].isalpha():
+        following = self.source[after : after + 1]
+        if is_word and (following.isalpha() or following == "\\"):
             self._emit(" ", after, after)
         return after
 
@@ -288,15 +291,27 @@ class _Normaliser(CharacterWriter):
         self._emit("√", at, after)
         return self._braced(at, after, end, depth)
 
-    def _quantity(self, at: int, after: int, end: int, depth: int) -> int:
-        r"""Read \SI{90}{\degree} as 90°. Raises UnreadableError for any unit but an angle's."""
-        _, _, unit_at = self._argument(at, after, end)
-        start, stop, unit_end = self._argument(at, unit_at, end)
+    def _quantity(self, name: str, at: int, after: int, end: int, depth: int) -> int:
+        r"""Read \SI{90}{\degree} as 90°, \si{\degree} as °, and \num{0.3} as 0.3.
+
+        Raises UnreadableError for any unit but an angle's.
+        """
+        if name == "num":
+            return self._braced(at, after, end, depth)
+        has_number = name not in latex_commands.UNITS
+        unit_at = self._argument(at, after, end)[2] if has_number else after
+        unit, unit_end = self._angle_unit(at, unit_at, end)
+        if has_number:
+            self._braced(at, after, end, depth)
+        return self._emit(unit, unit_at if has_number else at, unit_end)
+
+    def _angle_unit(self, at: int, after: int, end: int) -> tuple[str, int]:
+        """Return the unit in the argument that begins at ``after``, and the place after it."""
+        start, stop, unit_end = self._argument(at, after, end)
         unit = latex_commands.ANGLE_UNITS.get(self.source[start:stop].strip().lstrip("\\"))
         if unit is None:
             raise UnreadableError("quantity", (at, unit_end))
-        self._braced(at, after, end, depth)
-        return self._emit(unit, unit_at, unit_end)
+        return unit, unit_end
 
     def _braced(self, at: int, after: int, end: int, depth: int) -> int:
         start, stop, after = self._argument(at, after, end)

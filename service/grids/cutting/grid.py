@@ -1,7 +1,9 @@
 """The protocol of all formats: parse a text into a Grid or raise one GridError."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from service.expressions.errors import Note, Span, TextError
 from service.grids.cutting.limits import GRID_LIMITS
@@ -9,6 +11,8 @@ from service.grids.cutting.source_text import SourceText
 from service.translations import say
 
 GridCell = SourceText
+# Quotation marks of word processors around a whole cell.
+_QUOTED: Final = re.compile(r"„[^„“”]+[“”]|“[^“”]+”|«[^«»]+»|»[^«»]+«")
 Rows = Sequence[Sequence[GridCell]]
 
 
@@ -97,8 +101,10 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
 
 
 def tidy(cell: GridCell) -> GridCell:
-    """Return the cell without outer blanks and without marks that only style it: $…$, `…`."""
+    """Return the cell without outer blanks and without marks that only style it: $…$, `…`, „…“."""
     cell = cell.strip()
+    if _QUOTED.fullmatch(cell.text):
+        cell = cell.cut(1, len(cell.text) - 1).strip()
     for mark in ("`", "**"):
         if len(cell.text) > 2 * len(mark) and cell.text.startswith(mark):
             inner = cell.cut(len(mark), len(cell.text) - len(mark))

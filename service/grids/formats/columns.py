@@ -7,11 +7,14 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grids.cutting.blanks import continues, split_blanks
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
-from service.grids.cutting.source_text import SourceText
+from service.grids.cutting.source_text import SourceText, joined
 from service.grids.formats.data_frame import with_row_numbers
 from service.translations import say
 
 _GAP: Final = re.compile(r"[^\S\r\n]{2,}")
+_UNIT: Final = re.compile(
+    r"[(\[](?:deg|rad|grad|grados|degrés|°|[mc]?m|度|弧度|米|毫米)[)\]]", re.IGNORECASE
+)
 _DASHES: Final = frozenset("-=_─━═")
 
 
@@ -29,6 +32,7 @@ def _parse(source: SourceText) -> Grid:
     lines = [line for line in lines if line.text and not _is_rule(line.text)]
     wide = [_at_gaps(line) for line in lines]
     narrow = [list(split_blanks(line).elements) for line in lines]
+    narrow[0] = _with_units(narrow[0])
     wide, narrow = with_row_numbers(wide), with_row_numbers(narrow)
     readings = [rows for rows in (wide, narrow) if _is_table(rows)]
     if not readings:
@@ -50,6 +54,16 @@ def _parse(source: SourceText) -> Grid:
     )
     note = Note("blank_columns", message, first[0].whole)
     return grid("columns", readings[0], source.whole, [note])
+
+
+def _with_units(words: list[SourceText]) -> list[SourceText]:
+    """Return the words of a first line; a unit in brackets stays in the word before it: a (m)."""
+    found: list[SourceText] = []
+    for word in words:
+        if found and _UNIT.fullmatch(word.text):
+            word = joined([found.pop(), word.spelled(" "), word], word.at)
+        found.append(word)
+    return found
 
 
 def _is_rule(line: str) -> bool:

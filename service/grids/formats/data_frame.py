@@ -22,6 +22,10 @@ _LINES: Final = re.compile(r"[\s┌┬┐├┼┤└┴┘╞╪╡│┆─═
 _QUOTES: Final = re.compile(r"[\"│┆{}]")
 # R numbers the columns and rows of a matrix: [,1] [,2], and [1,] before each row.
 _COLUMNS_OF_R: Final = re.compile(r"\s*(?:\[,\d{1,2}\]\s*)+")
+# The number of a row, alone or after a word: 1, Link 1, joint_1, J1; but not theta1.
+_WORD: Final = r"(?!theta|alpha)(?:[^\W\d_]{3,20}|[Jj]|[\u4e00-\u9fff]{2})"
+_INDEX: Final = re.compile(rf"(?P<name>(?:{_WORD}[ _.]?)?)(?P<number>\d{{1,2}})", re.IGNORECASE)
+_LABEL: Final = re.compile(rf"(?P<word>{_WORD}) (?P<number>\d{{1,2}})", re.IGNORECASE)
 _ROW_OF_R: Final = re.compile(r"[ \t]*\[\d{1,2},\]")
 
 
@@ -56,6 +60,7 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
 
     The header is empty, or the name of the index on the second line.
     """
+    rows = _with_whole_labels(rows)
     head, *body = rows
     named = len(body) > 1 and len(body[0]) == 1 and len(head) > 1
     label = body.pop(0)[0] if named else head[0].cut(0, 0)
@@ -63,7 +68,35 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
         return rows
     if any(any(map(str.isdigit, cell.text)) for cell in [label, *head]):
         return rows
-    numbers = [row[0].text for row in body]
-    if numbers not in ([str(i + first) for i in range(len(body))] for first in (0, 1)):
+    numbers = [_INDEX.fullmatch(row[0].text) for row in body]
+    names = {number["name"] for number in numbers if number}
+    counted = [number["number"] if number else "" for number in numbers]
+    if len(names) > 1 or counted not in (
+        [str(i + first) for i in range(len(body))] for first in (0, 1)
+    ):
         return rows
     return [[label, *head], *body]
+
+
+def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
+    """Return the rows with labels such as Link 1 in one piece, if all below the headers have one.
+
+    The name of the index may follow the headers.
+    """
+    for start in range(min(3, len(rows))):
+        body = rows[start:]
+        if min(map(len, body)) > 2 and _are_labelled(body):
+            return [*rows[:start], *map(_with_whole_label, body)]
+    return rows
+
+
+def _are_labelled(rows: list[list[SourceText]]) -> bool:
+    found = [_LABEL.fullmatch(f"{word.text} {number.text}") for word, number, *_ in rows]
+    numbers = [int(each["number"]) for each in found if each]
+    words = {each["word"] for each in found if each}
+    return len(words) == 1 and numbers in [[*range(i, len(rows) + i)] for i in (0, 1)]
+
+
+def _with_whole_label(row: list[SourceText]) -> list[SourceText]:
+    word, number, *cells = row
+    return [joined([word, number.cut(0, 0).spelled(" "), number], word.at), *cells]

@@ -13,7 +13,9 @@ ARGUMENTS: Final = {
     "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
     "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
     "psmallmatrix": 0, "matrix*": 0, "bmatrix*": 0, "pmatrix*": 0,
-    "tblr": 1, "longtblr": 1, "talltblr": 1,
+    "tblr": 1, "longtblr": 1, "talltblr": 1, "tabu": 1, "supertabular": 1, "tabulary": 2,
+    "xltabular": 2, "NiceTabular": 1, "NiceArray": 1, "bNiceArray": 1, "pNiceArray": 1,
+    "NiceMatrix": 0, "bNiceMatrix": 0, "pNiceMatrix": 0,
 }  # fmt: skip
 # Plain TeX, as Maxima prints it: \pmatrix{a & b \cr c & d \cr}.
 PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
@@ -48,6 +50,11 @@ _COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
 _POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
 # The outer options of tabularray: [t], [caption={…}].
 _OUTER: Final = re.compile(r"(?:\s{0,40}\[[^\[\]]{0,400}\])?\s{0,40}")
+# Options of nicematrix: [hvlines].
+_NICE: Final = re.compile(
+    r"\s{0,40}\[\s*(?:hv?lines|vlines|margin|small|rules|corners|nullify|columns-|rows-|first-|last-"
+    r"|cell-|code-)[^\[\]&\\]{0,200}\]"
+)
 # Commands for bracket sizes mean nothing; they are half of the LaTeX that SymPy prints.
 _SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
 _SPANNING: Final = frozenset({"\\multicolumn", "\\multirow", "\\SetCell"})
@@ -191,7 +198,7 @@ def _after_arguments(source: SourceText, begin: re.Match[str]) -> int:
         if source.text[following : following + 1] != "{":
             break
         at = after_brace(source, following)
-    return at
+    return _after_position(source, at, _NICE) if "Nice" in begin[2] else at
 
 
 def _after_position(source: SourceText, at: int, options: re.Pattern[str] = _POSITION) -> int:

@@ -10,6 +10,7 @@ from service.translations import say
 _BARS: Final = "|│┃║"
 _BAR: Final = re.compile(rf"[{_BARS}]")
 _SEPARATOR: Final = re.compile(rf"(?<!\\)[{_BARS}]")
+_DOUBLE: Final = re.compile(r"\|\|")
 _RULE: Final = re.compile(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
 
 
@@ -38,7 +39,9 @@ def _is_rule(line: str) -> bool:
 
 def _cells(line: SourceText) -> list[SourceText]:
     r"""Return the cells of a line; \| is a bar inside a cell."""
-    pieces = line.split(_SEPARATOR)
+    # Jira writes headers between two bars: ||a||alpha||.
+    between = _DOUBLE if line.text.startswith("||") and line.text.endswith("||") else _SEPARATOR
+    pieces = line.split(between)
     if len(pieces) > 1 and not pieces[0].text:
         pieces = pieces[1:]
     if len(pieces) > 1 and not pieces[-1].text:

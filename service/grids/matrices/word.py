@@ -14,19 +14,26 @@ from service.translations import say
 
 # ⓢ and ⒨ are matrices in [ ] and in ( ).
 _MATRIX: Final = re.compile(r"(?:■8?|[ⓢ⒨]|\\[bp]?matrix)[ \t]{0,4}\(")
+# An equation array: a column, unless & marks where its lines are aligned.
+_COLUMN: Final = re.compile(r"█[ \t]{0,4}\(")
 _OPENS: Final = {**CLOSES, "〖": "〗"}
 _SIGN: Final = re.compile(r"[][(){}〖〗&@]")
 _NUMBER_OF_EQUATION: Final = re.compile(r"#[ \t]?\(?\d{0,4}(?:\.\d{1,4})?\)?")
 
 
 def _matches(text: str) -> bool:
-    return _MATRIX.search(text) is not None
+    return _sign(text).search(text) is not None
+
+
+def _sign(text: str) -> re.Pattern[str]:
+    return _COLUMN if "█" in text and "&" not in text and "■" not in text else _MATRIX
 
 
 def _parse(source: SourceText) -> Grid:
-    begin = _MATRIX.search(source.text)
+    sign = _sign(source.text)
+    begin = sign.search(source.text)
     assert begin is not None
-    again = _MATRIX.search(source.text, begin.end())
+    again = sign.search(source.text, begin.end())
     if again is not None:
         raise text_around(source.cut(again.start(), len(source.text)))
     rows, end = _rows(source, begin.end())

@@ -2,13 +2,15 @@
 
 A list may hold one dictionary for each row: ``[{'a': a1, 'alpha': 0, …}, dict(a=a2, …)]``. A
 single dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in
-``pd.DataFrame(…)``, or single parameters, as for SymPy's ``subs``:
+``pd.DataFrame(…)``. Instead, four lists may have the names of the columns: ``a = [l1, l2]``,
+``alpha = [0, 0]`` and so on. A dictionary may also hold single parameters, as for SymPy's ``subs``:
 ``{alpha0: 0, a0: 0, d1: 0.75, alpha1: -pi/2, …}``.
 """
 
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
 from service.expressions.errors import Note
@@ -16,6 +18,7 @@ from service.grids.cutting.grid import grid, too_many_rows
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import strict_pairs
 from service.grids.cutting.source_text import SourceText
+from service.grids.matrices import matlab
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.program_text import MAKERS
 from service.grids.scripts.robot_table import RobotTable
@@ -33,7 +36,15 @@ _COLUMNS: Final = {
     "th": "theta", "θ": "theta", "q": "theta",
 }  # fmt: skip
 _PARAMETERS: Final = frozenset(_COLUMNS.values())
+# The beginning of a list with the name of a column, in a statement of its own.
+_LIST: Final = re.compile(
+    r"(?:^|(?<=;))[ \t]{0,8}(alpha|al|a|d|theta|th|q|α|θ)[ \t]{0,8}=[ \t]{0,8}"
+    r"(?=(?:(?:np\.|sp\.|numpy\.)?\w{1,12}\()?[\[(])",
+    re.MULTILINE,
+)
+_HARMLESS: Final = re.compile(r"(?:syms|import|from|clc|clear|close|format|pkg)\b")
 _FRAME: Final = "DataFrame"
+_DASH: Final = re.compile(r"-[ \t]{1,8}(?=\{)")
 _OPENS_ITEMS: Final = re.compile(r"\{|dict\(")
 
 
@@ -46,6 +57,9 @@ class _Item:
 def describes_columns(text: str) -> bool:
     """True if a text seems to contain a dictionary."""
     # LaTeX has braces and colons, too.
+    names = {_COLUMNS[found[1]] for found in islice(_LIST.finditer(text), GRID_LIMITS.columns)}
+    if len(names) == len(_PARAMETERS):
+        return True
     return (
         (":" in text or "dict(" in text)
         and "\\" not in text
@@ -58,7 +72,12 @@ def read_columns(source: SourceText) -> RobotTable | None:
 
     Raises GridError if the text cannot be read.
     """
-    for statement in statements(source):
+    found_statements = statements(source)
+    if columns := _named_lists(found_statements):
+        return _by_column(*columns, source)
+    if rows := _dashed_rows(found_statements):
+        return _by_row(rows, source)
+    for statement in found_statements:
         if rows := _row_items(statement):
             return _by_row(rows, source)
         found = _items(statement)
@@ -131,6 +150,18 @@ def _row_items(statement: SourceText) -> list[list[_Item]]:
     return found if all(len(items) >= len(_PARAMETERS) for items in found) else []
 
 
+def _dashed_rows(found: list[SourceText]) -> list[list[_Item]]:
+    """Return the items of each dictionary in a list of YAML, ``- {a: l1, …}``, or []."""
+    dashes = [_DASH.match(statement.text) for statement in found]
+    rows = [
+        _items(statement.cut(dash.end(), len(statement.text)))
+        for statement, dash in zip(found, dashes, strict=True)
+        if dash
+    ]
+    is_list = len(rows) == len(found) < GRID_LIMITS.rows
+    return rows if is_list and all(len(items) >= len(_PARAMETERS) for items in rows) else []
+
+
 def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
     """Return the table of dictionaries with the same keys. Raises GridError for other keys."""
     first = [item.key.text for item in rows[0]]
@@ -158,6 +189,34 @@ def _list(value: SourceText) -> list[SourceText] | None:
     if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
         return None
     return [unquoted(each) for each in arguments(value.cut(1, len(value.text) - 1))]
+
+
+def _named_lists(
+    found: list[SourceText],
+) -> tuple[list[_Item], list[list[SourceText]]] | None:
+    """Return the names and values of four lists, a, alpha, d and theta; None for any other text."""
+    items, columns = [], []
+    for statement in found:
+        name = _LIST.match(statement.text)
+        value = statement.cut(name.end(), len(statement.text)) if name else statement
+        column = _column(value.strip()) if name else None
+        if name and column:
+            items.append(_Item(statement.cut(*name.span(1)), value))
+            columns.append(column)
+        elif not _HARMLESS.match(statement.text):
+            return None
+    names = [_COLUMNS[item.key.text] for item in items]
+    return (items, columns) if sorted(names) == sorted(_PARAMETERS) else None
+
+
+def _column(value: SourceText) -> list[SourceText] | None:
+    """Return the values in a list of Python, or in a row or column of MATLAB."""
+    if value.text[:1] != "[" or "," in value.text or strict_pairs(value)[0] != len(value.text):
+        return _list(value)
+    found, _ = matlab.rows(value.cut(1, len(value.text) - 1))
+    if len(found) == 1:
+        return found[0]
+    return [row[0] for row in found] if all(len(row) == 1 for row in found) else None
 
 
 def _by_column(

@@ -46,12 +46,12 @@ _NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
 _KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
 # A comment after % or #. In Maxima, % begins the name of a constant.
 _REMARK: Final = re.compile(
-    r"\.\.\.[^\n]*(?:\n|$)|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
+    r"\.\.\.[^\n]*(?:\n|$)|//[^\n]*|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
 )
 _COMMENTS: Final = {"(*": "*)", "/*": "*/"}
-_REMARK_SIGNS: Final = ("...", "%", "#", *_COMMENTS)
+_REMARK_SIGNS: Final = ("...", "%", "#", "//", *_COMMENTS)
 # A character that begins a remark, or begins or ends a string.
-_SIGN: Final = re.compile(r"""['"\\\n%#]|\.\.\.|[(/]\*""")
+_SIGN: Final = re.compile(r"""['"\\\n%#]|\.\.\.|//|[(/]\*""")
 # Mathematica's functions that leave a matrix equal, written before it or after it.
 _FORM: Final = re.compile(
     r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
@@ -59,6 +59,7 @@ _FORM: Final = re.compile(
 _FORM_AFTER: Final = re.compile(
     r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
 )
+_MOST_BLANKS: Final = 40
 TAIL: Final = " \t\r\n;,.$"
 
 
@@ -157,6 +158,11 @@ def _remark_end(text: str, start: int, last: int) -> int:
     end = text.find(closer, start + 2) if closer else -1
     if end >= 0:
         return end + 2
+    # In Scilab, // begins a comment after a statement or on a line of its own.
+    before = text[max(0, start - _MOST_BLANKS) : start].rstrip(" \t")
+    is_within = before[-1:] not in {";", "\n"} and (before or start > _MOST_BLANKS)
+    if is_within and text.startswith("//", start):
+        return 0
     remark = _REMARK.match(text, start)
     return remark.end() if remark else 0
 

@@ -19,6 +19,8 @@ _BARS: Final = "|│┃║"
 # The separators of rows; the first that at least two lines have is the one of the table.
 _SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
 _PROGRAM: Final = re.compile(r"[\[■]|(?<!\w)(?:dict|np|sp)(?!\w)")
+_PADDING: Final = " \t;,"
+_EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
 # Signs of a formula, a row or a program.
 _SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
 # A legend of the stars that mark joint variables.
@@ -68,12 +70,13 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     """
     lines = [line for line in source.lines() if line.text.strip()]
     is_row = _row_test(source.text, lines)
-    rows = [i for i, line in enumerate(lines) if is_row(line.text)]
+    titles = next((i for i, line in enumerate(lines) if not _is_padded(line.text)), 0)
+    rows = [i for i, line in enumerate(lines) if i >= titles and is_row(line.text)]
     if not rows or len(rows) == len(lines):
         return source, ()
     first, last = rows[0], rows[-1]
     around = [*lines[:first], *lines[last + 1 :]]
-    if not around or not all(_is_prose(line.text) for line in around):
+    if not around or not all(_is_prose(line.text.strip(_PADDING)) for line in around):
         return source, ()
     for line in around:
         _check_units(line)
@@ -93,6 +96,11 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
             if len(rows) > 1 and min(rows) > 1 and separator != ",":
                 return lambda line: any(map(line.__contains__, separator))
     return lambda line: not _TITLE.match(line) or "(" in line or bool(_CONTROL.match(line))
+
+
+def _is_padded(line: str) -> bool:
+    """True if a line is a sentence in the first cell of a sheet, and its other cells are empty."""
+    return line.rstrip("\r\n ")[-2:] in _EMPTY_CELLS and _is_prose(line.strip(_PADDING))
 
 
 def _is_prose(line: str) -> bool:

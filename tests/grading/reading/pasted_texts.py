@@ -1,11 +1,14 @@
 """Pasted texts of students in five languages, each with the meaning that a person gives it.
 
-``pasted_texts/*.txt`` has one file for each language. A line ``=== title | table elbow`` begins a
-text; the words after the bar name a meaning of ``meanings.toml``, or are ``refused``. ⇥ is a tab.
+``pasted_texts/*.txt`` and ``pasted_texts/more/*.txt`` have one file for each language. A line
+``=== title | table elbow`` begins a text; the words after the bar name a meaning of
+``meanings.toml``, or are ``refused`` (a table) or ``refused matrix``. ⇥ is a tab, ⍽ a no-break
+space, ⎵ a narrow one.
 The meanings are plain arithmetic, evaluated by ``reference``, which shares no code with the
 program.
 """
 
+import re
 import tomllib
 from collections.abc import Sequence
 from functools import cache
@@ -25,8 +28,11 @@ from service.expressions import (
     joint_variable,
     read,
 )
+from service.grading.feedback import UnreadableAnswerError
 from service.grading.numerics.samples import Samples
 from service.grading.reading.entry import Entry, Reader
+from service.grading.reading.lists.component_names import names_of_coordinates
+from service.grading.reading.lists.value_list import read_list
 from service.grading.reading.pasted import pasted_grid
 from service.grading.reading.tables.pasted_table import entries_of, read_pasted_table
 from service.grids import GridError
@@ -38,6 +44,8 @@ _MEANINGS: Final = tomllib.loads((FOLDER / "meanings.toml").read_text("utf-8"))
 _ROUNDED: Final = 2e-3
 _LENGTHS: Final = ("l1", "l2", "l3", "a1", "a2", "a3", "d1", "d2", "d4")
 _QUANTITIES: Final[Sequence[Kind]] = ("length", "angle", "length", "angle")
+_TITLE: Final = re.compile(r"^=== ", re.MULTILINE)
+_SHOWN: Final = str.maketrans("⇥⍽⎵", "\t\u00a0\u202f")
 Outcome = Literal["read", "repaired", "advised", "refused", "misread"]
 
 
@@ -60,30 +68,37 @@ class Reading(NamedTuple):
 
 def languages() -> list[str]:
     """Return the names of the files."""
-    return sorted(file.stem for file in FOLDER.glob("*.txt"))
+    files = sorted(FOLDER.rglob("*.txt"))
+    return [file.relative_to(FOLDER).with_suffix("").as_posix() for file in files]
 
 
 def texts(language: str) -> list[PastedText]:
     """Return the texts of a file."""
     found = []
-    for piece in (FOLDER / f"{language}.txt").read_text("utf-8").split("=== ")[1:]:
+    for piece in _TITLE.split((FOLDER / f"{language}.txt").read_text("utf-8"))[1:]:
         head, _, text = piece.partition("\n")
         title, _, meaning = head.rpartition(" | ")
         angle_unit: AngleUnit = "degrees" if meaning.startswith("degrees ") else "radians"
         kind, _, name = meaning.removeprefix("degrees ").partition(" ")
-        rows = _meant(kind, name) if name else ()
-        text = text.removesuffix("\n").replace("⇥", "\t")
+        is_refused = kind == "refused"
+        rows = () if is_refused else _meant(kind, name)
+        kind = name or "table" if is_refused else kind
+        text = text.removesuffix("\n").translate(_SHOWN)
         found.append(PastedText(f"{language}: {title}", text, kind, angle_unit, rows))
     return found
 
 
 def reading_of(case: PastedText) -> Reading:
     """Return how the program reads a text, compared with its meaning."""
-    reader = Reader(_vocabulary(case.kind, _joints(case)), Samples({}), case.angle_unit, "m")
+    reader = Reader(
+        _vocabulary(case.kind, _joints(case)), Samples(_samples(case, 0)), case.angle_unit, "m"
+    )
     try:
-        entries = _matrix(case, reader) if case.kind == "matrix" else _table(case, reader)
+        entries = _READERS.get(case.kind, _table)(case, reader)
     except GridError as error:
         return Reading("advised", (f"{error.code}: {error.message}",))
+    except UnreadableAnswerError as error:
+        return Reading("advised", (f"{error.finding.code}: {error.finding.hint}",))
     advice = [
         f"{finding.code}: {finding.hint}"
         for row in entries
@@ -118,7 +133,8 @@ def reading_of(case: PastedText) -> Reading:
 
 
 def _kinds(case: PastedText, row: Sequence[Entry]) -> Sequence[Kind]:
-    return ["number"] * len(row) if case.kind == "matrix" else _QUANTITIES
+    kinds: dict[str, Kind] = {"matrix": "number", "position": "length"}
+    return [kinds[case.kind]] * len(row) if case.kind in kinds else _QUANTITIES
 
 
 def _table(case: PastedText, reader: Reader) -> list[tuple[Entry, ...]]:
@@ -128,6 +144,13 @@ def _table(case: PastedText, reader: Reader) -> list[tuple[Entry, ...]]:
 def _matrix(case: PastedText, reader: Reader) -> list[tuple[Entry, ...]]:
     grid = pasted_grid(case.text, reader)
     return [tuple(reader.read(cell.text, "number") for cell in row) for row in grid.rows]
+
+
+def _position(case: PastedText, reader: Reader) -> list[tuple[Entry, ...]]:
+    return [(*read_list(case.text, names_of_coordinates("xyz"), reader).entries,)]
+
+
+_READERS: Final = {"matrix": _matrix, "position": _position}
 
 
 def _repaired(entry: Entry, cell: str, kind: Kind, case: PastedText) -> bool | None:
@@ -146,15 +169,19 @@ def _repaired(entry: Entry, cell: str, kind: Kind, case: PastedText) -> bool | N
 def _means(expression: Expression, cell: str, kind: Kind, case: PastedText) -> bool:
     for seed in range(3):
         values = _values(seed)
-        symbols = {
-            symbol.name: np.array([values[symbol.aliases[0] if symbol.joint else symbol.name]])
-            for symbol in _vocabulary(case.kind, _joints(case)).symbols
-        }
-        [found] = np.ravel(expression.evaluate(symbols))
+        [found] = np.ravel(expression.evaluate(_samples(case, seed)))
         gap = abs(float(found) - worth(cell, values))
         if not (gap <= _ROUNDED or (kind == "angle" and abs(gap - 2 * np.pi) <= _ROUNDED)):
             return False
     return True
+
+
+def _samples(case: PastedText, seed: int) -> dict[str, np.ndarray]:
+    values = _values(seed)
+    return {
+        symbol.name: np.array([values[symbol.aliases[0] if symbol.joint else symbol.name]])
+        for symbol in _vocabulary(case.kind, _joints(case)).symbols
+    }
 
 
 @cache
@@ -166,7 +193,7 @@ def _values(seed: int) -> dict[str, float]:
 
 def _joints(case: PastedText) -> int:
     """Return the number of joints: the rows of a table, and 4 for other texts."""
-    return len(case.rows) if case.kind.startswith("table") else 4
+    return len(case.rows) if case.rows and case.kind.startswith("table") else 4
 
 
 @cache

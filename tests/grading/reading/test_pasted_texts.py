@@ -1,13 +1,15 @@
 """Pasted texts of students in five languages are read as meant, or refused with advice."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import pytest
 
+from service.catalogue import Exercise
+from service.grading.reading.preview import preview_pasted
 from tests.grading.reading.pasted_texts import languages, reading_of, texts
 
-LEAST_TEXTS = 200
+LEAST_TEXTS = 500
 LEAST_READ = 0.9
 
 
@@ -30,3 +32,14 @@ def test_most_texts_are_read(figure: Callable[[str], None]) -> None:
     figure(f"{total} pasted texts, {len(found)} with a meaning: {dict(counts)}")
     assert total >= LEAST_TEXTS
     assert counts["read"] / len(found) >= LEAST_READ
+
+
+@pytest.mark.parametrize("language", languages())
+def test_the_preview_shows_rows_or_a_problem(
+    language: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    part = {"matrix": ("planar-rrr", "pose"), "position": ("planar-rr", "position")}
+    for case in texts(language):
+        exercise, part_id = part.get(case.kind, ("rrrp", "table"))
+        preview = preview_pasted(case.text, catalogue[exercise], part_id)
+        assert preview.rows or (preview.problem and preview.problem.message), case.title

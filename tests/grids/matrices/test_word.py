@@ -33,6 +33,16 @@ def test_text_beside_the_matrix_is_refused(text: str) -> None:
     assert caught.value.code == "text_around"
 
 
+def test_an_equation_array_is_a_column() -> None:
+    assert read_grid("p=[█(a@b@c)]").size == "3 × 1"
+
+
+def test_an_equation_array_with_aligned_lines_is_refused() -> None:
+    with pytest.raises(GridError) as caught:
+        read_grid("█(x&=a@y&=b)")
+    assert caught.value.code == "no_grid"
+
+
 @pytest.mark.parametrize("text", ["[■(1&2@3&4]", "[■((1&2@3&4)]", "■("])
 def test_brackets_must_fit(text: str) -> None:
     with pytest.raises(GridError) as caught:

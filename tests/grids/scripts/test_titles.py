@@ -15,6 +15,7 @@ def cells(text: str) -> list[list[str]]:
     "text",
     [
         f"Table 1: parameters of the arm\n{TABLE}",
+        f"Table of the arm\t\t\t\t\n{TABLE}",
         f"My robot with 3 degrees of freedom\n\n{TABLE}\nI hope this helps.",
         f"机械臂参数\n{TABLE}",
         f"```\n{TABLE}\n```",

@@ -12,7 +12,7 @@ from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, 
 from service.grading.reading.lists.component_names import ListNames
 from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
 from service.grading.reading.written_names import arranged, name_of, with_order_note
-from service.grids import GridCell, GridError
+from service.grids import FULL_WIDTH, GridCell, GridError
 from service.kinematics.transforms import Numbers
 from service.translations import paragraph, say
 
@@ -52,8 +52,9 @@ def read_list(
     if isinstance(answer, dict):
         answer = _by_keys(answer, names, reader)
     if isinstance(answer, str):
-        # Both replacements keep the length, so that spans stay valid.
-        answer = _NAME_WITH_COLON.sub(r"\1=", answer)
+        # All replacements keep the length, so that spans stay valid.
+        answer = _NAME_WITH_COLON.sub(r"\1=", answer.translate(FULL_WIDTH))
+        answer = _as_written_out(answer)
         entries = _pasted(_in_round_brackets(answer), names, reader, tails)
     else:
         entries = _listed(answer, names, reader, tails)
@@ -174,6 +175,28 @@ def _in_round_brackets(text: str) -> str:
     return f"{found[1]}{''.join(pieces)}{found[5]}"
 
 
+def _as_written_out(text: str) -> str:
+    """Return a list without its code fence, its name and a T that transposes it.
+
+    A list is the same as a row and as a column. No character moves.
+    """
+    for pattern in (_FENCE, _FENCE_AFTER):
+        text = pattern.sub(lambda found: _LETTER.sub(" ", found[0]), text, count=1)
+    raised = _TRANSPOSED.search(text, max(0, len(text) - _LONGEST_END))
+    plain = f"{text[: raised.start()]:{len(text)}}" if raised else text
+    name = _NAME_BEFORE.match(plain)
+    bare = f"{'':{name.end()}}{plain[name.end() :]}" if name else plain
+    start, end = _inside(bare)
+    bracket = bare[start - 1 : start]
+    if bracket == "[" and not bare[end + 1 :].strip():
+        return plain
+    if bracket in {"(", "{"} and len([*_split(bare, ";")]) > 1:
+        return f"{'':{start}}{bare[start:end]:{len(bare) - start}}"
+    if bracket in {"(", "{"} and len([*_split(bare, ",")]) > 1:
+        return bare
+    return plain if raised and plain.count("\\begin") == 1 else text
+
+
 def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) -> list[Entry]:
     count = len(names.quantities)
     if not text.strip():
@@ -273,6 +296,19 @@ def _shifted(entry: Entry, by: int) -> Entry:
     )
     return replace(entry, findings=findings)
 
+
+# The lines of a code fence around a text.
+_FENCE = re.compile(r"\A\s*(?:```|~~~)[\w+-]{0,20}[ \t]*\n(?=[\s\S]*(?:```|~~~)\s*\Z)")
+_FENCE_AFTER = re.compile(r"(?<=\n)[ \t]*(?:```|~~~)\s*\Z")
+_LETTER = re.compile(r"\S")
+# The sign of a transpose after a bracket, at the end of a text.
+_TRANSPOSED = re.compile(
+    r"(?:(?<=[\])])|(?<=matrix\})|(?<=array\}))"
+    r"(?:\s?\^\s?\{?\s?(?:T|\\top|⊤|\\intercal)\s?\}?|[ᵀ⊤]|\.?'|\.T)\s{0,8}[;.]?\s{0,8}\Z"
+)
+_LONGEST_END = 40
+# The name of a vector before its bracket: p = (…).
+_NAME_BEFORE = re.compile(r"\s*[^\W\d][\w{}^,]{0,20}[ \t]{0,3}:?=[ \t]{0,3}(?=[(\[{])")
 
 # A name and a colon at the start of a line: "x: l1 c1".
 _NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")

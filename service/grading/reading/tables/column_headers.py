@@ -38,8 +38,8 @@ _NUMERO: Final = re.compile(r"(?<![a-z])n\.?\s?°")
 # The preposition in "n° d'articulation" and "numéro de l'axe" is not d.
 _OF: Final = re.compile(r"(?<=no|ro)\s(?:de\s)?[dl]['’](?=[a-z]{3})")
 _STYLE: Final = re.compile(
-    r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf)"
-    r"(?![a-z])|\\[,;:! ]"
+    r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf"
+    r"|makecell|thead)(?![a-z])|\\[,;:! ]"
 )
 _CIRCLE: Final = re.compile(r"\^\s?\(?\s?\{?\s?(?:\\circ|∘|°|o)\s?\}?\)?(?![a-z])|\\degree|∘")
 _MARKER: Final = re.compile(r"\^\s?\{?\s?\*\s?\}?")
@@ -53,10 +53,10 @@ _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
 _DIGITS_OR_OPERATORS: Final = re.compile(r"[0-9+\-*/=^]")
 
 _UNIT_NAMES: Final = "|".join(sorted((*ANGLE_UNITS, *METRES), key=len, reverse=True))
-_BRACKETED_UNIT: Final = re.compile(rf"[(\[]\s{{0,4}}(?:in\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
-# "in" before a unit is a preposition, not inches.
+_BRACKETED_UNIT: Final = re.compile(rf"[(\[]\s{{0,4}}(?:(?:in|en)\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
+# "in" or "en" before a unit is a preposition, not inches.
 _TRAILING_UNIT: Final = re.compile(
-    rf"(?:[\s,;:/_]|(?<=[^a-z]))(?:in\s)?({_UNIT_NAMES})\s{{0,4}}$|(°)\s{{0,4}}$"
+    rf"(?:[\s,;:/_]|(?<=[^a-z]))(?:(?:in|en)\s)?({_UNIT_NAMES})\s{{0,4}}$|(°)\s{{0,4}}$"
 )
 
 

@@ -29,6 +29,7 @@ from service.grading.reading.tables.column_headers import (
 )
 from service.grading.reading.tables.length_units import in_unit
 from service.grading.reading.tables.row_labels import in_order, is_label
+from service.grading.reading.tables.unit_row import with_units_in_headers
 from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
@@ -113,6 +114,7 @@ def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> Past
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
+    grid = with_units_in_headers(grid)
     found = _found_headers(grid.rows[0], reader)
     if found is None:
         columns, labels, more = _columns_in_order(grid, order)

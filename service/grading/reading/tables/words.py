@@ -15,6 +15,7 @@ from service.expressions import AngleUnit
 LETTERS: Final[Mapping[str, str]] = {
     "a": "a", "r": "a", "alpha": "alpha", "al": "alpha", "alfa": "alpha", "d": "d",
     "theta": "theta", "th": "theta", "teta": "theta", "tita": "theta", "q": "theta",
+    "vartheta": "theta",
 }  # fmt: skip
 TERMS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("length", "lange", "gliedlange", "armlange", "armteillange"), "a"),
@@ -39,6 +40,7 @@ FILLERS: Final = frozenset(
     {"of", "the", "about", "along", "parameter", "value", "in", "um", "der", "des", "entlang"}
     | {"abstand", "distanz", "distancia", "distance", "distanza", "entfernung", "verschiebung"}
     | {"de", "del", "la", "el", "du", "le", "di", "articular", "articulaire", "parametro"}
+    | {"drehwinkel", "drehung", "giro", "rotacion", "traslacion", "translation", "en"}
 )
 ASIDES: Final = re.compile(
     r"(?:joint )?(?:type|variables?|range|limits?)|comments?|notes?|remarks?|home(?: position)?"
@@ -70,13 +72,14 @@ _CHINESE: Final = {
     **dict.fromkeys(("连杆长度", "杆件长度", "杆长", "长度"), "length"),
     **dict.fromkeys(("连杆扭角", "连杆扭转角", "杆件扭角", "扭转角", "扭角"), "twist"),
     **dict.fromkeys(("连杆偏距", "连杆偏置", "关节偏距", "关节偏置", "偏距", "偏置"), "offset"),
+    **dict.fromkeys(("连杆偏移", "关节偏移", "偏移量", "偏移"), "offset"),
     **dict.fromkeys(("关节角度", "关节转角", "关节角"), "angle"),
     **dict.fromkeys(("关节", "连杆", "杆件", "坐标系", "序号", "编号", "关节号", "轴"), "joint"),
     **dict.fromkeys(("连杆号", "轴号", "行号", "行"), "row"),
     **dict.fromkeys(("末端执行器", "末端", "工具"), "tool"),
     **dict.fromkeys(("关节变量", "变量", "关节类型", "类型", "备注", "说明", "关节范围"), "aside"),
     **dict.fromkeys(("运动范围", "变量范围", "范围"), "aside"),
-    **dict.fromkeys(("距离", "转角", "角度", "角", "参数"), "value"),
+    **dict.fromkeys(("距离", "转角", "旋转角", "角度", "角", "参数"), "value"),
     **dict.fromkeys(("弧度",), "rad"), **dict.fromkeys(("度",), "deg"),
     "毫米": "mm", "厘米": "cm", "米": "m",
 }  # fmt: skip

@@ -66,6 +66,34 @@ def test_any_other_third_value_is_refused(answer: object, make_exercise: Make) -
 @pytest.mark.parametrize(
     "text",
     [
+        "[l, k]^T",
+        "[l; k]'",
+        "(l, k)^{\\top}",
+        r"\begin{pmatrix} l & k \end{pmatrix}^T",
+        "p = (l, k)",
+        "p = (l; k)",
+        "(l; k)",
+        "p = {l, k}",
+        "```\nl, k\n```",
+        "```text\nx = l\ny = k\n```",
+        "（l，k）",
+        "p＝［l；k］",
+    ],
+)
+def test_what_stands_around_a_list_changes_nothing(text: str, make_exercise: Make) -> None:
+    assert full_marks(graded(make_exercise(POINT), text))
+
+
+@pytest.mark.parametrize(
+    "text", ["l, k'", "l, (k)^T", "2*(l; k)", "-(l, k)", "[l, k]^2", "(l; k)*2"]
+)
+def test_a_list_is_not_calculated(text: str, make_exercise: Make) -> None:
+    assert not full_marks(graded(make_exercise(POINT), text))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
         "(2 l, k k)",
         "[2 l, k k]",
         "[2 l + 0, k k]",

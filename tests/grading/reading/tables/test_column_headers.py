@@ -83,6 +83,12 @@ def test_an_index_of_alpha_one_lower_is_recognized(text: str) -> None:
         ("alpha_rad", "alpha", "rad", True),
         ("Link twist (deg)", "alpha", "deg", False),
         ("joint angle (°)", "theta", "°", False),
+        ("θ en °", "theta", "°", False),
+        ("α en grados", "alpha", "grados", False),
+        (r"$\vartheta_i$ (rad)", "theta", "rad", True),
+        ("Drehwinkel θ (deg)", "theta", "deg", False),
+        ("Giro α (°)", "alpha", "°", False),
+        (r"\makecell{$\alpha_i$} (rad)", "alpha", "rad", True),
     ],
 )
 def test_units_of_angles(text: str, column: str, unit: str, radians: bool) -> None:
@@ -98,6 +104,8 @@ def test_units_of_angles(text: str, column: str, unit: str, radians: bool) -> No
         ("d (m)", "d", 1.0),
         ("d [mm]", "d", 0.001),
         ("d in mm", "d", 0.001),
+        ("d en mm", "d", 0.001),
+        ("连杆偏移 (mm)", "d", 0.001),
         ("d_mm", "d", 0.001),
         ("d / mm", "d", 0.001),
         ("a (cm)", "a", 0.01),

@@ -1,0 +1,28 @@
+"""A row of units below the headers belongs to the headers."""
+
+import pytest
+
+from service.grading.reading.tables.unit_row import with_units_in_headers
+from service.grids import read_grid
+
+HEADERS = "i;a;alpha;d;theta"
+ROW = "1;0.3;90;0;q1"
+
+
+def headers(units: str) -> list[str]:
+    grid = with_units_in_headers(read_grid(f"{HEADERS}\n{units}\n{ROW}"))
+    return [cell.text for cell in grid.rows[0]]
+
+
+@pytest.mark.parametrize("units", [";m;deg;m;deg", ";(m);(deg);(m);(deg)", "-;[m];[deg];[m];[deg]"])
+def test_units_are_put_into_the_headers(units: str) -> None:
+    assert headers(units) == ["i", "a [m]", "alpha [deg]", "d [m]", "theta [deg]"]
+
+
+def test_one_unit_is_enough() -> None:
+    assert headers(";;°;;") == ["i", "a", "alpha [°]", "d", "theta"]
+
+
+@pytest.mark.parametrize("row", ["1;m;deg;m;deg", ";m;0;0;q1", ";deg;m;deg;m", ";;;;", ";l1;;;"])
+def test_any_other_row_is_a_row(row: str) -> None:
+    assert headers(row) == HEADERS.split(";")
