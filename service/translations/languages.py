@@ -58,7 +58,7 @@ _KNOWN: Final = (
     Language("fr", "Français", "fr"),
     Language("zh", "简体中文", "zh-Hans"),
 )
-# Those that are complete; a language without its catalogue of pages is not offered.
+# Those with a catalogue of reports. Tests check that all catalogues of a language are complete.
 LANGUAGES: Final[Mapping[str, Language]] = {
     each.code: each
     for each in _KNOWN
