@@ -16,7 +16,7 @@ from greenlet import GreenletExit, getcurrent, greenlet
 R = TypeVar("R")
 
 # The length of a slice (seconds); the next checkpoint after it suspends the work.
-SLICE: Final = 0.004
+SLICE: Final = 0.006
 
 # The end of the current slice. One for the whole process is enough: ``in_slices`` is called only in
 # the thread of the event loop, and other threads are never suspended.

@@ -55,6 +55,7 @@ from service.figures.tables.table_frames import TableFrames, table_frames, table
 from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Matrices, Numbers
+from service.time_slices import checkpoint
 
 _MOST_MECHANISMS: Final = 64
 
@@ -128,6 +129,7 @@ def _answered(
             written = WrittenChain(found.frames[0], found.row_joints, body.table.convention)
         # Without an exercise, only the symbols that the table uses.
         used = used if exercise else found.symbols if found else set()
+        checkpoint()
     placed = None
     if body.placed is not None:
         placed = _placed(body.placed, exercise, body, numbers, amounts)
@@ -136,6 +138,7 @@ def _answered(
         shown = movable.at(amounts)
         mechanism = _mechanism(exercise, movable, view, shown, numbers, amounts)
         seen = SeenMechanism(movable, shown[0], view)
+        checkpoint()
     return FramesAnswer(
         symbols={name: numbers[name] for name in constants if name in used},
         joints=list(_joints(scope, numbers)),
@@ -283,6 +286,7 @@ def _printed(found: TableFormulas) -> TableInFormulas:
 
 
 def _formula(expression: Expression | None) -> PrintedFormula:
+    checkpoint()
     if expression is None:
         return PrintedFormula(text="", latex="", mathml="")
     return PrintedFormula(

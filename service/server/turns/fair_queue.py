@@ -29,10 +29,10 @@ DEBT: Final = SLICE
 # How fast the common clock runs, compared with the fair share of a connection. Below 1, connections
 # that are always busy get no credit and are served in the order of their requests; above 0, no
 # request waits for ever.
-PACE: Final = 0.6
-# Allowance in seconds: of the first request; what each later request adds (about twice the mean);
-# and the most that a connection can save, or owe.
-FIRST, ALLOWANCE, SAVED = 0.006, 0.016, 0.1
+PACE: Final = 0.4
+# Allowance in seconds: of the first request; what each later request adds (about three times the
+# mean of wrong tables); and the most that a connection can save, or owe.
+FIRST, ALLOWANCE, SAVED = 0.006, 0.03, 0.1
 # The number of accounts kept for connections that have no request.
 _ACCOUNTS: Final = 1000
 
