@@ -4,6 +4,7 @@ import gc
 import os
 import random
 import sys
+from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -45,8 +46,19 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--shuffle", metavar="SEED", help="run the tests in the order of this seed")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Shuffle all tests if ``--shuffle`` is given; each process uses the same order."""
+    """Mark what is left out of a sample; shuffle all tests if ``--shuffle`` is given.
+
+    Each process uses the same order. Of a test marked ``sampled(n)``, one case in n stays short.
+    """
+    places: Counter[str] = Counter()
+    for item in items:
+        if (sampled := item.get_closest_marker("sampled")) is not None:
+            name = item.nodeid.partition("[")[0]
+            if places[name] % sampled.args[0]:
+                item.add_marker(pytest.mark.long)
+            places[name] += 1
     if seed := config.getoption("shuffle"):
         random.Random(seed).shuffle(items)
 

@@ -121,6 +121,7 @@ def test_working_time_excludes_suspension() -> None:
     assert asyncio.run(in_slices(work, slow)) < 0.04
 
 
+@pytest.mark.long
 def test_interleaved_gradings_give_the_same_reports() -> None:
     catalogue = shipped_exercises()
 

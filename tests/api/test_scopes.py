@@ -503,6 +503,7 @@ def test_each_of_many_submissions_must_be_to_an_exercise_of_the_key(guarded: Gua
     assert guarded.ask("GET", f"/v1/attempts?exercise={EXERCISE}", elsewhere).status_code == 403
 
 
+@pytest.mark.long
 def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None:
     [elsewhere], [tutor] = guarded.credentials["other exercise"], guarded.credentials["tutor"]
 
@@ -607,6 +608,7 @@ def test_a_page_of_an_allowed_origin_may_send_a_token(guarded: Guarded) -> None:
     assert "Access-Control-Allow-Credentials" not in refused.headers
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("says", "needed", "grades", "records"),
     [

@@ -92,6 +92,7 @@ def test_a_bad_exercise_file_prevents_startup(tmp_path: Path) -> None:
     assert "Traceback" not in result.stderr
 
 
+@pytest.mark.long
 def test_a_bad_exercise_file_prevents_startup_under_another_server(tmp_path: Path) -> None:
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(

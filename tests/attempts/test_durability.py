@@ -172,6 +172,7 @@ def test_acknowledged_attempts_are_in_the_file_once(
     assert_recorded_once(sqlite_url, acknowledged)
 
 
+@pytest.mark.long
 def test_attempts_acknowledged_by_one_of_two_replicas_are_recorded_once(
     postgresql_url: str, tmp_path: Path, killable: Any
 ) -> None:

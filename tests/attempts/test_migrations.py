@@ -146,6 +146,7 @@ def test_a_migration_killed_at_any_moment_is_finished_later(
     assert -signal.SIGKILL in ends
 
 
+@pytest.mark.long
 def test_several_processes_migrate_at_once(old: OldDatabase, killable: Any) -> None:
     barrier = multiprocessing.get_context("forkserver").Barrier(3)
     url = old("0001")

@@ -42,6 +42,7 @@ def test_a_correct_file_gets_no_remarks(make_exercise: Make) -> None:
     assert remarks_on(make_exercise, GOOD) == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "exercise_id", sampled(sorted(file.stem for file in shipped_folder().glob("*.toml")), 9)
 )
@@ -55,6 +56,7 @@ def test_the_shipped_exercises_have_no_failures(
     assert {(exercise_id, remark.field) for remark in remarks} <= known
 
 
+@pytest.mark.long
 def test_the_checks_of_all_shipped_exercises_hold(catalogue: Mapping[str, Exercise]) -> None:
     failed = {name: [*failed_checks(exercise)] for name, exercise in catalogue.items()}
     assert {name: remarks for name, remarks in failed.items() if remarks} == {}
@@ -109,6 +111,7 @@ def test_a_failed_check_is_reported(name: str, make_exercise: Make) -> None:
     assert any(text in each.text for each in failures), failures
 
 
+@pytest.mark.long
 def test_a_model_answer_that_is_too_long_is_reported(make_exercise: Make) -> None:
     """The pose of a robot with ten skew axes is longer than the limit of an entry."""
     rows = ", ".join(f'["a1", "90deg", "a1", "q{i}"]' for i in range(1, 11))

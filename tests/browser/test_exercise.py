@@ -98,6 +98,7 @@ def test_every_kind_of_answer_has_its_input(
     expect(total(page)).to_have_text(f"{points:g} / {points:g} points")
 
 
+@pytest.mark.long
 def test_a_table_in_four_formats_fills_the_grid(visit: Opening, service: str) -> None:
     opened = visit(permissions=CLIPBOARD)
     page = opened.page

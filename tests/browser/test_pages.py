@@ -88,6 +88,7 @@ def test_the_pages_are_accessible(visit: Opening, service: str, axe: str) -> Non
     assert violations(page, "") == []
 
 
+@pytest.mark.long
 def test_the_element_works_on_a_course_page(
     visit: Opening, service: str, other_origin: Origin, stranger: Origin, axe: str
 ) -> None:

@@ -54,6 +54,7 @@ def test_all_usable_submissions_are_graded(entries: list[dict[str, Any]]) -> Non
     assert all(BROKEN[name] in reason for name, reason in broken.items())
 
 
+@pytest.mark.long
 def test_submissions_are_sorted_by_name(entries: list[dict[str, Any]], folder: Path) -> None:
     names = [Path(entry["submission"]).relative_to(folder).parts[0] for entry in entries]
     assert names == sorted(names)
@@ -69,6 +70,7 @@ def test_broken_files_are_reported_without_a_traceback(
     assert b"Grading" not in run.stderr
 
 
+@pytest.mark.long
 def test_one_process_gives_the_same_result(
     run: subprocess.CompletedProcess[bytes], folder: Path, tmp_path: Path
 ) -> None:

@@ -90,6 +90,7 @@ def test_the_program_help_repeats_the_help_of_each_command() -> None:
         assert "completion" not in command.get_help(typer.Context(command))
 
 
+@pytest.mark.long
 def test_the_service_does_not_import_optional_packages() -> None:
     unwanted = {"sympy", "scipy", "jinja2", "prometheus_client", *DATABASES}
     probe = f"import sys, service.app; print(sorted({unwanted} & set(sys.modules)))"
@@ -142,6 +143,7 @@ def test_closed_streams_do_not_prevent_the_output_file(answer: Path, tmp_path: P
     assert output.read_text(encoding="utf-8").count("\n") == 2
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX pipe")
 @pytest.mark.parametrize("arguments", [("exercises", "list"), ("grade", "--exercise", "rrrp")])
 def test_a_closed_pipe_ends_the_program_quietly(arguments: tuple[str, ...], answer: Path) -> None:
@@ -155,6 +157,7 @@ def test_a_closed_pipe_ends_the_program_quietly(arguments: tuple[str, ...], answ
     assert (done.returncode, done.stderr) == (141, b"")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("words", "expected"),
     [("dh-grader gr", "grade"), ("dh-grader grade x --quie", "--quiet"),

@@ -97,6 +97,7 @@ def test_the_options_of_a_grading_are_used(server: Served, using: Using) -> None
     assert theta.read.text == "theta1 + 90deg"
 
 
+@pytest.mark.sampled(2)
 def test_many_submissions_are_graded_in_order_and_in_few_requests(
     server: Served, using: Using
 ) -> None:
@@ -171,6 +172,7 @@ def test_the_idempotency_key_of_the_caller_is_sent(using: Using) -> None:
     assert server.requests[0].headers["idempotency-key"] == "mine"
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("status", [400, 401, 403, 404, 408, 409, 413, 422, 500])
 def test_other_statuses_are_not_retried(using: Using, status: int) -> None:
     with scripted(http(status, "<h1>no</h1>"), READY) as server:
@@ -247,6 +249,7 @@ def test_an_endless_answer_is_cut_off(using: Using, monkeypatch: pytest.MonkeyPa
     assert len(sent) < 1000
 
 
+@pytest.mark.long
 def test_a_slow_answer_times_out(using: Using) -> None:
     released = socket.socketpair()
 

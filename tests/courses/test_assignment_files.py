@@ -19,6 +19,7 @@ points = 30
 OWN = '[[exercises]]\npath = "{path}"\n'
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("more", "said"),
     [

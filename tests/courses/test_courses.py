@@ -43,6 +43,7 @@ def near(value: float) -> list[Any]:
 BOTH = pytest.mark.parametrize("class_", KINDS, indirect=True)
 
 
+@pytest.mark.long
 @BOTH
 def test_the_limit_holds_under_parallel_attempts_and_each_is_recorded_once(class_: Class) -> None:
     class_.assign(limit=3)
@@ -141,6 +142,7 @@ def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class
         assert ada.ask("POST", path, answers={}, learner="ada").status_code == status
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("late_worth", [0, 1e-7, 0.3, 1])
 def test_a_late_attempt_has_full_marks_before_the_deduction(
     class_: Class, late_worth: float
@@ -236,6 +238,7 @@ def test_a_forgotten_learner_is_in_no_course_and_has_no_link(class_: Class) -> N
     assert class_.do(lambda it: revoke_links(it, "robots", ["ada"], NOW)) == 0
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("fields", "reason"),
     [

@@ -285,6 +285,7 @@ def hand_in_right(class_: Class, catalogue: Mapping[str, Exercise], learner: str
     return str(mine.seed)
 
 
+@pytest.mark.long
 def test_tutors_see_variants_in_lists_exports_and_statistics(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -66,6 +66,7 @@ WHOLE = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(2)
 @BOTH
 def test_an_assignment_is_deleted_with_its_attempts_only_on_request(tutored: Class) -> None:
     told = tutored.ask("POST", ASSIGNMENT, "tutor", apply=False).json()
@@ -86,6 +87,7 @@ def test_an_assignment_is_deleted_with_its_attempts_only_on_request(tutored: Cla
     assert outside.counted == 0
 
 
+@pytest.mark.long
 @BOTH
 def test_the_attempts_of_another_assignment_stay_and_do_not_count_outside(tutored: Class) -> None:
     """Deleted attempts leave gaps in the numbers of a learner's attempts."""
@@ -125,6 +127,7 @@ def test_a_removed_learner_has_no_link_and_comes_back_with_the_attempts(tutored:
     assert tutored.ask("POST", path, "tutor", **removal).status_code == 404
 
 
+@pytest.mark.sampled(2)
 @BOTH
 def test_only_a_tutor_of_all_courses_deletes_a_course(tutored: Class) -> None:
     path = "/v1/courses/robots/delete"

@@ -106,6 +106,7 @@ def test_between_two_steps_another_answer_is_handed_in(class_: Class) -> None:
     assert handed_in(class_, "four", RIGHT)["hint_points"] == pytest.approx(1.2)
 
 
+@pytest.mark.long
 def test_the_steps_at_a_cell_go_on_after_another_mistake(class_: Class) -> None:
     class_.assign(hint_prices=[0.1, 0.2, 0.3])
     take(class_, handed_in(class_, "one"), 1)
@@ -128,6 +129,7 @@ def test_a_hint_of_another_learner_has_no_price_for_this_one(class_: Class) -> N
     assert other["points"] == TABLE
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("fields", "more", "expected"),
     [
@@ -163,6 +165,7 @@ def test_practice_gives_no_free_hints_at_an_exercise_whose_hints_cost(class_: Cl
     assert class_.ask("POST", path, **body).status_code == 200
 
 
+@pytest.mark.long
 def test_a_late_attempt_after_hints_gets_back_only_its_lateness(class_: Class) -> None:
     class_.assign(hint_prices=[0.05, 0, 0], due=days(-1), closes=days(1), late_worth=0.5)
     take(class_, handed_in(class_, "one"), 1)

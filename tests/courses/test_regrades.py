@@ -54,6 +54,7 @@ def versions(class_: Class) -> dict[str, bool]:
     return {course: version == "old" for course, version in class_.do(lambda it: it.execute(rows))}
 
 
+@pytest.mark.sampled(2)
 @BOTH
 def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
     both = set_up(class_)
@@ -75,6 +76,7 @@ def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
     assert versions(both) == {"robots": False, "others": False}
 
 
+@pytest.mark.long
 def test_a_course_leaves_the_queue_of_the_others_alone(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:

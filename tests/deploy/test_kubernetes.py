@@ -54,6 +54,7 @@ def test_the_schemas_refuse_a_misspelt_key() -> None:
         check(deployment)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("overlay", OVERLAYS, ids=lambda overlay: overlay.name)
 def test_kubectl_builds_an_overlay(overlay: Path) -> None:
     kubectl = shutil.which("kubectl")

@@ -78,6 +78,7 @@ def program() -> Sequence[CodeUse]:
     return codes_in(telling)
 
 
+@pytest.mark.long
 def test_every_code_of_the_program_is_on_the_page() -> None:
     assert {use.code for use in program()} - {line.code for line in LINES} == set()
 

@@ -41,6 +41,7 @@ def test_random_formulas_give_one_result(text: str) -> None:
     _check(text)
 
 
+@pytest.mark.long
 @given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join) | st.text(max_size=60))
 def test_random_texts_give_one_result(text: str) -> None:
     _check(text)

@@ -71,6 +71,7 @@ def test_a_whole_pose_is_read(printer: str) -> None:
     assert 8_000 < sum(map(reading_cost, texts)) < MAX_SYMBOLS
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("printer", PRINTERS)
 def test_a_long_entry_is_read(printer: str) -> None:
     longest = 0

@@ -45,6 +45,7 @@ def entries(seed: int, count: int) -> list[sympy.Expr]:
     return [entry(random) for _ in range(count)]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("printer", PRINTERS)
 def test_a_printed_formula_has_its_value(printer: str) -> None:
     count = 0
@@ -57,6 +58,7 @@ def test_a_printed_formula_has_its_value(printer: str) -> None:
     assert count > 25
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("rewriting", REWRITINGS)
 def test_a_rewritten_formula_has_the_same_value(rewriting: str) -> None:
     """SymPy rewrites the formula; the reader must give both texts the same value."""

@@ -97,6 +97,7 @@ def test_a_figure_is_legible_on_a_phone(name: str) -> None:
     assert min(sizes) * min(PHONE[0] / width, PHONE[1] / height) >= 12
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_no_labels_overlap(name: str) -> None:
     """Letters are assumed to be half as wide as high, and lines 11 pixels high."""
@@ -226,6 +227,7 @@ def test_every_joint_and_length_symbol_of_the_table_is_labelled(name: str) -> No
     assert lengths | {joint.variable for joint in robot.joints} <= told
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_no_joint_axis_points_at_the_viewer(name: str) -> None:
     exercise = SHIPPED[name]

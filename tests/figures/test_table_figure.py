@@ -55,6 +55,7 @@ def test_a_table_is_drawn_as_a_robot_with_its_frames(client: httpx.Client) -> No
     assert y1 < y0
 
 
+@pytest.mark.long
 def test_a_table_is_drawn_over_the_mechanism_of_its_exercise(client: httpx.Client) -> None:
     # Without a table, the figure contains no answer: no names, and no lines of a chain.
     for name, exercise in SHIPPED.items():

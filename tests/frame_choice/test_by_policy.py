@@ -11,6 +11,7 @@ def sample() -> Counts:
     return run(range(1), seed=1, seeds=2)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("policy", [policy.name for policy in POLICIES])
 def test_no_table_is_misjudged(sample: Counts, policy: str) -> None:
     for truth in (VALID, WRONG):

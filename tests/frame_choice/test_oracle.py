@@ -111,6 +111,7 @@ def test_a_mirrored_mechanism_is_another_one() -> None:
         assert not is_equivalent(robot, FREE_ENDS, mirrored, robot.convention)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
     rng = np.random.default_rng(5)

@@ -54,6 +54,7 @@ def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
     return "\n\n".join(str(miss) for miss in tally.misses if chosen(miss.what))[:4000]
 
 
+@pytest.mark.sampled(2)
 def test_every_valid_table_gets_full_marks_and_no_error_message(either: Tally) -> None:
     assert either.counts["valid"] >= 60
     assert either.counts["valid accepted"] == either.counts["valid"], first_misses(

@@ -1,5 +1,7 @@
 """Rounded tables of unseen robots are right, and one with a changed digit is not."""
 
+import pytest
+
 from tests.frame_choice.robots import GIVEN, POLICIES
 from tests.frame_choice.rounded import RoundedCell, run
 
@@ -10,6 +12,7 @@ def test_a_rounded_cell_has_the_number_of_figures() -> None:
     assert RoundedCell(angle=True, constant=-1.5, variables={"q1": 1}).text == "q1 - 1.50"
 
 
+@pytest.mark.long
 def test_rounded_tables_are_judged_right() -> None:
     found = run(range(4), seed=3, seeds=1, policies=(GIVEN,))
     assert found.misses == []

@@ -83,6 +83,7 @@ def test_a_zero_written_as_an_identity_is_always_right_in_a_table(
     assert right == times
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("times", TIMES)
 @pytest.mark.parametrize("small", ["0.05", "1e-4", "-0.000002"])
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)

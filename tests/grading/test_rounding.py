@@ -159,6 +159,7 @@ NEAR = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("i", "column", "inside", "outside"), NEAR)
 def test_no_verdict_depends_on_the_draw(
     i: int, column: str, inside: str, outside: str, arm: Exercise

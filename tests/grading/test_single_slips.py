@@ -16,6 +16,7 @@ CELLS = [
 ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("robot", "i", "j"),
     CELLS,

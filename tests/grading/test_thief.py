@@ -37,6 +37,7 @@ def thieves(exercise: Exercise, level: FeedbackLevel, first: str) -> Iterator[Th
         yield Thief(exercise, spec, level, grid, known)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 9))
 @pytest.mark.parametrize("first", FIRST)
 @pytest.mark.parametrize("level", [HINTS, VERDICTS, SCORE])
@@ -48,6 +49,7 @@ def test_a_thief_gains_nothing(
         assert after == before, (thief.part.id, thief.stolen)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 20))
 @pytest.mark.parametrize("first", FIRST)
 def test_a_thief_with_all_hints_gains_nothing(

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import pytest
+
 from service.catalogue import Exercise, FeedbackLevel
 from service.grading.misconception import Record, all_records
 from service.grading.report import Verdict, messages_of
@@ -61,6 +63,7 @@ def test_an_unreadable_or_empty_cell_has_no_hint(catalogue: Mapping[str, Exercis
     assert not any(has_hints(message, verdict) for message, _, verdict in told)
 
 
+@pytest.mark.long
 @together("record", RECORDS)
 def test_each_message_on_a_mistake_has_all_steps(record: Record) -> None:
     assert record.example is not None

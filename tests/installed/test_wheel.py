@@ -24,6 +24,7 @@ from tests.installed.environment import (
 WRONG = {"table": {"rows": [ROWS[0], {**ROWS[1], "alpha": "pi/2"}, *ROWS[2:]]}, "pose": POSE}
 
 
+@pytest.mark.long
 def test_the_program_is_the_installed_one(programs: Path, tmp_path: Path) -> None:
     assert checked(programs / "dh-grader", "--version", cwd=tmp_path).split() == [
         "dh-grader", version("dh-grader"),
@@ -41,6 +42,7 @@ async def posted(body: dict[str, Any]) -> Any:
         return (await client.post("/v1/exercises/planar-rrr/grade", json=body)).json()
 
 
+@pytest.mark.long
 def test_a_submission_gets_the_same_points_from_wheel_and_http(
     programs: Path, tmp_path: Path
 ) -> None:
@@ -99,6 +101,7 @@ def contents(wheel: Path) -> dict[str, bytes]:
         }
 
 
+@pytest.mark.long
 def test_the_program_rebuilds_its_own_wheel(wheel: Path, programs: Path, tmp_path: Path) -> None:
     make = (
         "import pathlib, service.bundles.own_wheel as own; made = own.own_wheel();"

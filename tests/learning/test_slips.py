@@ -45,6 +45,7 @@ def test_every_misconception_of_a_table_is_drawn_or_has_a_reason() -> None:
     assert not SLIPS.keys() & NOT_DRAWN.keys()
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("code", SLIPS)
 def test_the_scara_arm_draws_every_misconception(
     code: str, catalogue: Mapping[str, Exercise]

@@ -24,6 +24,7 @@ CHAINS: dict[str, list[Motion]] = {
 }
 
 
+@pytest.mark.long
 @together("axes", ["moving", "fixed"])
 @together("chain", CHAINS)
 @together("sequence", TAIT_BRYAN + PROPER)

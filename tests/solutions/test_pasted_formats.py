@@ -15,6 +15,7 @@ from tests.solutions.solved import solved
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("exercise_id", sampled(IDS))
 def test_the_model_table_gets_full_marks_in_every_format(
     exercise_id: str, catalogue: Mapping[str, Exercise]

@@ -66,6 +66,7 @@ def _unchanged_entries(before: object, after: object) -> int:
     return int(isinstance(before, str) and before == after and len(before) > 100)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("printer", PRINTERS)
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 3))
 def test_the_model_solution_gets_full_marks_as_sympy_prints_it(
@@ -97,6 +98,7 @@ def test_the_model_solution_gets_full_marks_as_sympy_prints_it(
 SAMPLE = 6
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 3))
 def test_matrices_get_full_marks_as_programs_print_them(
     exercise_id: str, catalogue: Mapping[str, Exercise]

@@ -85,6 +85,7 @@ def test_a_page_has_the_same_elements_as_for_a_plain_exercise(
         assert f"Hostile {PICTURE} {BREAKOUT}" in hostile.text
 
 
+@pytest.mark.long
 def test_the_api_reference_does_not_contain_the_exercise(both: tuple[Tutor, Tutor]) -> None:
     for path in ("/docs", "/openapi.json"):
         hostile, plain = (each.ask("GET", path).content for each in both)

@@ -41,6 +41,7 @@ def client(catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch) -
     return Client(catalogue)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("path", PAGES)
 def test_with_one_language_there_is_no_switch(
     catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch, path: str
@@ -53,6 +54,7 @@ def test_with_one_language_there_is_no_switch(
     assert "set-cookie" not in page.headers
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_is_told_in_the_language_of_its_reader(client: Client, path: str) -> None:
     page = client.get(path, **{"accept-language": "qps"})

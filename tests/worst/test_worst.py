@@ -49,6 +49,7 @@ def test_each_kind_of_body_is_changed() -> None:
         assert len(found) > 1, attack.entry
 
 
+@pytest.mark.long
 def test_the_search_keeps_what_costs_most(target: Target, monkeypatch: pytest.MonkeyPatch) -> None:
     search = Search(target, 1, cells())
     cheap = Attack(GRADE, ARM, {"answers": {"pose": [["1"]]}})

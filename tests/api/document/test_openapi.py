@@ -168,6 +168,7 @@ def test_what_the_service_answers_is_documented_field_by_field(
     strictly(document, content[answer.headers["content-type"]]["schema"]).validate(answer.json())
 
 
+@pytest.mark.long
 def test_every_exercise_and_its_solution_are_documented_field_by_field(
     client: httpx.Client, document: Schema, catalogue: Mapping[str, Exercise],
     client_of: Callable[[FastAPI], httpx.Client],

@@ -108,6 +108,7 @@ def test_each_reader_gets_a_recorded_report_in_the_own_language(
     assert "sentences" not in client.get("/v1/attempts/export?format=jsonl").text
 
 
+@pytest.mark.long
 def test_every_field_of_an_attempt_is_documented(tutor_of: Tutor) -> None:
     tutor = tutor_of()
     attempt = post(tutor, "ada")["attempt"]["id"]
@@ -149,6 +150,7 @@ def test_a_plain_application_shows_nothing(client: httpx.Client) -> None:
     assert {client.get(path).status_code for path in PATHS} == {403}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("query", "status"),
     [

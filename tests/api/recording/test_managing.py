@@ -153,6 +153,7 @@ def test_a_learner_is_deleted_only_with_apply(
     assert not any(b"ada-4711" in file.read_bytes() for file in files)
 
 
+@pytest.mark.long
 def test_a_tutor_reads_that_a_text_is_still_in_a_file(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise], tmp_path: Path
 ) -> None:
@@ -167,6 +168,7 @@ def test_a_tutor_reads_that_a_text_is_still_in_a_file(
     assert files_with("ada-4711", path) == []
 
 
+@pytest.mark.long
 def test_a_regrade_goes_step_by_step(
     store: AttemptStore, catalogue: Mapping[str, Exercise], tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

@@ -135,6 +135,7 @@ def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
     return done
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("level", ["hints", "verdicts", "score"])
 def test_an_attempt_is_graded_once_and_told_as_by_a_grading(
     course_of: Any, client: httpx.Client, gradings: list[FeedbackLevel], level: str
@@ -146,6 +147,7 @@ def test_an_attempt_is_graded_once_and_told_as_by_a_grading(
     assert len(gradings) == 1
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("first", [FeedbackLevel.SCORE, FeedbackLevel.FULL])
 def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vain(
     first: FeedbackLevel,
@@ -234,11 +236,13 @@ def test_a_learner_is_a_short_line_of_text(course_of: Any, learner: Any) -> None
     assert problem(course_of().post(RIGHT, learner)) == (422, "invalid-request")
 
 
+@pytest.mark.long
 def test_a_learner_may_have_any_letters(course_of: Any) -> None:
     for learner in ("Ада Лавлейс", "ada@example.edu", "'; DROP TABLE attempts; --", "名前", "🤖 7"):
         assert course_of().post(RIGHT, learner).json()["attempt"]["learner"] == learner
 
 
+@pytest.mark.long
 def test_no_learner_has_a_character_that_is_not_seen() -> None:
     taken = TypeAdapter(Learner)
     for character in map(chr, range(0x110000)):
@@ -269,6 +273,7 @@ def test_a_page_of_another_origin_cannot_record(
     assert status(course, course) == status("https://any.example", "*") == (201, 1)
 
 
+@pytest.mark.long
 def test_the_page_on_attempts_shows_the_real_answer(course_of: Any) -> None:
     page = (Path(__file__).parents[3] / "docs" / "attempts.md").read_text(encoding="utf-8")
     sent, shown, *_ = re.findall(r"```json(?: attempt\.json)?\n(.*?)```", page, re.DOTALL)

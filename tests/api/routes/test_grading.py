@@ -104,6 +104,7 @@ def test_no_caller_gets_more_than_the_exercise_allows(
     assert "correction" not in json.dumps(result)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("exercise", "service", "asked", "told"),
     [
@@ -141,6 +142,7 @@ def test_nothing_handed_in_is_not_gradable(client: httpx.Client) -> None:
     assert (result["gradable"], result["score"]) == (False, 0.0)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "cell",
     [
@@ -225,6 +227,7 @@ def test_an_unknown_exercise_is_a_404(client: httpx.Client) -> None:
     assert "planar-rrr" in response.json()["detail"]
 
 
+@pytest.mark.long
 @together("bare", BARE)
 def test_exercises_of_numbers_alone(
     bare: BareExercise, make_exercise: Callable[[str], Exercise], client_of: Any

@@ -95,6 +95,7 @@ def test_a_changed_exercise_has_a_solution_of_its_own(
         assert tutor.get(PATH.format("scara")).text == "other"
 
 
+@pytest.mark.long
 def test_the_event_loop_runs_while_a_solution_is_computed(
     catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
@@ -124,6 +125,7 @@ print(sorted({"sympy", "service.solutions.solution"} & set(sys.modules)))
 """
 
 
+@pytest.mark.long
 def test_what_serves_and_grades_imports_no_algebra_system() -> None:
     result = subprocess.run(
         [sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True

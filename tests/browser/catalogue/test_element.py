@@ -65,6 +65,7 @@ def test_the_element_has_the_colours_of_the_page_not_of_the_system(
     assert source.partition("figure.svg")[2] == expected
 
 
+@pytest.mark.long
 def test_the_element_follows_changes_of_the_page(
     visit: Opening, service: str, other_origin: Origin
 ) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.fixtures import Visit
@@ -28,6 +29,7 @@ def wrong_table(page: Page, service: str) -> None:
     check(page, "pi")
 
 
+@pytest.mark.long
 def test_three_hints_with_a_try_in_between(visit: Opening, service: str, axe: str) -> None:
     page = visit(bypass_csp=True).page
     page.add_init_script(axe)

@@ -66,6 +66,7 @@ def test_a_page_is_told_and_fits(pseudo: str, visit: Opening, path: str) -> None
     fits(page)
 
 
+@pytest.mark.long
 def test_an_exercise_is_told_and_fits(pseudo: str, visit: Opening) -> None:
     page = visit().page
     page.goto(f"{pseudo}/exercises/planar-rr?lang=qps")
@@ -77,6 +78,7 @@ def test_an_exercise_is_told_and_fits(pseudo: str, visit: Opening) -> None:
     fits(page)
 
 
+@pytest.mark.long
 def test_the_switch_keeps_the_place_and_the_choice(pseudo: str, visit: Opening, axe: str) -> None:
     page = visit(bypass_csp=True).page
     page.add_init_script(axe)

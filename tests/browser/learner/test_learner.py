@@ -191,6 +191,7 @@ def test_a_learner_sees_the_own_variant(course: Course, visit: Opening) -> None:
     assert not [url for url in opened.requests if "~" in url]
 
 
+@pytest.mark.long
 def test_the_element_hands_in_from_a_course_site(course: Course, visit: Opening) -> None:
     page = visit().page
     page.add_init_script(

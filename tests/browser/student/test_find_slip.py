@@ -14,6 +14,7 @@ Opening = Callable[..., Visit]
 PHONE = {"width": 320, "height": 700}
 
 
+@pytest.mark.long
 def test_a_slip_is_marked_and_mended_by_keyboard(visit: Opening, service: str, axe: str) -> None:
     # The page's policy allows only its own scripts, so the checker needs ``bypass_csp``.
     page = visit(bypass_csp=True).page

@@ -35,6 +35,7 @@ def test_angles_are_read_as_degrees_where_the_report_proposes_it(
     expect(button).to_have_count(0)
 
 
+@pytest.mark.long
 def test_columns_are_reordered_where_the_report_proposes_it(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rr")
@@ -49,6 +50,7 @@ def test_columns_are_reordered_where_the_report_proposes_it(visit: Opening, serv
     expect(cells(page).first).to_have_value("theta1")
 
 
+@pytest.mark.long
 def test_a_box_takes_a_whole_table_and_says_what_does_not_fit(
     visit: Opening, service: str, axe: str
 ) -> None:

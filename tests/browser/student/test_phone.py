@@ -71,6 +71,7 @@ def matrices(texts: list[str]) -> list[str]:
     return [f"A{i // 4 + 1} = [{'; '.join(rows[i : i + 4])}]" for i in range(0, len(rows), 4)]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("exercise", ["planar-rr", "dh-conditions"])
 def test_unreadable_cells_do_not_make_the_page_wider(
     visit: Opening, service: str, exercise: str

@@ -165,6 +165,7 @@ def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(folder))
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("corrected")
 def test_a_regrade_is_previewed_before_it_is_applied(run: Run, course: list[str]) -> None:
     before = run("attempts", "export").output

@@ -130,6 +130,7 @@ def test_the_environment_may_name_several_folders(
     assert {"arm", "scara"} <= set(listed)
 
 
+@pytest.mark.long
 def test_in_a_pipe_lines_are_plain_and_not_wrapped(arm: Path) -> None:
     """The output in a course's CI."""
     changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))

@@ -145,6 +145,7 @@ def test_old_attempts_are_deleted_and_no_others(
     assert months_before(datetime(2026, 1, 5, 8, tzinfo=UTC), 13).isoformat()[:10] == "2024-12-05"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("due", "closes", "extended", "left"),
     [
@@ -180,6 +181,7 @@ def test_attempts_are_kept_until_their_assignment_has_been_closed_for_as_long(
     assert learners(database) == left
 
 
+@pytest.mark.long
 def test_the_service_deletes_old_attempts_at_its_start(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -160,6 +160,7 @@ CHAINS = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("chain", CHAINS)
 def test_no_chain_nears_the_recursion_limit(chain: str, arm: Vocabulary) -> None:
     depth, frame = 0, currentframe()

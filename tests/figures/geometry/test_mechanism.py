@@ -70,6 +70,7 @@ def bodies(exercise: Exercise, values: Mapping[str, float]) -> tuple[list[Number
     return [*reached[:-1], reached[-1] @ home], []
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", ROBOTS)
 def test_every_drawn_point_moves_with_its_link(name: str) -> None:
     exercise = SHIPPED[name]
@@ -99,6 +100,7 @@ def test_every_drawn_point_moves_with_its_link(name: str) -> None:
             assert points == pytest.approx(seen[0], abs=EXACT)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", ROBOTS)
 def test_links_lead_from_joint_to_joint_without_a_gap(name: str) -> None:
     exercise = SHIPPED[name]

@@ -178,6 +178,7 @@ CONTRAST = """(() => {
 })()"""
 
 
+@pytest.mark.long
 def test_a_browser_shows_it_with_contrast_and_without_requests(
     visit: Callable[..., Visit], tmp_path: Path
 ) -> None:

@@ -184,12 +184,14 @@ def test_an_empty_row_or_cell_earns_no_more() -> None:
     assert not found.misses, "\n".join(found.misses)
 
 
+@pytest.mark.long
 def test_an_empty_place_earns_no_more_after_slips_in_whole_rows() -> None:
     found = careless.run(range(SOME_ROBOTS), EACH, seed=4)
     assert found.tries.total() > 0.8 * EACH * SOME_ROBOTS
     assert not found.misses, "\n".join(found.misses)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("robot", "policy", "texts", "empty"), ONCE_GAINED, ids=[case[0].name for case in ONCE_GAINED]
 )

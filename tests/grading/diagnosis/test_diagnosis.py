@@ -76,6 +76,7 @@ def test_no_two_records_of_a_kind_have_one_rank() -> None:
     assert [names for names in ranks.values() if len(names) > 1] == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "first", ["judging.own_frames.written_table", "diagnosis.upstream.slip_kinds", "kinds.position"]
 )

@@ -26,6 +26,7 @@ def test_scores_is_a_part_of_the_path() -> None:
     assert {url: scores_address(url) for url in cases} == cases
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "trouble",
     [
@@ -124,6 +125,7 @@ def test_the_audience_of_the_token(journey: Journey) -> None:
     assert journey.states() == {"ada": "sent"}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("status", [400, 403, 404, 422])
 def test_a_learner_who_is_not_enrolled(journey: Journey, status: int) -> None:
     """The refusal is final until the learner launches again."""

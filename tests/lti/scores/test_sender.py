@@ -15,6 +15,7 @@ KINDS = pytest.mark.parametrize("tool", ["sqlite", "postgresql"], indirect=True)
 ENDPOINT = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
 
 
+@pytest.mark.sampled(2)
 @KINDS
 def test_a_hand_in_an_override_and_a_forgotten_learner_arrive(journey: Journey) -> None:
     attempt = journey.hand_in()

@@ -41,12 +41,14 @@ def test_slips_in_rows_and_columns_are_named(figure: Callable[[str], None]) -> N
         assert len(named) >= 0.95 * len(alone)
 
 
+@pytest.mark.long
 def test_if_several_slips_fit_one_of_them_is_named() -> None:
     shared = [trial for trial in one_slip_each() if not trial.is_alone]
     assert len(shared) > LEAST
     assert sum(trial.is_named for trial in shared) >= 0.95 * len(shared)
 
 
+@pytest.mark.long
 def test_two_slips_are_not_explained_by_one_slip_of_rows_or_columns() -> None:
     """A slip of one cell may explain two slips; a slip of rows or columns must not."""
     found = [trial for i, arm in enumerate(SAMPLE) for trial in two_slips(arm, i)]

@@ -25,6 +25,7 @@ def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         assert running.end() == 0
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("sent", "status"),
     [
@@ -154,6 +155,7 @@ def seconds_until_closed(connection: socket.socket) -> tuple[float, bytes]:
     return time.monotonic() - began, said
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "sent",
     [b"GET /healthz HTTP/1.1\r\nHost:", preview()[:-5], CHUNKED + b"5\r\n{}"],
@@ -216,6 +218,7 @@ def test_an_idle_connection_is_closed_without_an_answer(
     assert said.count(b"HTTP/1.1") == (1 if sent else 0)
 
 
+@pytest.mark.long
 def test_a_head_has_less_time_than_a_body(tmp_path: Path) -> None:
     head = b"GET /healthz HTTP/1.1\r\n"
     with (

@@ -63,6 +63,7 @@ def check_end(running: Service) -> None:
     assert running.process.wait(ANSWER) == 0
 
 
+@pytest.mark.long
 def test_a_begun_request_is_answered_and_idle_connections_are_closed(
     tmp_path: Path,
 ) -> None:
@@ -264,6 +265,7 @@ def test_many_open_connections_do_not_prevent_answers_and_take_little_memory(
         assert lasting.memory() - before < 100
 
 
+@pytest.mark.long
 def test_addresses_can_be_left_out_of_the_log(lasting: Service) -> None:
     (well,) = lasting.ask(b"GET /healthz?name=Ada HTTP/1.1\r\nHost: x\r\n\r\n")
     (nonsense,) = lasting.ask(b"NONSENSE\r\n\r\n")

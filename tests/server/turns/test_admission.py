@@ -175,6 +175,7 @@ class ManyGradings(Application):
         await super().__call__(scope, receive, send)
 
 
+@pytest.mark.long
 def test_small_requests_go_before_the_next_grading_of_a_large_one() -> None:
     async def story() -> None:
         inner = ManyGradings()
@@ -230,6 +231,7 @@ def test_a_client_with_too_many_waiting_requests_is_refused() -> None:
     run(story())
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("gradings", "each", "seconds"), [(1, 0.003, 2), (10, 0.003, 11), (20, 0.015, 30)]
 )

@@ -50,6 +50,7 @@ def test_robots_are_the_same_on_every_python() -> None:
     assert digest() == DIGEST
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "seed", ["1", *(pytest.param(each, marks=pytest.mark.campaign) for each in ("2", "3", "4"))]
 )
@@ -62,6 +63,7 @@ def test_robots_are_the_same_with_every_hash_seed(seed: str) -> None:
     assert ran.stdout.strip() == DIGEST
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("convention", Convention)
 def test_the_statement_proves_itself_and_the_marks_are_fair(

@@ -58,6 +58,7 @@ def test_one_process_checks_one_text_after_the_other(checking: Checking) -> None
     assert process_of(checking) is first
 
 
+@pytest.mark.long
 def test_checks_that_take_too_long_are_killed(checking: Checking) -> None:
     checking.checked(QUICK)
     first = process_of(checking)
@@ -70,6 +71,7 @@ def test_checks_that_take_too_long_are_killed(checking: Checking) -> None:
     assert b"unusable" in checking.checked(QUICK)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_killed_process_is_restarted(checking: Checking) -> None:
     checking.checked(QUICK)

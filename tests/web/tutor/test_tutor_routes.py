@@ -107,6 +107,7 @@ def test_only_tutors_see_the_tutors_pages(tutor: Tutor) -> None:
     assert 'href="tutor"' in tutor.ask("GET", "/").text
 
 
+@pytest.mark.long
 def test_every_solution_is_drawn(tutor: Tutor, catalogue: Mapping[str, Exercise]) -> None:
     for name in ("stanford-arm", "dh-conditions", "composite-rotations", "planar-rpr-poe"):
         page = tutor.ask("GET", f"/tutor/solutions/{name}")
@@ -134,6 +135,7 @@ def test_misconceptions_are_listed_with_their_sentences(tutor: Tutor) -> None:
     assert "point_off_axis" not in page
 
 
+@pytest.mark.long
 def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> None:
     good = tutor.check(SCARA)
     assert good["findings"] == []
@@ -200,6 +202,7 @@ def test_a_file_is_saved_only_in_the_editors_folder(
     assert save(SCARA, by=Tutor(catalogue)).status_code == 409
 
 
+@pytest.mark.long
 def test_a_shipped_exercise_is_copied_under_a_free_id(tutor: Tutor, tmp_path: Path) -> None:
     def shown() -> str:
         page = tutor.ask("GET", "/tutor/editor?exercise=scara").text
