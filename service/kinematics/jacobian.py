@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from service.kinematics.chain import Table, frames, joint_frames
 from service.kinematics.dh import Convention
 from service.kinematics.tolerances import SAME_SCREW, ZERO_SINGULAR_VALUE
+from service.kinematics.transforms import cross
 
 Screws = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ def space_jacobian(
     axes, origins = on_axes[..., :3, 2], on_axes[..., :3, 3]
     slides = np.asarray(prismatic, dtype=np.bool_)[:, None, None]
     angular = np.where(slides, 0.0, axes)
-    linear = np.where(slides, axes, np.cross(origins, axes))
+    linear = np.where(slides, axes, cross(origins, axes))
     return np.moveaxis(np.concatenate([angular, linear], axis=-1), 0, -1)
 
 

@@ -46,6 +46,13 @@ def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
     return matrices
 
 
+def cross(one: Numbers, other: Numbers) -> Numbers:
+    """Return the cross products of vectors ``(..., 3)``, several times as fast as ``np.cross``."""
+    a, b, c = (one[..., i] for i in range(3))
+    d, e, f = (other[..., i] for i in range(3))
+    return np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=-1)
+
+
 def inverse(transform: Matrices) -> Matrices:
     """Return the inverse [Rᵀ, −Rᵀp; 0 1] of rigid transforms ``(..., 4, 4)``.
 

@@ -24,7 +24,6 @@ from service.kinematics.frames.placement import (
     RightPlace,
     asked_frames,
     axis_across,
-    cross,
     frame_of,
     home_rows,
     largest,
@@ -32,7 +31,7 @@ from service.kinematics.frames.placement import (
     z_line,
 )
 from service.kinematics.tolerances import NO_ROTATION
-from service.kinematics.transforms import Matrices, Numbers, identity
+from service.kinematics.transforms import Matrices, Numbers, cross, identity
 
 # The most sliding joints whose axes are tried both as moved and as drawn: 16 ways.
 _MOST_MOVED: Final = 4

@@ -191,7 +191,7 @@ def _judged_by_nearest(
     """Judge the table by the valid table nearest to it."""
     roles, nearest = best_roles(part, rows, convention, grading)
     judgement = _judged_by(nearest, roles, convention, grading)
-    if not all(np.isfinite(row.values).all() for row in rows):
+    if not np.isfinite(values_of(rows)).all():
         return _judged_as_read(part, rows, judgement, convention, grading)
     of_rows = ROW_COSTS[np.count_nonzero(judgement.matches < Match.ROUNDED, axis=1)].sum()
     if nearest.cost - of_rows < NO_SUCH_CELL - WRONG_CELL / 2:
@@ -303,7 +303,8 @@ def _rows_right(
 
     An end of the table is right.
     """
-    right = np.pad((cell_matches >= Match.ROUNDED).all(axis=1), 1, constant_values=True)
+    right = np.ones(len(cell_matches) + 2, np.bool_)
+    right[1:-1] = (cell_matches >= Match.ROUNDED).all(axis=1)
     places = np.array([i for i, row in enumerate(judged) if row.joint], dtype=np.int_)
     before = places + (convention is not Convention.STANDARD)
     return np.stack([right[before], right[before + 1]], axis=1)

@@ -43,7 +43,9 @@ def table_content(
     joints = [judged.joint for judged in judgement.rows]
     expected = np.array([judged.expected for judged in judgement.rows])
     known = _differs_from_lazy(expected, joints, grading)
-    usual = _of_reference(replace(task, convention=exercise.robot.convention)).usual
+    of_robot = exercise.robot.convention
+    same = task if convention is of_robot else replace(task, convention=of_robot)
+    usual = _of_reference(same).usual
     return replace(of_rows(known), most=most, empty_is_wrong=True, usual=usual)
 
 

@@ -125,11 +125,13 @@ def _as_intended(
         if 3 * _count_wrong(without) <= wrong:
             # A student with columns in another order still multiplies out the intended links.
             return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
+    if wrong <= 1:
+        return judged
     convention = part.convention if part.convention != "either" else answer.convention
     exchanged = with_exchanged_row(answer, convention, grading)
     if exchanged is not None and budget.affords_search(work):
         without = _judged_as_read(part, exchanged.table, grading)
-        if 1 < wrong > _count_wrong(without):
+        if _count_wrong(without) < wrong:
             return _with_slip(exchanged, without, judged, grading)
     return judged
 

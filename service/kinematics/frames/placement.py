@@ -17,7 +17,7 @@ import numpy as np
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import row
 from service.kinematics.tolerances import PARALLEL
-from service.kinematics.transforms import Matrices, Numbers, identity, inverse
+from service.kinematics.transforms import Matrices, Numbers, cross, identity, inverse
 
 
 class AxisPosition(StrEnum):
@@ -265,12 +265,6 @@ def home_rows(frames: Sequence[Matrices], convention: Convention) -> Numbers:
 def largest(vectors: Numbers) -> float:
     """Return the length of the longest of the vectors ``(L, 3)``; NaN counts as infinite."""
     return float(np.nan_to_num(np.linalg.norm(vectors, axis=-1), nan=np.inf).max())
-
-
-def cross(one: Numbers, other: Numbers) -> Numbers:
-    """Return the cross products of vectors ``(L, 3)``, ten times as fast as ``np.cross``."""
-    (a, b, c), (d, e, f) = one.T, other.T
-    return np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=-1)
 
 
 def _dot(one: Numbers, other: Numbers) -> Numbers:

@@ -55,6 +55,7 @@ from service.kinematics.frames.reversed_chain import (
     reversed_targets,
 )
 from service.kinematics.tolerances import PARALLEL
+from service.kinematics.transforms import cross
 
 # If a table loses more than two cells, or a row of two content cells, in all frames, the intended
 # frames are unknown.
@@ -212,7 +213,7 @@ def parallel_neighbours(
     """
     reference = reference_frames(grading.exercise, convention, grading.samples)
     axes = reference[:, :2, :3, 2]
-    parallel = np.abs(np.cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL
+    parallel = np.abs(cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL
     # The tool's axis counts only if the d of some row lies along it.
     parallel[-1] &= roles[-1].joint is None
     of_joints = iter((parallel | np.append(False, parallel[:-1])).tolist())
