@@ -15,7 +15,9 @@ from greenlet import GreenletExit, getcurrent, greenlet
 
 R = TypeVar("R")
 
-# The length of a slice (seconds); the next checkpoint after it suspends the work.
+# The length of a slice (seconds); the next checkpoint after it suspends the work. Most gradings end
+# in the first slice, which saves the time of a suspension.
+FIRST_SLICE: Final = 0.01
 SLICE: Final = 0.006
 
 # The end of the current slice. One for the whole process is enough: ``in_slices`` is called only in
@@ -54,19 +56,19 @@ async def in_slices(work: Callable[[], R], give_way: Callable[[], Awaitable[None
     sliced = _Sliced(work)
     sliced.gr_context = contextvars.copy_context()
     try:
-        result: R = _slice(sliced)
+        result: R = _slice(sliced, FIRST_SLICE)
         while not sliced.dead:
             await give_way()
-            result = _slice(sliced)
+            result = _slice(sliced, SLICE)
         return result
     finally:
         if not sliced.dead:
             sliced.throw(GreenletExit)
 
 
-def _slice(sliced: _Sliced) -> Any:
+def _slice(sliced: _Sliced, length: float) -> Any:
     global _end
-    _end = perf_counter() + SLICE
+    _end = perf_counter() + length
     try:
         return sliced.switch()
     finally:

@@ -24,6 +24,7 @@ _NAME = ContextVar("name", default="")
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """End a slice at each checkpoint."""
+    monkeypatch.setattr(time_slices, "FIRST_SLICE", 0.0)
     monkeypatch.setattr(time_slices, "SLICE", 0.0)
 
 

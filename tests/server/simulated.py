@@ -15,7 +15,7 @@ from starlette.requests import Request
 from service.api.turns import CLIENT, COURSE_SITE, Client, give_way
 from service.server.turns import admission
 from service.server.turns.admission import FairAdmission
-from service.time_slices import SLICE
+from service.time_slices import FIRST_SLICE, SLICE
 
 # Seconds from an answer to the client's next request: the wire, and the client's own work.
 WIRE = 0.0003
@@ -65,13 +65,13 @@ class Process:
         return self._clock.now
 
     async def _work(self, scope: Any, _receive: Any, _send: Any) -> None:
-        began = self.now
+        began, length = self.now, FIRST_SLICE
         for i, seconds in enumerate(scope["costs"]):
             left = seconds
             while left > 0:
-                if self.now - began >= SLICE or (i and left == seconds):
+                if self.now - began >= length or (i and left == seconds):
                     await give_way(Request(scope))
-                    began = self.now
+                    began, length = self.now, SLICE
                 self._clock.now += min(self._step, left)
                 left -= self._step
 

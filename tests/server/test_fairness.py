@@ -5,6 +5,7 @@ import random
 
 import pytest
 
+from service.time_slices import FIRST_SLICE
 from tests.server.simulated import Process
 
 Waits = list[float]
@@ -121,7 +122,8 @@ def test_a_class_at_once_is_answered_within_the_time_of_its_gradings(
 
     process.run(10.0, *map(student, range(120)))
     assert len(found) == 120
-    assert max(found) == pytest.approx(sum(costs), rel=0.02)
+    # The first request runs for a slice before the others come.
+    assert max(found) == pytest.approx(sum(costs), abs=1.5 * FIRST_SLICE)
 
 
 def test_a_costly_answer_waits_no_longer_than_its_share(monkeypatch: pytest.MonkeyPatch) -> None:
