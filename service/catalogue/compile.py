@@ -58,7 +58,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
     """Return the exercise that ``spec`` describes. Raises FieldError for an invalid value."""
     joints = _joints(spec.robot) if spec.robot is not None else ()
     variables = _variables(joints, spec.symbols)
-    vocabulary = _vocabulary(variables)
+    vocabulary = _vocabulary(variables, decimal_comma=spec.decimal_comma)
     reader = FormulaReader(vocabulary, variables)
     reference: Reference | None = None
     if isinstance(spec.robot, RobotSpec):
@@ -213,11 +213,11 @@ def _range(field: str, symbol: SymbolSpec) -> tuple[float, float]:
     return low, high
 
 
-def _vocabulary(variables: tuple[Variable, ...]) -> Vocabulary:
+def _vocabulary(variables: tuple[Variable, ...], *, decimal_comma: bool) -> Vocabulary:
     taken = {variable.name for variable in variables}
     symbols = [Symbol(v.name, v.kind, _joint_aliases(v, taken), v.joint) for v in variables]
     try:
-        return Vocabulary(symbols)
+        return Vocabulary(symbols, decimal_comma=decimal_comma)
     except ValueError as error:
         raise FieldError("symbols", str(error)) from error
 

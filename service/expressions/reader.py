@@ -9,6 +9,7 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
+from service.expressions.characters.decimal_comma import with_points_and_commas
 from service.expressions.characters.normalise import normalise
 from service.expressions.errors import ExpressionError, Note, UnreadableError
 from service.expressions.evaluation.samples import SampleArray, SymbolValues, compile_tree
@@ -166,11 +167,12 @@ def read(
 
     With ``angle_unit`` "degrees", bare numbers are degrees inside sin, cos and tan, and in the
     whole entry if ``quantity`` is "angle". The result or the error is memoized. Without
-    ``repairs``, no repaired texts are tried; trying them is the most expensive part.
+    ``repairs``, no repaired texts are tried; trying them is the most expensive part. If the
+    vocabulary allows a decimal comma, the source of the expression has points instead.
     Raises only ExpressionError, for any text or number.
     """
     if isinstance(source, str):
-        text = source
+        text = with_points_and_commas(source) if vocabulary.decimal_comma else source
     else:
         text, vocabulary = _number_as_text(source), _NO_SYMBOLS
     if len(text) > LIMITS.characters:

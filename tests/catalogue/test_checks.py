@@ -94,8 +94,8 @@ def test_checks_do_not_change_the_version(tmp_path: Path) -> None:
 
 
 KEYS = (
-    "title, source, level, order, minutes, summary, keywords, statement, robot, symbols, feedback, "
-    "attempts, view, vary, parts, checks, translations"
+    "title, source, level, order, minutes, summary, keywords, statement, robot, symbols, "
+    "decimal_comma, feedback, attempts, view, vary, parts, checks, translations"
 )
 # A replacement, and the expected messages without the file's name; * matches anything.
 MESSAGES: dict[tuple[str, str], list[str]] = {

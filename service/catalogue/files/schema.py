@@ -224,6 +224,10 @@ class ExerciseSpec(StrictModel):
     """The reference robot. Without one, every part gives its own answer."""
     symbols: dict[Text, SymbolSpec] = Field({})
     """The symbols that answers may contain, by name."""
+    decimal_comma: StrictBool = False
+    """True if answers may have a decimal comma: ``1,5`` is 1.5, and a semicolon separates the
+    arguments in ``atan2(1,5; 2)``. A point is a decimal point all the same. The formulas of this
+    file have points."""
     feedback: FeedbackLevel | Annotated[list[FeedbackLevel], Field(min_length=1)] = (
         FeedbackLevel.HINTS
     )

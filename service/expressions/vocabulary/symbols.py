@@ -60,20 +60,23 @@ class Vocabulary:
     """The declared symbols, by all their names. Immutable, equal by content.
 
     They are the symbols of an exercise, or, with ``of_books``, of textbooks; messages then do not
-    mention an exercise.
+    mention an exercise. With ``decimal_comma``, numbers may have a decimal comma.
 
     Raises ValueError if two symbols have the same name, two joint variables have the same index, or
     a name cannot be written in an expression.
     """
 
     __slots__ = (
-        "_hash", "_shared", "by_name", "joints", "longest", "of_books", "sliding", "symbols",
-        "turning",
+        "_hash", "_shared", "by_name", "decimal_comma", "joints", "longest", "of_books", "sliding",
+        "symbols", "turning",
     )  # fmt: skip
 
-    def __init__(self, symbols: Sequence[Symbol], *, of_books: bool = False) -> None:
+    def __init__(
+        self, symbols: Sequence[Symbol], *, of_books: bool = False, decimal_comma: bool = False
+    ) -> None:
         self.symbols: Final = tuple(symbols)
         self.of_books: Final = of_books
+        self.decimal_comma: Final = decimal_comma
         self.by_name: Final[dict[str, Symbol]] = {}
         self.turning: Final[dict[int, Symbol]] = {}
         self.sliding: Final[dict[int, Symbol]] = {}
@@ -81,7 +84,7 @@ class Vocabulary:
             self._declare(symbol)
         self.joints: Final = sorted(self.turning | self.sliding)
         self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
-        self._hash: Final = hash((self.symbols, of_books))
+        self._hash: Final = hash((self.symbols, of_books, decimal_comma))
         # Equal vocabularies share one tuple, so that comparing them is fast: many exercises declare
         # the same symbols, and the vocabulary is a cache key for each word of a text.
         self._shared: Final = _shared(self.symbols)
@@ -107,6 +110,7 @@ class Vocabulary:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Vocabulary) and (
             self.of_books == other.of_books
+            and self.decimal_comma == other.decimal_comma
             and (self._shared is other._shared or self.symbols == other.symbols)
         )
 

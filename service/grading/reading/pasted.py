@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import reduce
 from typing import Final
 
+from service.expressions.characters.decimal_comma import with_points
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
 from service.grading.work_budget import MAX_PASTED
@@ -33,7 +34,7 @@ def pasted_grid(text: str, reader: Reader) -> Grid:
     Raises GridError if there is none, or if the pasted texts of a submission are too long.
     """
     _charge(text, reader)
-    return read_grid(_with_indices_from_one(text, reader))
+    return read_grid(_prepared(text, reader))
 
 
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
@@ -50,7 +51,14 @@ def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
     """Return the matrices in a pasted text, with their names. Raises GridError, see pasted_grid."""
     _charge(text, reader)
-    return read_grids(_with_indices_from_one(text, reader))
+    return read_grids(_prepared(text, reader))
+
+
+def _prepared(text: str, reader: Reader) -> str:
+    """Return the text with one reading of its indices and decimal commas."""
+    if reader.vocabulary.decimal_comma:
+        text = with_points(text)
+    return _with_indices_from_one(text, reader)
 
 
 def _with_indices_from_one(text: str, reader: Reader) -> str:

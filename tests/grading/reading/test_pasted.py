@@ -1,11 +1,17 @@
-"""Indices in square brackets count from 0 or from 1, or the text is refused."""
+"""Indices in square brackets have one reading; decimal commas are read where they are allowed."""
+
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
+from service.catalogue import Exercise, shipped_folder
 from service.expressions import Vocabulary, joint_variable
+from service.grading import Submission, grade
 from service.grading.numerics.samples import Samples
 from service.grading.reading.entry import Reader
 from service.grading.reading.pasted import pasted_grid
+from service.grading.report import Verdict
 from service.grids import GridError
 
 
@@ -28,3 +34,68 @@ def test_other_indices_have_two_readings(text: str) -> None:
     with pytest.raises(GridError) as caught:
         cells(text)
     assert caught.value.code == "ambiguous_index"
+
+
+# --- decimal commas
+
+# The table of the UR5e as its maker prints it, in the language of a German spreadsheet.
+ROWS = (
+    ("0", "90°", "0,1625", "theta1"),
+    ("-0,425", "0", "0", "theta2"),
+    ("-0,3922", "0", "0", "theta3"),
+    ("0", "90°", "0,1333", "theta4"),
+    ("0", "-90°", "0,0997", "theta5"),
+    ("0", "0", "0,0996", "theta6"),
+)
+COLUMNS = ("a", "alpha", "d", "theta")
+
+
+@pytest.fixture
+def arm(make_exercise: Callable[[str], Exercise]) -> Callable[[bool], Exercise]:
+    """A function that returns the UR5e, with decimal commas allowed or not."""
+
+    def made(allowed: bool) -> Exercise:
+        text = (shipped_folder() / "ur5e.toml").read_text(encoding="utf-8")
+        return make_exercise(f"decimal_comma = {str(allowed).lower()}\n{text}")
+
+    return made
+
+
+SHAPES: dict[str, Any] = {
+    "cells": {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in ROWS]},
+    "spreadsheet": {"rows": "\n".join(map("\t".join, ROWS))},
+    "csv": {"rows": "\n".join(map(";".join, ROWS))},
+    "markdown": {"rows": "\n".join(f"| {' | '.join(row)} |" for row in ROWS)},
+    "spaces": {"rows": "\n".join(map("  ".join, ROWS))},
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_table_with_decimal_commas_has_full_marks(
+    arm: Callable[[bool], Exercise], shape: str
+) -> None:
+    [report, *_] = grade(arm(True), Submission({"table": SHAPES[shape]})).parts
+    assert report.points == report.max_points
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_without_leave_no_decimal_comma_is_read(
+    arm: Callable[[bool], Exercise], shape: str
+) -> None:
+    [report, *_] = grade(arm(False), Submission({"table": SHAPES[shape]})).parts
+    assert report.verdict is not Verdict.CORRECT
+    cells = [cell for row in report.rows for cell in row.cells]
+    assert all(cell.verdict is not Verdict.INCORRECT for cell in cells)
+
+
+def test_a_wrong_length_is_wrong(arm: Callable[[bool], Exercise]) -> None:
+    rows = [dict(row) for row in SHAPES["cells"]["rows"]]
+    rows[1]["a"] = "-0,452"
+    [report, *_] = grade(arm(True), Submission({"table": {"rows": rows}})).parts
+    wrong = [
+        (row.label, c.label)
+        for row in report.rows
+        for c in row.cells
+        if c.verdict is not Verdict.CORRECT
+    ]
+    assert wrong == [("2", "a")]

@@ -1,0 +1,20 @@
+"""Numbers with a decimal comma, for exercises that allow it: 1,5 is 1.5, atan2(1,5; 2) has two."""
+
+import re
+from typing import Final
+
+# A number with one comma. In 1,2,3 and in 1.5,2 a comma separates values.
+_NUMBER: Final = re.compile(r"(?<![0-9A-Za-z_.])(?<![0-9],)([0-9]+),([0-9]+)(?![0-9]|[.,][0-9])")
+# A semicolon between the arguments of a function.
+_BETWEEN_ARGUMENTS: Final = re.compile(r";(?=[^();]*(?:\([^()]*\)[^();]*)*\))")
+
+
+def with_points(text: str) -> str:
+    """Return the text with decimal points. Every character keeps its place."""
+    return _NUMBER.sub(r"\1.\2", text) if "," in text else text
+
+
+def with_points_and_commas(text: str) -> str:
+    """Return a formula with decimal points, and with commas between arguments."""
+    text = with_points(text)
+    return _BETWEEN_ARGUMENTS.sub(",", text) if ";" in text else text
