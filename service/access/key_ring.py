@@ -19,6 +19,7 @@ from service.access.key_table import any_key, fits, keys_at, note_use
 from service.access.key_text import PREFIX, is_spelt_right
 from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
 from service.attempts.storage.database import in_transaction
+from service.translations import say
 
 R = TypeVar("R")
 
@@ -84,7 +85,9 @@ class KeyRing:
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
         if self.secret is None:
-            raise CredentialError("The service cannot check keys: DH_GRADER_SECRET is not set.")
+            raise CredentialError(
+                say("The service cannot check keys: DH_GRADER_SECRET is not set.")
+            )
         if not credential.startswith(PREFIX):
             # Import here: most installations have no tokens.
             from service.access.tokens import verified
@@ -92,7 +95,7 @@ class KeyRing:
             token = verified(credential, self.secret.token_secret)
             return token.caller(await self._holder("id", token.key_id))
         if not is_spelt_right(credential):
-            raise CredentialError("The key is misspelt: its checksum is wrong.")
+            raise CredentialError(say("The key is misspelt: its checksum is wrong."))
         return await self._holder("digest", self.secret.key_digest(credential))
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
@@ -113,7 +116,9 @@ class KeyRing:
         from service.access.sessions import key_of_session
 
         if self.secret is None:
-            raise CredentialError("The service cannot check sessions: DH_GRADER_SECRET is not set.")
+            raise CredentialError(
+                say("The service cannot check sessions: DH_GRADER_SECRET is not set.")
+            )
         return await self._holder("id", key_of_session(session, self.secret.session_secret))
 
     def session(self, caller: Caller, expires_at: datetime) -> str:
@@ -132,7 +137,7 @@ class KeyRing:
     async def _holder(self, column: str, value: str) -> Caller:
         key = await self._key((column, value))
         if key is None:
-            raise CredentialError("This service has no such key.")
+            raise CredentialError(say("This service has no such key."))
         now = datetime.now(UTC)
         caller = key.caller(now)
         self._note_use(key, now)

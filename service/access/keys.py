@@ -7,6 +7,7 @@ from typing import Final, Protocol
 
 from service.access.caller import Caller, Scope
 from service.access.key_text import key_text_of
+from service.translations import say
 
 # The least number of characters of a secret; 64 hexadecimal digits are usual.
 SHORTEST_SECRET: Final = 32
@@ -45,9 +46,9 @@ class Key:
     def caller(self, now: datetime) -> Caller:
         """Return the caller with this key. Raises CredentialError if it is revoked or expired."""
         if self.revoked_at is not None:
-            raise CredentialError("The key was revoked.")
+            raise CredentialError(say("The key was revoked."))
         if self.expires_at <= now:
-            raise CredentialError("The key has expired.")
+            raise CredentialError(say("The key has expired."))
         scopes = self.scopes | {Scope.GRADE}
         return Caller(scopes, self.exercises, self.learner, self.id, self.course)
 

@@ -11,6 +11,7 @@ import jwt
 from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
 from service.access.keys import CredentialError
+from service.translations import say
 
 _ALGORITHM: Final = "HS256"
 _JWS: Final = jwt.PyJWS()
@@ -37,7 +38,7 @@ def key_of_session(text: str, secret: bytes) -> str:
     try:
         claims = _SessionClaims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
     except (jwt.InvalidTokenError, ValidationError) as error:
-        raise CredentialError("This is no session of this service.") from error
+        raise CredentialError(say("This is no session of this service.")) from error
     if claims.exp <= time.time():
-        raise CredentialError("The session has expired.")
+        raise CredentialError(say("The session has expired."))
     return claims.key

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 from service.access.caller import Caller, Scope
 from service.access.keys import CredentialError
 from service.contract.attempts import Learner
+from service.translations import say
 
 _ALGORITHM: Final = "HS256"
 _ISSUER: Final = "dh-grader"
@@ -75,7 +76,7 @@ def verified(text: str, secret: bytes) -> LearnerToken:
         claims = _Claims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
         scopes = frozenset(map(Scope, claims.scope.split()))
     except jwt.InvalidTokenError as error:
-        raise CredentialError("This is neither a key nor a token of this service.") from error
+        raise CredentialError(say("This is neither a key nor a token of this service.")) from error
     except ValidationError as error:
         wrong = {str(detail["loc"][0]) if detail["loc"] else "" for detail in error.errors()}
         named = [name for name in _Claims.model_fields if name in wrong] or ["others"]
@@ -83,7 +84,7 @@ def verified(text: str, secret: bytes) -> LearnerToken:
     except ValueError as error:
         raise CredentialError(_unexpected("scope")) from error
     if claims.exp <= time.time():
-        raise CredentialError("The token has expired.")
+        raise CredentialError(say("The token has expired."))
     exercises = None if claims.exercises is None else frozenset(claims.exercises)
     return LearnerToken(claims.key, claims.sub, scopes, exercises)
 

@@ -15,6 +15,7 @@ from sqlalchemy import ColumnElement, Connection, Row, and_, bindparam, func, in
 from service.attempts.storage.tables import assignments, attempts, hints
 from service.contract.attempts import TakenHint
 from service.contract.statistics import HintFigures
+from service.translations import say
 
 # What the learner's hints cost the next attempt, as a share of its points: a part of a statement
 # that runs at every hand-in.
@@ -96,13 +97,16 @@ def take(
     if wanted.step <= len(earlier):
         return None
     if wanted.step > len(earlier) + 1:
-        return HintRefusedError("earlier-step-first", "Take the earlier steps of this hint first.")
+        return HintRefusedError(
+            "earlier-step-first", say("Take the earlier steps of this hint first.")
+        )
     if earlier and (
         earlier[-1].attempt >= attempt.number
         or earlier[-1].answers_digest == attempt.answers_digest
     ):
         return HintRefusedError(
-            "try-first", "Change your answer and hand it in again. Then the next hint opens."
+            "try-first",
+            say("Change your answer and hand it in again. Then the next hint opens."),
         )
     values: dict[str, Any] = {name: getattr(wanted, name) for name in HintStepOf.__slots__}
     values |= {"attempt": attempt.number, "price": prices[wanted.step - 1], "at": now}

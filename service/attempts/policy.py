@@ -5,6 +5,7 @@ from datetime import datetime
 
 from service.attempts.attempt import hint_points
 from service.catalogue.attempts import AttemptsSpec
+from service.translations import say, say_count
 
 
 class AttemptRefusedError(Exception):
@@ -34,16 +35,20 @@ def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
     Raises AttemptRefusedError.
     """
     if rules.opens is not None and now < rules.opens:
-        raise AttemptRefusedError("not-open", f"This exercise opens on {_formatted(rules.opens)}.")
+        opens = say("This exercise opens on {moment}.", moment=_formatted(rules.opens))
+        raise AttemptRefusedError("not-open", opens)
     is_late = rules.due is not None and now > rules.due
     end = rules.closes or rules.due
     if end is not None and now > end:
-        raise AttemptRefusedError("closed", f"This exercise was closed on {_formatted(end)}.")
+        closed = say("This exercise was closed on {moment}.", moment=_formatted(end))
+        raise AttemptRefusedError("closed", closed)
     if rules.limit is not None and counted >= rules.limit:
-        attempts = "attempt is" if rules.limit == 1 else f"{rules.limit} attempts are"
-        raise AttemptRefusedError(
-            "no-attempts-left", f"No attempt is left: the {attempts} used up."
+        used = say_count(
+            "No attempt is left: the attempt is used up.",
+            "No attempt is left: the {count} attempts are used up.",
+            count=rules.limit,
         )
+        raise AttemptRefusedError("no-attempts-left", used)
     return Ruling(counted + 1, is_late, rules.late_worth if is_late else 1.0)
 
 

@@ -16,6 +16,7 @@ from service.contract.courses import LearnerVariant
 from service.courses.assignments import assignment_row
 from service.courses.errors import CourseError
 from service.courses.terms import LearnerTerms, terms_of
+from service.translations import say
 from service.variants.pinned import choices_of, pinned
 from service.variants.seeds import seed_of
 from service.variants.variant import hidden_variant
@@ -45,7 +46,11 @@ def assigned_seed(
     """
     terms = terms_of(connection, course, assignment, learner)
     if exercise.id not in terms.exercises:
-        message = f"The exercise {exercise.id} is not part of the assignment {assignment}."
+        message = say(
+            "The exercise {exercise} is not part of the assignment {assignment}.",
+            exercise=exercise.id,
+            assignment=assignment,
+        )
         raise CourseError("not-assigned", message)
     own = pinned(exercise, terms.choices)
     return terms, own, _dealt_seed(connection, terms, learner, own)

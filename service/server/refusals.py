@@ -9,6 +9,7 @@ from starlette.datastructures import Headers
 from service.api.http.problems import ProblemError
 from service.api.http.request_context import HEADER, begin_request
 from service.server.limits import HEAD_TIMEOUT, MAX_HEADERS, MAX_URL, TIMEOUT
+from service.translations import say
 
 _CLOSE: Final = {"Connection": "close"}
 
@@ -59,7 +60,10 @@ def too_many(seconds: int) -> ProblemError:
     """Return the problem of a client that has too many requests waiting."""
     return ProblemError(
         HTTPStatus.TOO_MANY_REQUESTS,
-        "Too many requests from this address are waiting already. Wait, then send this one again.",
+        say(
+            "Too many requests from this address are waiting already. Wait, then send this one "
+            "again."
+        ),
         headers={"Retry-After": str(seconds)},
     )
 
@@ -68,6 +72,6 @@ def too_busy(seconds: int) -> ProblemError:
     """Return the problem of a service that has too much to do."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
-        "The service has too much to do. Wait, then send this request again.",
+        say("The service has too much to do. Wait, then send this request again."),
         headers={"Retry-After": str(seconds)},
     )

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar, cast
 
 from service.catalogue import Exercise
+from service.translations import paragraph, say
 from service.variants.variant import NoVariantError, variant_of
 
 _T = TypeVar("_T")
@@ -19,8 +20,11 @@ class UnknownExerciseError(LookupError):
     def __init__(self, exercise_id: str, known: tuple[str, ...], reason: str = "") -> None:
         self.known = known
         self.suggestion = None if reason else nearest(exercise_id, known)
-        hint = f" Did you mean {self.suggestion!r}?" if self.suggestion else ""
-        super().__init__(reason or f"There is no exercise {exercise_id[:_LONGEST]!r}.{hint}")
+        unknown: str = say("There is no exercise {exercise!r}.", exercise=exercise_id[:_LONGEST])
+        if self.suggestion:
+            meant = say("Did you mean {suggestion!r}?", suggestion=self.suggestion)
+            unknown = paragraph(unknown, meant)
+        super().__init__(reason or unknown)
 
 
 def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:

@@ -14,6 +14,7 @@ from service.translations.languages import (
 )
 from service.translations.sentence import (
     Sentence,
+    SentenceValue,
     bulleted,
     joined,
     listed,
@@ -29,6 +30,7 @@ __all__ = [
     "LANGUAGES",
     "Language",
     "Sentence",
+    "SentenceValue",
     "accepted_language",
     "bulleted",
     "joined",

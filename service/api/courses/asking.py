@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
 from fastapi import Path
 
 from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
-from service.api.http.problems import ProblemError
+from service.api.http.problems import ProblemError, message_of
 from service.api.recording.store import ask
 from service.contract.courses import CourseName
 from service.courses.errors import CourseError, CourseFault
+from service.translations import say
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Connection
@@ -23,13 +24,13 @@ CourseId = Annotated[CourseName, Path(description="The id of a course.")]
 AssignmentId = Annotated[CourseName, Path(description="The id of an assignment.")]
 
 _TITLES: Final[dict[CourseFault, tuple[HTTPStatus, str]]] = {
-    "unknown-course": (HTTPStatus.NOT_FOUND, "There is no such course"),
-    "unknown-assignment": (HTTPStatus.NOT_FOUND, "There is no such assignment"),
-    "unknown-learner": (HTTPStatus.NOT_FOUND, "The course has no such learner"),
-    "not-assigned": (HTTPStatus.NOT_FOUND, "The exercise is not part of the assignment"),
-    "has-attempts": (HTTPStatus.CONFLICT, "Attempts are recorded there"),
-    "already-there": (HTTPStatus.CONFLICT, "There is one with this id already"),
-    "unusable": (HTTPStatus.UNPROCESSABLE_ENTITY, "The request cannot be used"),
+    "unknown-course": (HTTPStatus.NOT_FOUND, say("There is no such course")),
+    "unknown-assignment": (HTTPStatus.NOT_FOUND, say("There is no such assignment")),
+    "unknown-learner": (HTTPStatus.NOT_FOUND, say("The course has no such learner")),
+    "not-assigned": (HTTPStatus.NOT_FOUND, say("The exercise is not part of the assignment")),
+    "has-attempts": (HTTPStatus.CONFLICT, say("Attempts are recorded there")),
+    "already-there": (HTTPStatus.CONFLICT, say("There is one with this id already")),
+    "unusable": (HTTPStatus.UNPROCESSABLE_ENTITY, say("The request cannot be used")),
 }
 _REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
 
@@ -70,4 +71,4 @@ async def _done(
 def course_problem(error: CourseError) -> ProblemError:
     """Return the problem of an error of courses."""
     status, title = _TITLES[error.name]
-    return ProblemError(status, str(error), error.name, title)
+    return ProblemError(status, message_of(error), error.name, title)

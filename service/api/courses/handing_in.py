@@ -36,6 +36,7 @@ from service.contract.own_courses import HandInRequest, OwnCourses
 from service.courses.errors import CourseError
 from service.solutions import ModelSolution
 from service.submissions.body import GradeRequest
+from service.translations import say
 from service.variants.variant import hidden_variant
 
 if TYPE_CHECKING:  # they load the drivers of databases
@@ -164,9 +165,9 @@ def routes(
         if not terms.shows_solution(datetime.now(UTC), is_full=is_full):
             raise ProblemError(
                 HTTPStatus.FORBIDDEN,
-                "The assignment does not show you this solution now.",
+                say("The assignment does not show you this solution now."),
                 "solution-not-shown",
-                "The solution is not shown",
+                say("The solution is not shown"),
             )
         return await solutions.answer(exercise)
 

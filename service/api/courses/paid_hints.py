@@ -14,7 +14,7 @@ from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404
-from service.api.http.problems import ProblemError
+from service.api.http.problems import ProblemError, message_of
 from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
 from service.api.recording.new_attempts import not_recorded
@@ -27,6 +27,7 @@ from service.catalogue.attempts import AttemptsSpec
 from service.contract.attempts import AttemptHintRequest
 from service.contract.grading import Hint, HintRequest
 from service.submissions.body import GradeRequest
+from service.translations import say
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Connection, Row
@@ -84,15 +85,15 @@ def routes(
         try:
             ruling(rules, counted, now)
         except AttemptRefusedError as error:
-            raise _refused(error.name, str(error)) from error
+            raise _refused(error.name, message_of(error)) from error
         exercise = attempted_exercise(named, row)
         if prices is None or exercise is None:
-            raise _refused("no-hints", "Recorded attempts at this exercise have no hints.")
+            raise _refused("no-hints", say("Recorded attempts at this exercise have no hints."))
         hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
         wanted = HintStepOf(body.part, body.code, body.row or "", body.cell or "", body.step)
         refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
         if refused is not None:
-            raise _refused(refused.name, str(refused))
+            raise _refused(refused.name, message_of(refused))
         language = language_of(request)
         content = hint.model_dump_json(exclude_none=True, context=language.translation)
         return told_json(content, language, headers=NO_STORE)
@@ -139,4 +140,4 @@ def _hint(
 
 
 def _refused(name: str, detail: str) -> ProblemError:
-    return ProblemError(HTTPStatus.FORBIDDEN, detail, name, "The hint is not given")
+    return ProblemError(HTTPStatus.FORBIDDEN, detail, name, say("The hint is not given"))

@@ -9,6 +9,7 @@ from service.api.http.problems import ProblemError, store_down
 from service.api.recording.store import ask
 from service.attempts.errors import StoreDownError
 from service.catalogue import Exercise
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -44,9 +45,11 @@ class PracticeGate:
         if priced or (caller.course is None and exercise.attempts.hint_prices is not None):
             raise ProblemError(
                 HTTPStatus.FORBIDDEN,
-                "Hints have a price at this exercise: hand it in, and take them at its report.",
+                say(
+                    "Hints have a price at this exercise: hand it in, and take them at its report."
+                ),
                 "hints-have-a-price",
-                "There are no free hints",
+                say("There are no free hints"),
             )
 
     async def check_solution(self, caller: Caller, exercise: str) -> None:
@@ -66,9 +69,9 @@ class PracticeGate:
         if hidden:
             raise ProblemError(
                 HTTPStatus.FORBIDDEN,
-                "An assignment does not show you this solution now.",
+                say("An assignment does not show you this solution now."),
                 "solution-not-shown",
-                "The solution is not shown",
+                say("The solution is not shown"),
             )
 
     async def refusal(self, caller: Caller, exercise: str) -> ProblemError | None:
@@ -87,14 +90,17 @@ class PracticeGate:
             if caller.course is None:
                 # A learner of no course practises also while the database is down.
                 return None
-            detail = "The database does not say whether this exercise may be practised."
+            detail = say("The database does not say whether this exercise may be practised.")
             return store_down(detail)
         if closed is None:
             return None
         return ProblemError(
             HTTPStatus.FORBIDDEN,
-            f"This exercise counts in the assignment {closed.title}: hand it in there. "
-            "Answers that are not recorded are not graded.",
+            say(
+                "This exercise counts in the assignment {assignment}: hand it in there. Answers "
+                "that are not recorded are not graded.",
+                assignment=closed.title,
+            ),
             "no-practice",
-            "This exercise cannot be practised now",
+            say("This exercise cannot be practised now"),
         )

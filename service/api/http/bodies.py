@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from service.api.http.lookup import Location
 from service.api.http.problems import MAX_ERRORS, ProblemError, invalid
 from service.submissions.strict_json import MalformedError, read_json
+from service.translations import say
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -55,14 +56,14 @@ def _malformed(error: MalformedError, content_type: str) -> ProblemError:
     if content_type and not _is_json(content_type):
         return ProblemError(
             HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-            "The body is not JSON; send a JSON object, as application/json.",
+            say("The body is not JSON; send a JSON object, as application/json."),
         )
     place = {} if error.line is None else {"line": error.line, "column": error.column or 1}
     return ProblemError(
         HTTPStatus.BAD_REQUEST,
         str(error),
         "malformed-json",
-        "The body cannot be read",
+        say("The body cannot be read"),
         [{"detail": error.reason, **place}],
     )
 

@@ -8,6 +8,7 @@ from fastapi.routing import APIRoute
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from service.api.http.language import language_of
 from service.api.http.problems import too_large
 from service.api.http.request_context import HEADER, begin_request, current_request
 from service.submissions.strict_json import MAX_BODY_SIZE
@@ -105,7 +106,7 @@ class BoundaryMiddleware:
             await send(message)
 
         if _is_too_large(Headers(scope=scope).get("content-length", "")):
-            answer = too_large().response(Request(scope).url.path)
+            answer = too_large().response(Request(scope).url.path, language_of(Request(scope)))
             await answer(scope, receive, hardened)
             return
         # The server still knows that the method is HEAD, and sends only the headers.

@@ -9,9 +9,10 @@ from typing import Annotated
 from fastapi import Path
 
 from service.access.caller import Caller
-from service.api.http.problems import MAX_ERRORS, ProblemError, invalid
+from service.api.http.problems import MAX_ERRORS, ProblemError, invalid, message_of
 from service.catalogue import Exercise
 from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
+from service.translations import say
 
 Catalogue = Mapping[str, Exercise]
 ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
@@ -30,7 +31,10 @@ def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
         raise ProblemError(
-            HTTPStatus.NOT_FOUND, str(error), "unknown-exercise", "There is no such exercise"
+            HTTPStatus.NOT_FOUND,
+            message_of(error),
+            "unknown-exercise",
+            say("There is no such exercise"),
         ) from error
 
 
@@ -71,4 +75,4 @@ def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -
         details.append({"type": "unknown", "loc": place, "msg": message})
     if details:
         problem = invalid(details)
-        raise replace(problem, name="unknown-part", title="The exercise has no such part")
+        raise replace(problem, name="unknown-part", title=say("The exercise has no such part"))

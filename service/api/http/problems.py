@@ -12,9 +12,11 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
+from service.api.http.language import language_of
 from service.api.http.request_context import current_request
 from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.translations import ENGLISH, Language, Sentence, say, told
 
 MAX_ERRORS = 20
 STORE_DOWN: Final = "store-down"
@@ -29,7 +31,8 @@ class ProblemError(Exception):
     """A request that cannot be answered. ``name`` is the end of its type.
 
     A problem without a name has the type ``about:blank``. Each of ``challenges`` is sent as a
-    header ``WWW-Authenticate`` of its own.
+    header ``WWW-Authenticate`` of its own. ``title`` and ``detail`` are told in the language of the
+    reader if they are sentences.
     """
 
     status: HTTPStatus
@@ -40,11 +43,15 @@ class ProblemError(Exception):
     headers: Mapping[str, str] | None = None
     challenges: Sequence[str] = ()
 
-    def response(self, instance: str) -> Response:
+    def response(self, instance: str, language: Language = ENGLISH) -> Response:
         """Return the problem as the answer to a request for the path ``instance``."""
         request = current_request()
-        content = self.content(instance, "" if request is None else request.id)
-        return self.answer(content, MEDIA_TYPE)
+        content = self.content(instance, "" if request is None else request.id, language)
+        answer = self.answer(content, MEDIA_TYPE)
+        if isinstance(self.detail, Sentence):
+            answer.headers["Content-Language"] = language.tag
+            answer.headers["Vary"] = "Accept-Language, Cookie"
+        return answer
 
     def answer(self, content: bytes, media_type: str = "text/html") -> Response:
         """Return an answer with this content and with the status and headers of the problem."""
@@ -53,13 +60,14 @@ class ProblemError(Exception):
             response.headers.append("WWW-Authenticate", challenge)
         return response
 
-    def content(self, instance: str, request_id: str = "") -> bytes:
+    def content(self, instance: str, request_id: str = "", language: Language = ENGLISH) -> bytes:
         """Return the problem as JSON; ``instance`` is the path that was requested."""
+        translation = language.translation
         document: dict[str, Any] = {
             "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
-            "title": self.title or self.status.phrase,
+            "title": told(self.title or self.status.phrase, translation),
             "status": int(self.status),
-            "detail": self.detail,
+            "detail": told(self.detail, translation),
             "instance": instance,
         }
         if request_id:
@@ -70,6 +78,12 @@ class ProblemError(Exception):
         return json.dumps(document).encode("ascii")
 
 
+def message_of(error: Exception) -> str:
+    """Return the message of an error. Its ``str`` would forget the template of a sentence."""
+    message = error.args[0] if error.args else ""
+    return message if isinstance(message, str) else str(error)
+
+
 # Makes the page of a problem; None if a program has made the request.
 ProblemPage = Callable[[Request, ProblemError], Response | None]
 
@@ -78,9 +92,9 @@ def too_large() -> ProblemError:
     """Return the problem of a body over the limit. The connection ends, so the rest is not read."""
     return ProblemError(
         HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-        f"A request may hold {MAX_BODY_SIZE // 1024} KiB; this one is larger.",
+        say("A request may hold {most} KiB; this one is larger.", most=MAX_BODY_SIZE // 1024),
         "body-too-large",
-        "The request is too large",
+        say("The request is too large"),
         headers={"Connection": "close"},
     )
 
@@ -91,7 +105,7 @@ def store_down(detail: str) -> ProblemError:
         HTTPStatus.SERVICE_UNAVAILABLE,
         detail,
         STORE_DOWN,
-        "The database cannot be reached now",
+        say("The database cannot be reached now"),
         headers={"Retry-After": "5"},
     )
 
@@ -100,8 +114,10 @@ def failed() -> ProblemError:
     """Return the problem of a failure inside the program."""
     return ProblemError(
         HTTPStatus.INTERNAL_SERVER_ERROR,
-        "The service failed at this request. Nothing is wrong with the answer itself; the failure "
-        "has been logged.",
+        say(
+            "The service failed at this request. Nothing is wrong with the answer itself; the "
+            "failure has been logged."
+        ),
     )
 
 
@@ -115,7 +131,7 @@ def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) ->
         HTTPStatus.UNPROCESSABLE_ENTITY,
         " ".join(f"{error['pointer']}: {error['detail']}" for error in errors[:3]),
         "invalid-request",
-        "The request does not have the right shape",
+        say("The request does not have the right shape"),
         errors,
     )
 
@@ -159,7 +175,9 @@ def install(app: FastAPI, page: ProblemPage | None = None) -> None:
         if request.method == "OPTIONS" and problem.status is HTTPStatus.METHOD_NOT_ALLOWED:
             return Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
         shown = None if page is None else page(request, problem)
-        return problem.response(request.url.path) if shown is None else shown
+        if shown is not None:
+            return shown
+        return problem.response(request.url.path, language_of(request))
 
     for failure in (
         ProblemError,
@@ -186,7 +204,7 @@ def _problem(request: Request, error: Exception) -> ProblemError:
         case HTTPException(status_code=HTTPStatus.REQUEST_ENTITY_TOO_LARGE):
             return too_large()
         case HTTPException(status_code=HTTPStatus.NOT_FOUND, detail=HTTPStatus.NOT_FOUND.phrase):
-            detail = "Nothing is at this address; GET /v1/exercises lists the exercises."
+            detail = say("Nothing is at this address; GET /v1/exercises lists the exercises.")
             return ProblemError(HTTPStatus.NOT_FOUND, detail, headers=error.headers)
         case HTTPException():
             status = HTTPStatus(error.status_code)

@@ -22,13 +22,14 @@ from service.access.caller import NOBODY, Caller, Scope
 from service.access.key_text import PREFIX
 from service.access.keys import CredentialError, Keys, KeysBusyError, KeysUnreachableError
 from service.access.open_access import OPEN_ANYWHERE, OpenAccess
-from service.api.http.problems import ProblemError, store_down
+from service.api.http.problems import ProblemError, message_of, store_down
 from service.api.permissions.access_problems import (
     access_problem,
     scope_missing,
     token_for_token,
 )
 from service.api.permissions.rights import RIGHTS, Reach, Right, WithoutKeys, right_of
+from service.translations import say
 
 # The key of a request's ASGI scope under which the authentication leaves the identity.
 IDENTITY: Final = "dh_grader.identity"
@@ -112,9 +113,9 @@ class Access:
         except CredentialError as error:
             if session:  # it has ended
                 return Identity(self._always.caller, by_key=True)
-            refusal = access_problem("key-not-valid", reason=error)
+            refusal = access_problem("key-not-valid", reason=message_of(error))
         except KeysUnreachableError:
-            refusal = store_down("The key cannot be checked: the database does not answer.")
+            refusal = store_down(say("The key cannot be checked: the database does not answer."))
         except KeysBusyError:
             refusal = access_problem("busy")
         else:

@@ -6,12 +6,13 @@ from typing import Final, NamedTuple
 
 from service.access.caller import Scope
 from service.api.http.problems import ProblemError
+from service.translations import SentenceValue, say, template
 
 _BEARER: Final = "Bearer"
 _ALLOWS: Final = {
-    Scope.GRADE: "have answers graded",
-    Scope.RECORD: "record attempts",
-    Scope.TUTOR: "see what tutors see",
+    Scope.GRADE: say("have answers graded"),
+    Scope.RECORD: say("record attempts"),
+    Scope.TUTOR: say("see what tutors see"),
 }
 
 
@@ -29,106 +30,117 @@ class AccessProblem(NamedTuple):
 ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
     "key-needed": AccessProblem(
         HTTPStatus.UNAUTHORIZED,
-        "A key is needed",
-        "This needs a key. Send it in the header Authorization: Bearer dhg_…",
+        template("A key is needed"),
+        template("This needs a key. Send it in the header Authorization: Bearer dhg_…"),
         challenges=(_BEARER,),
     ),
     "key-not-valid": AccessProblem(
         HTTPStatus.UNAUTHORIZED,
-        "The key is not valid",
+        template("The key is not valid"),
         "{reason}",
         challenges=(f'{_BEARER} error="invalid_token"',),
     ),
     "scope-missing": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "The key is not for this",
-        "This key may not {allowed}: it has not the scope {scope}.",
+        template("The key is not for this"),
+        template("This key may not {allowed}: it has not the scope {scope}."),
     ),
     "other-exercise": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "The key is for other exercises",
-        "This key or token is for certain exercises. Name one of them; others, and all at once, "
-        "are not for it.",
+        template("The key is for other exercises"),
+        template(
+            "This key or token is for certain exercises. Name one of them; others, and all at "
+            "once, are not for it."
+        ),
     ),
     "other-course": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "The key is for one course",
-        "This key or link is for one course. Others, and all at once, are not for it.",
+        template("The key is for one course"),
+        template("This key or link is for one course. Others, and all at once, are not for it."),
     ),
     "learner-needed": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "This is for a learner",
-        "This needs the personal link or the token of a learner.",
+        template("This is for a learner"),
+        template("This needs the personal link or the token of a learner."),
     ),
     "other-learner": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "The token is for another learner",
-        "This token is for one learner, and not for the one that is named here.",
+        template("The token is for another learner"),
+        template("This token is for one learner, and not for the one that is named here."),
     ),
     "solutions-off": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "Model solutions are not shown here",
-        "Model solutions are for tutors, and this service does not show them. To have them "
-        "shown to whoever can reach it, start it with DH_GRADER_SOLUTIONS=true; on the "
-        "machine itself, use dh-grader exercises show ID --solution.",
+        template("Model solutions are not shown here"),
+        template(
+            "Model solutions are for tutors, and this service does not show them. To have them "
+            "shown to whoever can reach it, start it with DH_GRADER_SOLUTIONS=true; on the "
+            "machine itself, use dh-grader exercises show ID --solution."
+        ),
     ),
     "attempts-not-shown": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "Recorded attempts are not shown here",
-        "Recorded attempts are for tutors, and this service does not show them. Ask from the "
-        "machine itself, use dh-grader attempts there, or have them shown to whoever can reach "
-        "the service: DH_GRADER_READ_ATTEMPTS=true.",
+        template("Recorded attempts are not shown here"),
+        template(
+            "Recorded attempts are for tutors, and this service does not show them. Ask from the "
+            "machine itself, use dh-grader attempts there, or have them shown to whoever can reach "
+            "the service: DH_GRADER_READ_ATTEMPTS=true."
+        ),
     ),
     "attempts-not-changed": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "Recorded attempts are not changed here",
-        "Recorded attempts are changed by tutors: with a key, or where there are none from the "
-        "machine itself, on a page of the service or by dh-grader attempts.",
+        template("Recorded attempts are not changed here"),
+        template(
+            "Recorded attempts are changed by tutors: with a key, or where there are none from the "
+            "machine itself, on a page of the service or by dh-grader attempts."
+        ),
     ),
     "origin-refused": AccessProblem(
         HTTPStatus.FORBIDDEN,
-        "The page is of another origin",
-        "A page of this origin may not record attempts. DH_GRADER_CORS_ORIGINS names those that "
-        "may.",
+        template("The page is of another origin"),
+        template(
+            "A page of this origin may not record attempts. DH_GRADER_CORS_ORIGINS names those "
+            "that may."
+        ),
     ),
     "tokens-not-made": AccessProblem(
         HTTPStatus.NOT_FOUND,
-        "No tokens are made here",
-        "A token is made by the holder of a key, and this service needs no keys.",
+        template("No tokens are made here"),
+        template("A token is made by the holder of a key, and this service needs no keys."),
     ),
     "too-often": AccessProblem(
         HTTPStatus.TOO_MANY_REQUESTS,
-        "Too many requests",
-        "These are more requests than are allowed. Come again in {seconds} seconds.",
+        template("Too many requests"),
+        template("These are more requests than are allowed. Come again in {seconds} seconds."),
         retry_after="{seconds}",
     ),
     "busy": AccessProblem(
         HTTPStatus.SERVICE_UNAVAILABLE,
-        "The service has a lot to do",
-        "Too many keys are being checked. Send this request again.",
+        template("The service has a lot to do"),
+        template("Too many keys are being checked. Send this request again."),
         retry_after="1",
     ),
 }
 
 
-def access_problem(name: str, **values: object) -> ProblemError:
+def access_problem(name: str, **values: SentenceValue) -> ProblemError:
     """Return the problem whose type ends with ``name``, with ``values`` put into its texts."""
     status, title, detail, retry_after, challenges = ACCESS_PROBLEMS[name]
     headers = None if retry_after is None else {"Retry-After": retry_after.format_map(values)}
-    text = detail.format_map(values)
-    return ProblemError(status, text, name, title, headers=headers, challenges=challenges)
+    return ProblemError(
+        status, say(detail, **values), name, say(title), headers=headers, challenges=challenges
+    )
 
 
 def scope_missing(scope: Scope) -> ProblemError:
     """Return the problem of a key without this scope."""
-    return access_problem("scope-missing", allowed=_ALLOWS[scope], scope=scope)
+    return access_problem("scope-missing", allowed=_ALLOWS[scope], scope=str(scope))
 
 
 def token_for_token() -> ProblemError:
     """Return the problem of a token with which its holder asks for another token."""
     return ProblemError(
         HTTPStatus.FORBIDDEN,
-        "A token makes no tokens; this needs a key.",
+        say("A token makes no tokens; this needs a key."),
         "scope-missing",
-        "The token is not for this",
+        say("The token is not for this"),
     )

@@ -2,10 +2,12 @@
 
 from typing import Final, Protocol
 
+from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Send
 from starlette.types import Scope as AsgiScope
 
 from service.access.caller import Caller, Scope
+from service.api.http.language import language_of
 from service.api.permissions.access import IDENTITY, Access
 from service.api.permissions.access_problems import access_problem
 from service.api.turns import CLIENT, COURSE_SITE, ONE_ADDRESS, ONE_STUDENT, Client
@@ -45,7 +47,9 @@ class AuthenticationMiddleware:
             seconds = await self._rates.seconds_to_wait(identity.caller, address)
             if seconds:
                 refused = access_problem("too-often", seconds=seconds)
-                await refused.response(scope["path"])(scope, receive, send)
+                await refused.response(scope["path"], language_of(HTTPConnection(scope)))(
+                    scope, receive, send
+                )
                 return
         inner = {**scope, IDENTITY: identity}
         if identity.caller.owner:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from fastapi import Request, Response
 
 from service.api.http.language import language_of
-from service.api.http.problems import ProblemError, store_down
+from service.api.http.problems import ProblemError, message_of, store_down
 from service.api.http.told_answer import told_json
 from service.api.monitor import Monitor
 from service.api.turns import run_in_turns
@@ -26,7 +26,7 @@ from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
 from service.contract.attempts import Attempt, AttemptRequest
 from service.time_slices import working_time
-from service.translations import Language
+from service.translations import Language, say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -72,14 +72,14 @@ class Recorder:
         try:
             recorded = await attempting.recorded(request, before)
         except StoreDownError as error:
-            detail = (
+            detail = say(
                 "The database did not confirm the attempt. Send it again, with the same "
                 "Idempotency-Key."
             )
             raise store_down(detail) from error
         except AttemptRefusedError as error:
             raise ProblemError(
-                HTTPStatus.FORBIDDEN, str(error), error.name, "The attempt is not taken"
+                HTTPStatus.FORBIDDEN, message_of(error), error.name, say("The attempt is not taken")
             ) from error
         language = language_of(request)
         return told_json(_answer(recorded, language), language, HTTPStatus.CREATED)
@@ -149,10 +149,12 @@ class _Attempting:
         if earlier.request_digest != self._request_digest:
             raise ProblemError(
                 HTTPStatus.UNPROCESSABLE_ENTITY,
-                "Another attempt was recorded under this Idempotency-Key. Take a new key for each "
-                "attempt.",
+                say(
+                    "Another attempt was recorded under this Idempotency-Key. Take a new key for "
+                    "each attempt."
+                ),
                 "idempotency-key-reused",
-                "The idempotency key belongs to another attempt",
+                say("The idempotency key belongs to another attempt"),
             )
         return earlier
 

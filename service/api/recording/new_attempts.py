@@ -18,6 +18,7 @@ from service.api.permissions.access_problems import access_problem
 from service.api.recording.attempting import AttemptTerms, Recorder
 from service.catalogue import FeedbackLevel
 from service.contract.attempts import AttemptRequest, AttemptResponse
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -97,7 +98,7 @@ def not_recorded() -> ProblemError:
     """Return the problem of a service without a database."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
-        "No attempts are recorded here: the service has no database.",
+        say("No attempts are recorded here: the service has no database."),
         "attempts-not-recorded",
-        "Attempts are not recorded here",
+        say("Attempts are not recorded here"),
     )

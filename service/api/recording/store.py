@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from service.api.http.problems import ProblemError, store_down
 from service.api.recording.new_attempts import not_recorded
 from service.attempts.errors import StoreDownError
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -28,7 +29,7 @@ async def ask(
     try:
         return await question(store)
     except StoreDownError as error:
-        detail = "The database does not answer."
+        detail = say("The database does not answer.")
         raise store_down(detail) from error
 
 
@@ -36,9 +37,9 @@ def unknown_attempt() -> ProblemError:
     """Return the problem of an id that no attempt has, or none that the caller may see."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
-        "No attempt with this id is recorded here.",
+        say("No attempt with this id is recorded here."),
         "unknown-attempt",
-        "There is no such attempt",
+        say("There is no such attempt"),
     )
 
 

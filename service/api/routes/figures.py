@@ -16,6 +16,7 @@ from service.api.http.problems import ProblemError
 from service.catalogue import Exercise
 from service.figures.drawing.style import Theme, style_sheet
 from service.figures.figure import exercise_figure
+from service.translations import say
 
 _THEME = Query(
     description="`light`, `dark`, or `auto`, as the reader's system wants. Prints are always light."
@@ -57,9 +58,9 @@ def routes(catalogue: Catalogue, own: OwnVariants) -> APIRouter:
         if exercise.reference is None:
             raise ProblemError(
                 HTTPStatus.NOT_FOUND,
-                f"The exercise {exercise.id} has no robot to draw.",
+                say("The exercise {exercise} has no robot to draw.", exercise=exercise.id),
                 "no-figure",
-                "The exercise has no figure",
+                say("The exercise has no figure"),
             )
         key = (exercise.id, exercise.version, exercise.title, exercise.view, theme)
         content = await figures.of(key, partial(_drawn, exercise, theme))

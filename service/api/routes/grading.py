@@ -88,7 +88,7 @@ def routes(
             graded = partial(_result, submission, i, request.url.path, caller, language)
             refused = await practice.refusal(caller, _named(submission))
             results.append(
-                _problem(refused, request.url.path, i)
+                _problem(refused, request.url.path, i, language)
                 if refused
                 else await run_in_turns(request, graded)
             )
@@ -107,7 +107,7 @@ def routes(
         except Exception:  # noqa: BLE001 -- the other submissions are graded all the same
             _log.exception("submission %d of a request could not be graded", i)
             problem = failed()
-        return _problem(problem, path, i)
+        return _problem(problem, path, i, language)
 
     def _report(exercise: Exercise, body: GradeRequest, at: Location, language: Language) -> bytes:
         """Return the report as JSON. Raises ProblemError if the submission has an unknown part."""
@@ -128,5 +128,6 @@ def _named(submission: object) -> str:
     return exercise.partition("~")[0] if isinstance(exercise, str) else ""
 
 
-def _problem(problem: ProblemError, path: str, i: int) -> bytes:
-    return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")
+def _problem(problem: ProblemError, path: str, i: int, language: Language) -> bytes:
+    content = problem.content(f"{path}#/submissions/{i}", language=language)
+    return b'{"problem":%b}' % content

@@ -11,6 +11,7 @@ from service.api.document.openapi import refusals
 from service.api.http.lookup import Catalogue
 from service.api.http.problems import ProblemError, store_down
 from service.attempts.errors import StoreDownError
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -63,7 +64,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
             try:
                 await checks.passed()
             except StoreDownError as error:
-                raise store_down("The database does not answer.") from error
+                raise store_down(say("The database does not answer.")) from error
         return Ready(exercises=exercises)
 
     return router

@@ -36,6 +36,7 @@ from service.hints.picture import rule_picture
 from service.hints.rules import RULES
 from service.hints.steps import STEPS, Topic, hint_step
 from service.kinematics.dh import Convention
+from service.translations import say
 
 _RULE = Path(description="The name of a rule.", examples=["link_twist"])
 
@@ -136,18 +137,18 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
     if submission.feedback is not FeedbackLevel.HINTS:
         raise ProblemError(
             HTTPStatus.FORBIDDEN,
-            "Reports on this exercise have no messages, and so no hints.",
+            say("Reports on this exercise have no messages, and so no hints."),
             "no-hints",
-            "There are no hints",
+            say("There are no hints"),
         )
     topic = Topic(body.part, body.code, body.row, body.cell)
     step = hint_step(exercise, topic, body.step, submission.answers, grade(exercise, submission))
     if step is None:
         raise ProblemError(
             HTTPStatus.NOT_FOUND,
-            "The report on these answers has no such message, or there is no hint for it.",
+            say("The report on these answers has no such message, or there is no hint for it."),
             "no-hint",
-            "There is no hint",
+            say("There is no hint"),
         )
     picture = step.rule and f"v1/rules/{step.convention}/{step.rule}.svg"
     lesson = step.screen and f"learn-dh?convention={step.convention}#{step.screen}"

@@ -21,6 +21,7 @@ from service.catalogue.attempts import AttemptsSpec
 from service.grading import Verdict, grade
 from service.solutions import ModelSolution, solve
 from service.submissions.body import GradeRequest
+from service.translations import say
 
 _SOLUTION: Final = TypeAdapter(ModelSolution)
 
@@ -95,9 +96,9 @@ def routes(
         if counts or not await run_in_turns(request, partial(has_full_marks, exercise, body)):
             raise ProblemError(
                 HTTPStatus.FORBIDDEN,
-                "The solution is shown after full marks, and not for exercises that count.",
+                say("The solution is shown after full marks, and not for exercises that count."),
                 "solution-not-shown",
-                "The solution is not shown",
+                say("The solution is not shown"),
             )
         return await solutions.answer(exercise)
 

@@ -26,9 +26,7 @@ def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
         return vocabulary
     indices = range(vocabulary.joints[-1] + 1)
     absent = [symbol for index in indices for symbol in _absent(index, vocabulary)]
-    return Vocabulary(
-        [*vocabulary.symbols, *absent], decimal_comma=vocabulary.decimal_comma
-    )
+    return Vocabulary([*vocabulary.symbols, *absent], decimal_comma=vocabulary.decimal_comma)
 
 
 def _absent(index: int, vocabulary: Vocabulary) -> Iterator[Symbol]:

@@ -14,10 +14,11 @@ from functools import partial
 from time import thread_time
 from typing import Any, Final
 
-from starlette.requests import ClientDisconnect
+from starlette.requests import ClientDisconnect, HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.access.client_key import client_key
+from service.api.http.language import language_of
 from service.api.http.problems import ProblemError
 from service.api.turns import CLIENT, ONE_ADDRESS, TURN, Client
 from service.server.limits import HEALTH
@@ -112,7 +113,8 @@ class FairAdmission:
         if refusal is not None:
             body = b""
             await self._small_turn(self._refusals)
-            await refusal.response(scope["path"])(scope, receive, send)
+            language = language_of(HTTPConnection(scope))
+            await refusal.response(scope["path"], language)(scope, receive, send)
             return
         self._queue.enter(ticket)
         try:

@@ -1,0 +1,65 @@
+"""Problems in the language of the reader."""
+
+from datetime import UTC, datetime
+from http import HTTPStatus
+
+import httpx
+import pytest
+
+from service.api.http.problems import ProblemError, message_of
+from service.api.permissions.access_problems import ACCESS_PROBLEMS, access_problem
+from service.attempts.policy import AttemptRefusedError, ruling
+from service.catalogue.attempts import AttemptsSpec
+from service.translations import LANGUAGES, Sentence, SentenceValue, told
+
+GERMAN = {"Accept-Language": "de-AT, en;q=0.5"}
+VALUES: dict[str, SentenceValue] = {"reason": "?", "allowed": "?", "scope": "?", "seconds": 3}
+
+
+def test_a_problem_is_in_the_language_of_the_reader(client: httpx.Client) -> None:
+    answer = client.get("/v1/exercises/planar-r", headers=GERMAN)
+    problem = answer.json()
+    assert problem["title"] == "Diese Aufgabe gibt es nicht"
+    assert problem["detail"].startswith("Eine Aufgabe 'planar-r' gibt es nicht. Meinten Sie ")
+    assert problem["type"].endswith("unknown-exercise")
+    assert answer.headers["Content-Language"] == "de"
+    assert "Accept-Language" in answer.headers["Vary"]
+
+
+def test_without_a_language_it_is_in_english(client: httpx.Client) -> None:
+    answer = client.get("/v1/exercises/planar-r")
+    assert answer.json()["title"] == "There is no such exercise"
+
+
+def test_the_query_decides_before_the_header(client: httpx.Client) -> None:
+    answer = client.post("/v1/grade?lang=fr", content=b"no JSON", headers=GERMAN)
+    assert answer.json()["title"] == "Le corps est illisible"
+
+
+def test_problems_of_single_submissions_are_told_too(client: httpx.Client) -> None:
+    submissions = {"submissions": [{"exercise": "no-such-arm", "answers": {}}]}
+    [result] = client.post("/v1/grade?lang=es", json=submissions).json()["results"]
+    assert result["problem"]["title"] == "No existe ese ejercicio"
+
+
+@pytest.mark.parametrize("code", [code for code in LANGUAGES if code != "en"])
+@pytest.mark.parametrize("name", ACCESS_PROBLEMS)
+def test_each_problem_of_access_is_translated(name: str, code: str) -> None:
+    problem = access_problem(name, **VALUES)
+    translation = LANGUAGES[code].translation
+    assert told(problem.title, translation) != problem.title
+    if name != "key-not-valid":  # its detail is the reason
+        assert told(problem.detail, translation) != problem.detail
+
+
+def test_a_refused_attempt_says_why_in_the_language_of_the_learner() -> None:
+    with pytest.raises(AttemptRefusedError) as refused:
+        ruling(AttemptsSpec(limit=1), 1, datetime.now(UTC))
+    message = message_of(refused.value)
+    assert isinstance(message, Sentence)
+    assert told(message, LANGUAGES["de"].translation).startswith("Es ist kein Versuch mehr übrig")
+
+
+def test_the_message_of_a_plain_error_is_its_text() -> None:
+    assert message_of(ValueError("no such file")) == "no such file"
+    assert message_of(ProblemError(HTTPStatus.NOT_FOUND, "x"))
