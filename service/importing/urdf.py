@@ -20,7 +20,8 @@ _MOST_JOINTS: Final = 10
 _NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,2})?")
 _TURNING: Final = ("revolute", "continuous")
 _SHOWN: Final = 60
-_ENDS: Final = 5
+_MOST_ENDS: Final = 5
+_LONGEST_TEXT: Final = 200
 
 
 class UnusableUrdfError(ValueError):
@@ -161,7 +162,10 @@ def _collected(data: bytes) -> _Collector:
 
 def tips(data: bytes) -> list[str]:
     """Return the links of the file at which a chain can end."""
-    collected = _collected(data)
+    return _ends(_collected(data))
+
+
+def _ends(collected: _Collector) -> list[str]:
     parents = {joint.parent for joint in collected.joints}
     return [link for link in collected.links if link not in parents]
 
@@ -174,7 +178,7 @@ def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]
     collected = _collected(data)
     for name in (tip, base):
         if name is not None and name not in collected.links:
-            ends = ", ".join(each[:_SHOWN] for each in tips(data)[:_ENDS])
+            ends = ", ".join(each[:_SHOWN] for each in _ends(collected)[:_MOST_ENDS])
             reason = f"the file has no link {name[:_SHOWN]!r}; its tree ends at: {ends}"
             raise UnusableUrdfError(reason)
     path = _path(collected, tip, base)
@@ -251,7 +255,7 @@ def _axis(joint: _Joint, *, snap: bool) -> Numbers:
 
 def _numbers(joint: _Joint, text: str) -> Iterator[str]:
     """Yield the three numbers of an attribute as texts."""
-    words = text[:200].split()
+    words = text.split() if len(text) <= _LONGEST_TEXT else []
     if len(words) != 3 or not all(_NUMBER.fullmatch(word) for word in words):
         raise UnusableUrdfError(
             f"the joint {joint.name[:_SHOWN]!r} has {text[:_SHOWN]!r} in place of three numbers"
