@@ -212,6 +212,11 @@ class AssignmentChange(_Request):
         description="Whether each learner gets a variant of their own of each exercise that has "
         "variants. Default: false. If it becomes false, all learners get the same exercise.",
     )
+    renew_variants: bool = Field(
+        False,
+        description="True deals the variants by the choices that `[vary]` has now in the exercise "
+        "files. Learners may get other numbers; their attempts stay as they are.",
+    )
     hint_prices: HintPrices | None = Field(
         None,
         description="The price of the three steps of a hint, as shares of the points of the "

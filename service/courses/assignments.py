@@ -164,7 +164,7 @@ def _moment(written: datetime | None, zone: ZoneInfo) -> datetime | None:
 
 def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) -> Mapping[str, Any]:
     """Return the columns that a change sets. Raises CourseError."""
-    given = change.model_dump(mode="python", exclude_unset=True, exclude={"id"})
+    given = change.model_dump(mode="python", exclude_unset=True, exclude={"id", "renew_variants"})
     values: dict[str, Any] = {}
     for name, value in given.items():
         match name:

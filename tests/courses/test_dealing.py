@@ -1,5 +1,6 @@
 """Variants in assignments: each learner has one of their own, and never sees its seed."""
 
+import asyncio
 import json
 import logging
 import re
@@ -7,10 +8,13 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
+import httpx
 import pytest
 from sqlalchemy import func, select, update
 
+from service.access.open_access import OPEN_HERE
 from service.api.application import application
+from service.api.permissions.access import Access
 from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.learner_data import everything_of
 from service.attempts.regrades.outdated import Regrading
@@ -256,6 +260,30 @@ def test_a_corrected_file_changes_no_variant_until_a_tutor_renews_them(class_: C
     assert plain.values is None
     class_.do(lambda it: pin_choices(it, "robots", "homework", new, renew=True))
     assert seen(new) == without
+
+
+def test_a_tutor_renews_the_variants_over_http(class_: Class) -> None:
+    assign(class_)
+
+    def change(catalogue: Mapping[str, Exercise], **fields: Any) -> str:
+        """Change the assignment as the machine's own user; return its choices."""
+        access = Access(OPEN_HERE, read_attempts=None)
+        app = application(catalogue, access=access, store=class_.store)
+
+        async def sent() -> httpx.Response:
+            local = httpx.ASGITransport(app)
+            async with httpx.AsyncClient(transport=local, base_url="http://127.0.0.1") as client:
+                return await client.post(
+                    "/v1/courses/robots/assignments/homework", json={"title": "T", **fields}
+                )
+
+        assert asyncio.run(sent()).status_code == 200
+        return str(class_.do(lambda it: it.scalar(select(assignments.c.choices))))
+
+    old, new = {"arm": varied()}, {"arm": varied(LONGER)}
+    assert "0.55" not in change(old)
+    assert "0.55" not in change(new)
+    assert "0.55" in change(new, renew_variants=True)
 
 
 def test_a_tutor_deals_another_variant(class_: Class, catalogue: Mapping[str, Exercise]) -> None:

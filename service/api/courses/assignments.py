@@ -115,7 +115,8 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
             changed = assignments.change_assignment(
                 connection, course_id, assignment_id, body, known
             )
-            pin_choices(connection, course_id, assignment_id, catalogue)
+            renew = body.renew_variants
+            pin_choices(connection, course_id, assignment_id, catalogue, renew=renew)
             return changed
 
         return private(await write(store, change))

@@ -14,6 +14,7 @@ declare namespace Api {
     practice?: Practice;
     solution?: ShowSolution;
     variants?: boolean;
+    renew_variants?: boolean;
     hint_prices?: number[];
   };
   type AssignmentState = "not_open" | "open" | "late" | "closed";
@@ -350,6 +351,7 @@ declare namespace Api {
     practice?: Practice;
     solution?: ShowSolution;
     variants?: boolean;
+    renew_variants?: boolean;
     hint_prices?: number[];
     id: string;
   };
