@@ -6,7 +6,7 @@ digits, so q12 is not q1·2.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import Final
@@ -45,7 +45,8 @@ class Piece:
 
     ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` are the
     symbol, or the joint angles whose sum a shorthand means. ``ambiguous`` is True for a shorthand
-    with another reading, such as sin12. ``joint`` is the wrong index of an invalid shorthand.
+    with another reading, such as sin12, or s2 in s2θ1. ``joint`` is the wrong index of an invalid
+    shorthand.
     """
 
     kind: PieceKind
@@ -107,7 +108,8 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
             if valid:
                 is_valid[start] = True
                 break
-    return _joined(first)
+    found = _joined(first)
+    return found and _with_other_readings(found, run)
 
 
 def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
@@ -121,6 +123,22 @@ def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
         found += pieces
         at = pieces[-1].end
     return tuple(found)
+
+
+def _with_other_readings(pieces: tuple[Piece, ...], run: str) -> tuple[Piece, ...]:
+    """Return the pieces with s2 marked as ambiguous in s2θ1, which might mean sin(2θ1)."""
+    if len(pieces) == 1:
+        return pieces
+    return tuple(
+        replace(piece, ambiguous=True)
+        if piece.kind == "shorthand"
+        and run[piece.start + 1].isdigit()
+        and following is not None
+        and following.kind == "symbol"
+        and following.symbols[0].kind == "angle"
+        else piece
+        for piece, following in zip(pieces, (*pieces[1:], None), strict=True)
+    )
 
 
 def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:
