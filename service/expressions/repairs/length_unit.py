@@ -11,6 +11,8 @@ _UNIT = re.compile(
 )
 _METRES = frozenset({"m", "meter", "meters", "metre", "metres"})
 _QUANTITY = re.compile(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
+# In l2 s(q1), s is the sine and not the second.
+_FUNCTIONS = frozenset({"s", "C"})
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
 _WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise.")
 
@@ -21,6 +23,8 @@ def repair(failure: Failure) -> Repair:
     if failure.cause == "quantity":
         return _quantity(failure)
     if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
+        return None
+    if failure.details["called"] and failure.written in _FUNCTIONS:
         return None
     if failure.written not in _METRES:
         message = say(

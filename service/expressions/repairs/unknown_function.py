@@ -2,6 +2,7 @@
 
 import re
 
+from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import (
     Failure,
     Repair,
@@ -21,8 +22,17 @@ _RENAMED = {
     "tangens": "tan", "tangente": "tan", "tang": "tan", "ArcCosine": "acos", "ArcSine": "asin",
     "c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin",
 }  # fmt: skip
+_SHORT = frozenset("csCS")
 # Numbers in brackets: MATLAB's c(1, 2) is an element of an array, and SymPy's S(1) is a number.
 _OF_NUMBERS = re.compile(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
+
+
+def _after_factor(failure: Failure) -> str | None:
+    """Return l1 cos for l1c, if a bracket with no bare number follows; else None."""
+    factor, letter = failure.details["run"][:-1], failure.details["run"][-1:]
+    if letter not in _SHORT or not factor or _OF_NUMBERS.match(failure.source, failure.span[1]):
+        return None
+    return None if split(factor, failure.vocabulary) is None else f"{factor} {_RENAMED[letter]}"
 
 
 @for_causes("name")
@@ -43,7 +53,7 @@ def repair(failure: Failure) -> Repair:
             return None
         advice = say("Write the shorthand without brackets, as in c12.")
         return error(failure, "unknown_function", paragraph(undeclared(failure), advice))
-    renamed = _RENAMED.get(run)
+    renamed = _RENAMED.get(run) or _after_factor(failure)
     if renamed is None or not failure.details["called"]:
         return None
     message = say(

@@ -151,8 +151,8 @@ class Lexer(WordLexer):
         if bracket == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
             self.brackets.open(bracket, span, WRAPPING)
         else:
-            self.brackets.open(bracket, span, len(self.tokens))
             self._operand("LEFT", None, *span)
+            self.brackets.open(bracket, span, len(self.tokens) - 1)
 
     def _bar(self, span: Span) -> None:
         r"""Read a bar of |x|: after an operand it closes; any other bar, and \left|, opens."""
