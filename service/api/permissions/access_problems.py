@@ -72,9 +72,9 @@ ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
         HTTPStatus.FORBIDDEN,
         template("Model solutions are not shown here"),
         template(
-            "Model solutions are for tutors, and this service does not show them. To have them "
-            "shown to whoever can reach it, start it with DH_GRADER_SOLUTIONS=true; on the "
-            "machine itself, use dh-grader exercises show ID --solution."
+            "Model solutions are for tutors, and this service does not show them. To show them to "
+            "everybody who can reach it, start it with DH_GRADER_SOLUTIONS=true; on the machine "
+            "itself, use dh-grader exercises show ID --solution."
         ),
     ),
     "attempts-not-shown": AccessProblem(
@@ -82,16 +82,16 @@ ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
         template("Recorded attempts are not shown here"),
         template(
             "Recorded attempts are for tutors, and this service does not show them. Ask from the "
-            "machine itself, use dh-grader attempts there, or have them shown to whoever can reach "
-            "the service: DH_GRADER_READ_ATTEMPTS=true."
+            "machine itself, use dh-grader attempts there, or set DH_GRADER_READ_ATTEMPTS=true to "
+            "show them to everybody who can reach the service."
         ),
     ),
     "attempts-not-changed": AccessProblem(
         HTTPStatus.FORBIDDEN,
         template("Recorded attempts are not changed here"),
         template(
-            "Recorded attempts are changed by tutors: with a key, or where there are none from the "
-            "machine itself, on a page of the service or by dh-grader attempts."
+            "Only tutors change recorded attempts: with a key or, while the service has no keys, "
+            "from the machine itself, on a page of the service or by dh-grader attempts."
         ),
     ),
     "origin-refused": AccessProblem(
