@@ -174,6 +174,23 @@ def test_a_start_waits_for_another_process_that_migrates_sqlite(
     other.close()
 
 
+def test_a_start_waits_for_another_process_that_opens_the_same_new_file(tmp_path: Path) -> None:
+    path = tmp_path / "attempts.db"
+    other = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+    other.execute("BEGIN IMMEDIATE")
+    # SQLite itself shall not wait: where it does depends on the moment.
+    mine = sqlite3.connect(path, isolation_level=None, timeout=0.0)
+    with pytest.raises(sqlite3.OperationalError, match="locked"):
+        mine.execute("PRAGMA journal_mode = WAL")
+    ending = threading.Timer(0.3, lambda: other.execute("COMMIT"))
+    ending.start()
+    database._set_up_sqlite(mine, None)
+    ending.join()
+    other.close()
+    assert mine.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+    mine.close()
+
+
 def test_an_older_program_goes_on_recording_while_a_newer_one_migrates(
     old: OldDatabase, catalogue: Mapping[str, Exercise]
 ) -> None:
