@@ -20,7 +20,7 @@ _MENU: Final = (
     (say("Exercises"), ""),
     (say("Practice"), "practice"),
     (say("Free play"), "play"),
-    (say("API"), "docs"),
+    (say("Help"), "help"),
 )
 _TUTORS_MENU: Final = (*_MENU, (say("For tutors"), "tutor"))
 

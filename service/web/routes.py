@@ -16,6 +16,7 @@ from service.catalogue import exercise_after
 from service.variants.robots.practice_catalogue import CatalogueWithPractice
 from service.web.assets import Asset, Assets, load_assets
 from service.web.courses.course_routes import course_routes
+from service.web.help.help_pages import help_routes
 from service.web.lti.lti_routes import lti_routes
 from service.web.page_answer import page_answer
 from service.web.page_headers import REFERENCE_HEADERS
@@ -54,6 +55,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     files = assets.by_name
     tutoring = tutoring or Tutoring(Access())
     router.include_router(_practice_routes(assets, tutoring.access))
+    router.include_router(help_routes(assets, tutoring.access))
     router.include_router(sign_in_routes(assets, tutoring.access))
     router.include_router(tutor_routes(practised, assets, tutoring))
     router.include_router(attempt_routes(catalogue, assets, tutoring))

@@ -89,6 +89,24 @@ def test_the_pages_are_accessible(visit: Opening, service: str, axe: str) -> Non
 
 
 @pytest.mark.long
+def test_students_read_help_in_their_language(visit: Opening, service: str, axe: str) -> None:
+    page = visit(bypass_csp=True, viewport={"width": 390, "height": 844}).page
+    page.add_init_script(axe)
+    page.goto(f"{service}/exercises/planar-rr?lang=de")
+    page.get_by_role("link", name="was Sie eingeben dürfen").click()
+    expect(page.get_by_role("heading", name="Was Sie eingeben dürfen")).to_be_visible()
+    for name in (
+        "Eine Tabelle oder Matrix einfügen",
+        "Wie Sie Punkte bekommen",
+        "Was Sie eingeben",
+    ):
+        page.get_by_role("navigation", name="Hilfe").get_by_role("link", name=name).click()
+        expect(page.get_by_role("heading", level=1)).to_contain_text(name)
+        assert violations(page, "") == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+@pytest.mark.long
 def test_the_element_works_on_a_course_page(
     visit: Opening, service: str, other_origin: Origin, stranger: Origin, axe: str
 ) -> None:

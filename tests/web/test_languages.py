@@ -15,7 +15,16 @@ from service.translations import LANGUAGES
 from service.web import web_routes
 from tests.translations.pseudo import PSEUDO, without_others
 
-PAGES = ("/", "/exercises/scara", "/practice", "/play", "/learn", "/learn-dh", "/docs")
+PAGES = (
+    "/",
+    "/exercises/scara",
+    "/practice",
+    "/play",
+    "/learn",
+    "/learn-dh",
+    "/help/points",
+    "/docs",
+)
 SWITCH = '<details class="languages">'
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
+from service.web.help.help_pages import TOPICS
 from tests.api.serving import served
 from tests.browser.conftest import Origin
 from tests.browser.fixtures import Visit
@@ -56,7 +57,11 @@ def fits(page: Page) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("path", ["", "practice", "play", "learn", "learn-dh", "tutor/sign-in"])
+@pytest.mark.parametrize(
+    "path",
+    ["", "practice", "play", "learn", "learn-dh", "tutor/sign-in"]
+    + [f"help/{topic}" for topic in TOPICS],
+)
 def test_a_page_is_told_and_fits(pseudo: str, visit: Opening, path: str) -> None:
     page = visit().page
     page.goto(f"{pseudo}/{path}?lang=qps")
