@@ -4,6 +4,7 @@ import asyncio
 import html
 import re
 from collections.abc import Mapping
+from functools import cache
 
 import httpx
 import pytest
@@ -12,7 +13,7 @@ from service.api.application import application
 from service.api.http.language import LANGUAGE_COOKIE
 from service.catalogue import Exercise
 from service.expressions import ExpressionError, read
-from service.translations import ENGLISH, LANGUAGES
+from service.translations import ENGLISH, LANGUAGES, Language
 from service.web import web_routes
 from service.web.assets import load_assets
 from service.web.help.help_pages import TOPICS, help_page
@@ -27,8 +28,12 @@ PARTS = {
 }
 
 
-def shown(topic: str) -> str:
-    return help_page(topic, load_assets(), ENGLISH).decode()
+assets = cache(load_assets)
+
+
+@cache
+def shown(topic: str, language: Language = ENGLISH) -> str:
+    return help_page(topic, assets(), language).decode()
 
 
 def examples(kind: str) -> list[list[str]]:
@@ -98,7 +103,7 @@ def test_the_worked_points_are_those_of_the_grader(catalogue: Mapping[str, Exerc
 @pytest.mark.parametrize("code", list(LANGUAGES))
 @pytest.mark.parametrize("topic", TOPICS)
 def test_a_page_in_each_language_has_the_same_examples(topic: str, code: str) -> None:
-    page = help_page(topic, load_assets(), LANGUAGES[code]).decode()
+    page = shown(topic, LANGUAGES[code])
     blocks = r"<code>.*?</code>|<pre.*?</pre>"
     english, other = (
         sorted(set(re.findall(blocks, text, re.DOTALL))) for text in (shown(topic), page)
