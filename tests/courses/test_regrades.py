@@ -92,6 +92,6 @@ def test_the_command_regrades_one_course(class_: Class, monkeypatch: pytest.Monk
     monkeypatch.setenv("DH_GRADER_DATABASE", str(both.store.engine.url.database))
     run = partial(CliRunner().invoke, program)
     words = ["attempts", "regrade", "scara", "--course", "others"]
-    assert "1 attempts were graded by another version" in run(words).output
+    assert "1 attempt was graded by another version" in run(words).output
     assert "Regraded: 1." in run([*words, "--apply"]).output
     assert versions(both) == {"robots": True, "others": False}

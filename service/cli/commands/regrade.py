@@ -44,10 +44,8 @@ def show_what_would_change(engine: Engine, exercise: Exercise, course: str | Non
         screen.print(f"… and {len(changes) - _MOST_SHOWN} more")
     kept = sum(each.awarded is not None for each in changes)
     of_which = f", of which {kept} would keep the points of a tutor" if kept else ""
-    screen.print(
-        f"{len(numbers)} attempts were graded by another version; {len(changes)} would change"
-        f"{of_which}."
-    )
+    many = "1 attempt was" if len(numbers) == 1 else f"{len(numbers)} attempts were"
+    screen.print(f"{many} graded by another version; {len(changes)} would change{of_which}.")
     if numbers:
         screen.print("Nothing is saved yet: add --apply to save. The old reports are kept.")
 

@@ -5,6 +5,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from service.api.http.lookup import Catalogue
+from service.catalogue import in_language
 from service.contract.courses import (
     Course,
     CourseAssignment,
@@ -15,6 +16,7 @@ from service.contract.courses import (
 )
 from service.contract.own_courses import OwnCourse
 from service.contract.scores import PlatformScore
+from service.translations import Language
 from service.web.assets import Assets
 from service.web.pages import page
 
@@ -49,15 +51,19 @@ class PointsGroup(NamedTuple):
     learners: int
 
 
-def courses_page(courses: Sequence[Course], assets: Assets, *, creates: bool) -> bytes:
+def courses_page(
+    courses: Sequence[Course], assets: Assets, language: Language, *, creates: bool
+) -> bytes:
     """Return the page with the list of courses; with ``creates``, it has a form for a new one."""
-    return _page("courses", assets, "../", ["course_forms.js"], courses=courses, creates=creates)
+    scripts = ["course_forms.js"]
+    return _page("courses", assets, language, "../", scripts, courses=courses, creates=creates)
 
 
 def course_page(
     state: CourseState,
     catalogue: Catalogue,
     assets: Assets,
+    language: Language,
     *,
     has_secret: bool,
     has_keys: bool,
@@ -67,10 +73,11 @@ def course_page(
     return _page(
         "course",
         assets,
+        language,
         "../../",
         ["course_forms.js", "deletion.js"],
         **state._asdict(),
-        catalogue=catalogue,
+        catalogue=_in_language(catalogue, language),
         has_secret=has_secret,
         has_keys=has_keys,
         deletes=deletes,
@@ -86,12 +93,14 @@ def assignment_page(
     scores: Sequence[PlatformScore],
     catalogue: Catalogue,
     assets: Assets,
+    language: Language,
 ) -> bytes:
     """Return the page of an assignment: its fields, extensions, missing learners and points."""
     names = {each.learner: each.name for each in state.learners}
     return _page(
         "assignment",
         assets,
+        language,
         "../../../../",
         ["course_forms.js", "deletion.js"],
         course=state.course,
@@ -102,14 +111,14 @@ def assignment_page(
         groups=distribution(book),
         columns=_columns(book),
         scores=scores,
-        catalogue=catalogue,
+        catalogue=_in_language(catalogue, language),
         shown=_shown,
     )
 
 
-def gradebook_page(course: Course, assets: Assets) -> bytes:
+def gradebook_page(course: Course, assets: Assets, language: Language) -> bytes:
     """Return the page of the gradebook, which a script fills."""
-    return _page("gradebook", assets, "../../../", ["gradebook.js"], course=course)
+    return _page("gradebook", assets, language, "../../../", ["gradebook.js"], course=course)
 
 
 def learner_page(
@@ -119,6 +128,7 @@ def learner_page(
     scores: Sequence[PlatformScore],
     now: datetime,
     assets: Assets,
+    language: Language,
 ) -> bytes:
     """Return the page of a learner: what the learner sees, the variants, scores and the link.
 
@@ -127,6 +137,7 @@ def learner_page(
     return _page(
         "learner",
         assets,
+        language,
         "../../../",
         ["course_forms.js", "deletion.js"],
         course=course,
@@ -139,10 +150,15 @@ def learner_page(
 
 
 def roster_page(
-    course: Course, change: "RosterChange | None", message: str, assets: Assets
+    course: Course,
+    change: "RosterChange | None",
+    message: str,
+    assets: Assets,
+    language: Language,
 ) -> bytes:
     """Return the page that says what a roster has changed, or why it was not read."""
-    return _page("roster", assets, "../../../", [], course=course, change=change, message=message)
+    values = {"course": course, "change": change, "message": message}
+    return _page("roster", assets, language, "../../../", [], **values)
 
 
 def distribution(book: Gradebook) -> list[PointsGroup]:
@@ -173,13 +189,25 @@ def _shown(when: datetime | None) -> str:
     return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
 
 
-def _page(name: str, assets: Assets, root: str, scripts: Sequence[str], **values: Any) -> bytes:
+def _in_language(catalogue: Catalogue, language: Language) -> Catalogue:
+    return {name: in_language(each, language) for name, each in catalogue.items()}
+
+
+def _page(
+    name: str,
+    assets: Assets,
+    language: Language,
+    root: str,
+    scripts: Sequence[str],
+    **values: Any,
+) -> bytes:
     return page(
         f"web/courses/templates/{name}.html",
         assets,
         root,
         ["page.js", *scripts],
         styles=["tutor.css", "records.css", "courses.css"],
+        language=language,
         tutor=True,
         **values,
     )

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 from urllib.parse import parse_qs
 
 from fastapi import APIRouter, Query, Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import Response
 
 from service.api.courses.asking import AssignmentId, CourseId, course_problem, read, write
 from service.api.http.bodies import validated
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue
 from service.contract.attempts import Learner
 from service.contract.courses import LinksRequest
@@ -25,6 +26,7 @@ from service.web.courses.course_pages import (
     learner_page,
 )
 from service.web.courses.roster_routes import roster_routes
+from service.web.page_answer import page_answer
 from service.web.page_headers import FORM_HEADERS, NO_STORE
 from service.web.tutor.tutor_routes import Tutoring
 
@@ -53,7 +55,8 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
         only = access.caller(request).course
         found = await read(store, lambda it: roll.all_courses(it, only))
-        return _answer(courses_page(found, assets, creates=only is None))
+        shown = courses_page(found, assets, language_of(request), creates=only is None)
+        return _answer(request, shown)
 
     @router.get("/{course_id}")
     async def course(request: Request, course_id: CourseId) -> Response:
@@ -63,18 +66,23 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
             state,
             catalogue,
             assets,
+            language_of(request),
             has_secret=access.keys is not None and access.keys.secret is not None,
             has_keys=bool(access.caller(request).key_id),
             deletes=access.caller(request).course is None,
         )
-        return _answer(drawn)
+        return _answer(request, drawn)
 
     @router.get("/{course_id}/assignments/{assignment_id}")
-    async def assignment(course_id: CourseId, assignment_id: AssignmentId) -> Response:
+    async def assignment(
+        request: Request, course_id: CourseId, assignment_id: AssignmentId
+    ) -> Response:
         """Answer with the page of an assignment."""
         from service.courses.assignments import assignment_of
         from service.courses.results.gradebook import gradebook, missing
         from service.lti.scores.overview import scores_of
+
+        language = language_of(request)
 
         def drawn(connection: "Connection") -> bytes:
             return assignment_page(
@@ -85,9 +93,10 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
                 scores_of(connection, course_id, SendAgainRequest(assignment=assignment_id)),
                 catalogue,
                 assets,
+                language,
             )
 
-        return _answer(await read(store, drawn))
+        return _answer(request, await read(store, drawn))
 
     return router
 
@@ -98,24 +107,26 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     access, store = tutoring.access, tutoring.store
 
     @router.get("/{course_id}/gradebook")
-    async def book(course_id: CourseId) -> Response:
+    async def book(request: Request, course_id: CourseId) -> Response:
         """Answer with the page of the gradebook."""
         from service.courses import roll
 
         found = await read(store, lambda it: roll.course(it, course_id))
-        return _answer(gradebook_page(found, assets))
+        return _answer(request, gradebook_page(found, assets, language_of(request)))
 
     @router.get("/{course_id}/learner")
-    async def learner(course_id: CourseId, learner: Annotated[Learner, Query()]) -> Response:
+    async def learner(
+        request: Request, course_id: CourseId, learner: Annotated[Learner, Query()]
+    ) -> Response:
         """Answer with the page of a learner. An id may have a slash: it is not in the path."""
         from service.courses.dealing import learner_variants
         from service.courses.learner_view import own_view
         from service.lti.scores.overview import scores_of
 
-        now = datetime.now(UTC)
+        now, language = datetime.now(UTC), language_of(request)
 
         def drawn(connection: "Connection") -> bytes:
-            view = own_view(connection, learner, course_id, catalogue, now)
+            view = own_view(connection, learner, course_id, catalogue, now, language)
             if not view.courses:
                 message = f"The course has no learner {learner}."
                 raise CourseError("unknown-learner", message)
@@ -125,9 +136,9 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
                 for each in own.assignments
             }
             scores = scores_of(connection, course_id, SendAgainRequest(learner=learner))
-            return learner_page(own, learner, variants, scores, now, assets)
+            return learner_page(own, learner, variants, scores, now, assets, language)
 
-        return _answer(await read(store, drawn))
+        return _answer(request, await read(store, drawn))
 
     @router.post("/{course_id}/links.csv")
     async def links(request: Request, course_id: CourseId) -> Response:
@@ -152,8 +163,8 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     return router
 
 
-def _answer(content: bytes) -> Response:
-    return HTMLResponse(content, headers=FORM_HEADERS)
+def _answer(request: Request, content: bytes) -> Response:
+    return page_answer(request, content, FORM_HEADERS)
 
 
 def _state(connection: "Connection", course_id: str) -> CourseState:

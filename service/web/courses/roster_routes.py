@@ -5,12 +5,14 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 
 from fastapi import APIRouter, Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import Response
 
 from service.api.courses.asking import CourseId, course_problem, read, write
+from service.api.http.language import language_of
 from service.courses.errors import CourseError
 from service.web.assets import Assets
 from service.web.courses.course_pages import roster_page
+from service.web.page_answer import page_answer
 from service.web.page_headers import FORM_HEADERS
 from service.web.sign_in import form_fields
 from service.web.tutor.tutor_routes import Tutoring
@@ -37,7 +39,7 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
         if secret is None:
             message = "Rosters need a secret: set DH_GRADER_SECRET."
             raise course_problem(CourseError("unusable", message))
-        known, now = secret, datetime.now(UTC)
+        known, now, language = secret, datetime.now(UTC), language_of(request)
         course = await read(store, lambda it: roll.course(it, course_id))
         try:
             asked = await write(store, lambda it: ask_for_roster(it, course_id, known, now))
@@ -46,11 +48,12 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
         try:
             members = await asyncio.to_thread(read_roster, asked)
         except RosterError as error:
-            content = roster_page(course, None, str(error), assets)
-            return HTMLResponse(content, HTTPStatus.BAD_GATEWAY, headers=FORM_HEADERS)
+            content = roster_page(course, None, str(error), assets, language)
+            return page_answer(request, content, FORM_HEADERS, HTTPStatus.BAD_GATEWAY)
         change = await write(
             store, lambda it: enrol_members(it, asked, members, known, shows_names=shows_names)
         )
-        return HTMLResponse(roster_page(course, change, "", assets), headers=FORM_HEADERS)
+        content = roster_page(course, change, "", assets, language)
+        return page_answer(request, content, FORM_HEADERS)
 
     return router

@@ -10,6 +10,7 @@ from service.api.http.chunked_response import ChunkedResponse
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue
 from service.web.assets import Assets
+from service.web.page_answer import page_answer
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
 from service.web.tutor.class_report import class_archive, unpacked
 from service.web.tutor.tutor_pages import class_page
@@ -22,9 +23,9 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
     router = APIRouter(prefix="/tutor")
 
     @router.get("/class")
-    async def class_form() -> Response:
+    async def class_form(request: Request) -> Response:
         """Answer with the form to choose the files of a class."""
-        return HTMLResponse(class_page(catalogue, assets), headers=_HEADERS)
+        return page_answer(request, class_page(catalogue, assets, language_of(request)), _HEADERS)
 
     @router.get("/class/report")
     async def class_frame() -> Response:

@@ -5,9 +5,10 @@ from typing import Any, Final
 from markupsafe import Markup
 
 from service.api.http.lookup import Catalogue
-from service.catalogue import Exercise, Robot
+from service.catalogue import Exercise, Robot, in_language
 from service.formats.shared.html_templates import own_html
 from service.solutions import solve
+from service.translations import Language
 from service.typeset.statement import formula_html
 from service.web.assets import Assets
 from service.web.pages import page
@@ -19,6 +20,7 @@ _TABULAR: Final = r"\begin{tabular}"
 def tutor_page(
     catalogue: Catalogue,
     assets: Assets,
+    language: Language,
     *,
     of_all: bool = True,
     has_courses: bool = False,
@@ -33,7 +35,8 @@ def tutor_page(
         "home",
         assets,
         "",
-        exercises=list(catalogue.values()),
+        language=language,
+        exercises=[in_language(each, language) for each in catalogue.values()],
         of_all=of_all,
         has_courses=has_courses,
         has_platforms=has_platforms,
@@ -96,9 +99,10 @@ def editor_page(
     )
 
 
-def class_page(catalogue: Catalogue, assets: Assets) -> bytes:
+def class_page(catalogue: Catalogue, assets: Assets, language: Language) -> bytes:
     """Return the page with the form to choose exercise and files, and the frame of the report."""
-    return _page("class", assets, "../", "class.js", exercises=list(catalogue.values()))
+    exercises = [in_language(each, language) for each in catalogue.values()]
+    return _page("class", assets, "../", "class.js", language=language, exercises=exercises)
 
 
 def _page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) -> bytes:

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fastapi import APIRouter, Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import Response
 
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.chunked_response import ChunkedResponse
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
 from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
@@ -19,6 +20,7 @@ from service.api.permissions.access import Access
 from service.catalogue import Exercise, Robot
 from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
+from service.web.page_answer import page_answer
 from service.web.page_headers import FORM_HEADERS, NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
 from service.web.tutor.class_routes import class_routes
@@ -71,12 +73,13 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
         content = tutor_page(
             shown,
             assets,
+            language_of(request),
             of_all=caller.reaches_all,
             has_courses=tutoring.records and caller.exercises is None,
             has_platforms=has_lti and caller.reaches_all,
             signed_in=access.is_signed_in(request),
         )
-        return HTMLResponse(content, headers=FORM_HEADERS)
+        return page_answer(request, content, FORM_HEADERS)
 
     return router
 

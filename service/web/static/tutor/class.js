@@ -2,6 +2,7 @@
 
 import { byId, h, visible, whenChosen } from "../shared/dom.js";
 import { documentOf } from "../shared/markup.js";
+import { language, worded, wordedFor } from "../shared/words/words.js";
 import { post, refusal } from "./tutor_service.js";
 import { archiveOf, bytesOf, entries, textOf } from "./zip.js";
 
@@ -15,7 +16,7 @@ const MOST_UNPACKED = 8 * 1024 * 1024;
 const INDEX = "index.html";
 const GRADES = "grades.csv";
 const PAGES = "reports/";
-const TOO_LARGE = "The files are too large for this page. Grade them on the command line.";
+const TOO_LARGE = worded("The files are too large for this page. Grade them on the command line.");
 
 const exercise = byId("exercise", HTMLSelectElement);
 const part = byId("part", HTMLSelectElement);
@@ -36,12 +37,13 @@ const tell = (text) => (state.textContent = visible(text));
 
 async function showParts() {
   const chosen = exercise.value;
-  const answer = await fetch(`../v1/exercises/${encodeURIComponent(chosen)}`).catch(() => null);
+  const address = `../v1/exercises/${encodeURIComponent(chosen)}?lang=${language}`;
+  const answer = await fetch(address).catch(() => null);
   if (!answer?.ok || chosen !== exercise.value) return;
   /** @type {Api.Exercise} */
   const { parts } = await answer.json();
   part.replaceChildren(
-    h("option", { value: "" }, "All parts"),
+    h("option", { value: "" }, worded("All parts")),
     ...parts.map(({ id, title }) => h("option", { value: id }, visible(title))),
   );
 }
@@ -70,18 +72,18 @@ function chosenFile(file) {
  */
 async function unpacked(file) {
   if (file.size > LARGEST_ARCHIVE) {
-    throw new UnusableFilesError("The zip file is too large for this page. Unpack it, and choose the folder.");
+    throw new UnusableFilesError(worded("The zip file is too large for this page. Unpack it, and choose the folder."));
   }
   const buffer = await file.arrayBuffer();
   let found;
   try {
     found = [...entries(buffer)];
   } catch {
-    throw new UnusableFilesError("The zip file is damaged. Download it again.");
+    throw new UnusableFilesError(worded("The zip file is damaged. Download it again."));
   }
   if (found.some(([, { isReadable }]) => !isReadable)) {
     throw new UnusableFilesError(
-      "The zip file is encrypted, or packed in an unusual way. Unpack it, and choose the folder.",
+      worded("The zip file is encrypted, or packed in an unusual way. Unpack it, and choose the folder."),
     );
   }
   const folder = file.name.replace(/\.zip$/i, "/");
@@ -99,7 +101,7 @@ async function sent(files) {
   const all = [];
   for (const { path, read } of files) {
     const bytes = await read(LARGEST_FILE).catch(() => {
-      throw new UnusableFilesError(`The file ${path} cannot be read.`);
+      throw new UnusableFilesError(worded("The file {path} cannot be read.", { path }));
     });
     left -= bytes?.length ?? 0;
     if (left < 0) throw new UnusableFilesError(TOO_LARGE);
@@ -133,11 +135,13 @@ async function grade(chosen) {
   frame.hidden = bar.hidden = true;
   try {
     const files = await classFiles(chosen);
-    if (!files.length) return tell("No files found.");
+    if (!files.length) return tell(worded("No files found."));
     if (files.length > MOST_FILES) {
-      return tell(`${files.length} files are too many for this page. Grade them on the command line.`);
+      return tell(
+        worded("{count} files are too many for this page. Grade them on the command line.", { count: files.length }),
+      );
     }
-    tell(`Grading ${files.length} ${files.length === 1 ? "file" : "files"} …`);
+    tell(wordedFor("Grading {count} file …", "Grading {count} files …", files.length));
     const upload = { exercise: exercise.value, part: part.value || null, files: await sent(files) };
     const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
     const body = await new Response(packed).arrayBuffer();
@@ -145,8 +149,13 @@ async function grade(chosen) {
     archive = await (await post("../tutor/class", body, "application/gzip")).arrayBuffer();
     found = entries(archive);
     await show(INDEX);
-    const { length } = pages();
-    tell(`${length} ${length === 1 ? "submission" : "submissions"}. The service does not keep them.`);
+    tell(
+      wordedFor(
+        "{count} submission. The service does not keep it.",
+        "{count} submissions. The service does not keep them.",
+        pages().length,
+      ),
+    );
     bar.hidden = false;
   } catch (error) {
     tell(error instanceof UnusableFilesError ? error.message : refusal(error));
@@ -188,7 +197,7 @@ async function load(name) {
   if (!inside) return;
   inside.replaceChild(inside.adoptNode(page.documentElement), inside.documentElement);
   inside.head.append(Object.assign(inside.createElement("style"), { textContent: style }));
-  frame.title = inside.title || "Report";
+  frame.title = inside.title || worded("Report");
   inside.addEventListener("click", follow);
 }
 

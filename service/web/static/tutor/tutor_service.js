@@ -1,6 +1,6 @@
 // Requests of the tutor's pages to the service.
 
-import { language } from "../shared/words/words.js";
+import { language, worded } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url);
 // How often a request is repeated if the service is busy, and the longest pause before that in seconds.
@@ -85,7 +85,7 @@ async function asked(path, options) {
   if (answer.ok) return answer;
   /** @type {Partial<Api.Problem> | null} */
   const problem = await answer.json().catch(() => null);
-  const reason = problem?.detail ?? `The service answered with the status ${answer.status}.`;
+  const reason = problem?.detail ?? worded("The service answered with the status {status}.", { status: answer.status });
   const wait = Number(answer.headers.get("Retry-After"));
   throw new Refusal(reason, wait);
 }
@@ -96,5 +96,5 @@ async function asked(path, options) {
  * @param {unknown} error
  */
 export function refusal(error) {
-  return error instanceof Refusal ? error.message : "The service cannot be reached.";
+  return error instanceof Refusal ? error.message : worded("The service cannot be reached.");
 }

@@ -1,7 +1,8 @@
 // Deletions on the pages of courses: first the service says what would go, then a second button deletes it.
 
 import { h } from "../../shared/dom.js";
-import { count, failed, tell } from "../records/records.js";
+import { language, worded, wordedFor } from "../../shared/words/words.js";
+import { failed, tell } from "../records/records.js";
 import { address, send } from "../tutor_service.js";
 
 /**
@@ -11,13 +12,16 @@ import { address, send } from "../tutor_service.js";
  */
 export function inWords({ assignments, learners, extensions, keys, attempts }) {
   const told = [
-    assignments && count(assignments, "assignment"),
-    learners && `the place of ${count(learners, "learner")}`,
-    extensions && count(extensions, "extension"),
-    keys && count(keys, "link"),
-    attempts && `${count(attempts, "attempt")} with answers and reports`,
+    assignments && wordedFor("{count} assignment", "{count} assignments", assignments),
+    learners && wordedFor("the place of {count} learner", "the place of {count} learners", learners),
+    extensions && wordedFor("{count} extension", "{count} extensions", extensions),
+    keys && wordedFor("{count} link", "{count} links", keys),
+    attempts &&
+    wordedFor("{count} attempt with answers and reports", "{count} attempts with answers and reports", attempts, {
+      count: attempts.toLocaleString(language),
+    }),
   ];
-  return told.filter(Boolean).join(", ") || "nothing else";
+  return told.filter(Boolean).join(", ") || worded("nothing else");
 }
 
 /** @param {HTMLElement} place */
@@ -27,9 +31,9 @@ function offer(place) {
   const keepsAttempts = learner !== undefined;
   const body = learner === undefined ? {} : { learner };
   const state = h("p", { role: "status", class: "state-line" });
-  const ask = h("button", { type: "button", onclick: preview }, `Delete ${what} …`);
-  const final = h("button", { type: "button", class: "danger", onclick: remove }, "Delete permanently");
-  const cancel = h("button", { type: "button", onclick: () => shown(false) }, "Cancel");
+  const ask = h("button", { type: "button", onclick: preview }, worded("Delete {what} …", { what }));
+  const final = h("button", { type: "button", class: "danger", onclick: remove }, worded("Delete permanently"));
+  const cancel = h("button", { type: "button", onclick: () => shown(false) }, worded("Cancel"));
   let withAttempts = false;
 
   /** @param {boolean} isAsked */
@@ -45,9 +49,16 @@ function offer(place) {
       const found = await send(path, body);
       withAttempts = found.attempts > 0 && !keepsAttempts;
       shown(true);
-      const kept = keepsAttempts ? ` ${count(found.attempts, "attempt")} of this learner will stay.` : "";
+      const kept = keepsAttempts
+        ? wordedFor(
+          "{count} attempt of this learner will stay.",
+          "{count} attempts of this learner will stay.",
+          found.attempts,
+        )
+        : "";
       const gone = inWords(keepsAttempts ? { ...found, attempts: 0 } : found);
-      tell(state, `This deletes ${what}: ${gone}. It cannot be undone.${kept}`);
+      const told = worded("This deletes {what}: {gone}. It cannot be undone.", { what, gone });
+      tell(state, kept ? `${told} ${kept}` : told);
     } catch (error) {
       failed(error, state);
     }

@@ -1,8 +1,9 @@
 // The gradebook of a course: learners × exercises, with a filter, and sorted by any column.
 
 import { byId, h, number, visible } from "../../shared/dom.js";
-import { count, failed, fieldOf, learnerName, query, tell } from "../records/records.js";
+import { failed, fieldOf, learnerName, query, tell } from "../records/records.js";
 import { address, get } from "../tutor_service.js";
+import { worded, wordedFor } from "../../shared/words/words.js";
 
 const course = byId("main", HTMLElement).dataset.course ?? "";
 const state = byId("state", HTMLElement);
@@ -53,11 +54,13 @@ function draw() {
     [name, learner, email ?? ""].some((text) => text.toLowerCase().includes(wanted))
   ).sort(inOrder);
   const shown = isWhole ? matches : matches.slice(0, SHOWN);
-  tell(state, count(matches.length, "learner") + (shown.length < matches.length ? `, ${shown.length} shown` : ""));
+  const found = wordedFor("{count} learner", "{count} learners", matches.length);
+  const all = shown.length === matches.length;
+  tell(state, all ? found : worded("{found}, {count} shown", { found, count: shown.length }));
   list.replaceChildren(
     h(
       "div",
-      { class: "wide", tabindex: 0, role: "region", "aria-label": "Gradebook" },
+      { class: "wide", tabindex: 0, role: "region", "aria-label": worded("Gradebook") },
       h(
         "table",
         { class: "plain gradebook" },
@@ -67,11 +70,11 @@ function draw() {
           h(
             "tr",
             {},
-            head("Learner", -1),
+            head(worded("Learner"), -1),
             ...book.columns.map(({ assignment, exercise, points }, i) =>
               head(`${assignment} ${exercise}`, i, ` (${number(points)})`)
             ),
-            head("Total", book.columns.length),
+            head(worded("Total"), book.columns.length),
           ),
         ),
         h("tbody", {}, ...shown.map(row)),
@@ -79,7 +82,7 @@ function draw() {
       ),
     ),
     shown.length < matches.length
-      ? h("p", { class: "pages" }, h("button", { type: "button", onclick: showAll }, "Show all learners"))
+      ? h("p", { class: "pages" }, h("button", { type: "button", onclick: showAll }, worded("Show all learners")))
       : "",
   );
 }
@@ -147,7 +150,7 @@ function means(rows) {
   return h(
     "tr",
     {},
-    h("th", { scope: "row" }, "Mean of those who handed in"),
+    h("th", { scope: "row" }, worded("Mean of those who handed in")),
     ...book.columns.map((_, i) => h("td", {}, mean(({ points }) => points[i]))),
     h("td", {}, mean(({ points, total }) => (points.some((each) => each !== null) ? total : null))),
   );
