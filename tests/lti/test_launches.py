@@ -93,6 +93,29 @@ def test_the_page_is_in_the_language_that_the_user_has_on_the_platform(
         assert f'<html lang="{tag}">' in page.text
 
 
+def test_a_tutor_goes_on_in_the_language_of_the_platform(tool: Tool) -> None:
+    german = {f"{LTI}launch_presentation": {"locale": "de-AT"}, f"{LTI}custom": {}}
+    tool.platform.habits.append(lambda claims: claims.update(german))
+    page = tool.launch("turing").text
+    fields = {name: hidden(page, name) for name in ("ticket", "locale")}
+    assert "Ihre Studierenden sehen diese Aufgaben" in page
+    refused = tool.send("POST", "/lti/assignment", data=fields | {"action": "save"}).text
+    assert "Wählen Sie mindestens eine Aufgabe." in refused
+    assert fields["locale"] == hidden(refused, "locale") == "de"
+    # Words of either language find an exercise.
+    for word in ("ebener", "revolute"):
+        found = tool.send("POST", "/lti/assignment", data=fields | {"search": f"planar-rr {word}"})
+        assert 'value="planar-rr"' in found.text
+    chosen = {"title": "Blatt 7", "exercise": "scara", "points:scara": "12", "action": "save"}
+    made = tool.send("POST", "/lti/assignment", data=fields | chosen).text
+    assert "Was Ihre Studierenden bekommen" in made
+    assert ": 12 Punkte</li>" in made
+    opened = tool.send("POST", "/lti/session", data=fields)
+    cookie = opened.headers["set-cookie"].partition(";")[0]
+    path = opened.headers["location"].removeprefix("..")
+    assert "Neues Übungsblatt" in tool.send("GET", path, headers={"cookie": cookie}).text
+
+
 def test_previews_and_guests_record_nothing(tool: Tool) -> None:
     for user in ("preview", "", "parent"):
         before = tool.counts()

@@ -32,7 +32,7 @@ class Reader:
         ticket = hidden(tool.launch("turing").text, "ticket")
         opened = tool.send("POST", "/lti/session", data={"ticket": ticket})
         self.headers = {"cookie": opened.headers["set-cookie"].partition(";")[0]}
-        self.path = opened.headers["location"].removeprefix("..")
+        self.path = opened.headers["location"].removeprefix("..").partition("?")[0]
         self.course = self.path.rpartition("/")[2]
 
     def read(self, **fields: str) -> str:

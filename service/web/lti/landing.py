@@ -44,7 +44,7 @@ class Landings:
         """Record a launch; return the page that it opens. Raises LtiError."""
         now = datetime.now(UTC)
         if message.kind == DEEP_LINKING:
-            return await self._picker(message, login, now)
+            return await self._picker(message, login, now, language)
 
         def entered(connection: Connection) -> Landing:
             use_login(connection, login, now)
@@ -64,11 +64,13 @@ class Landings:
         )
         ticket = signed_ticket(mine, self.secret, now)
         if landing.assignment is not None:
+            is_review = bool(mine.learner)
             return tutor_page(
-                landing, ticket, self.catalogue, self.assets, is_review=bool(mine.learner)
+                landing, ticket, self.catalogue, self.assets, language, is_review=is_review
             )
         choice = Choice(landing.link_title)
-        return choosing_page(choice, landing.course_title, ticket, self.catalogue, self.assets)
+        title = landing.course_title
+        return choosing_page(choice, title, ticket, self.catalogue, self.assets, language)
 
     def _reviewed(self, message: LaunchMessage) -> str:
         """Return the learner whose attempts a message asks for, or ""."""
@@ -76,7 +78,9 @@ class Landings:
             return ""
         return pseudonym(message.registration.id, message.reviewed, self.secret)
 
-    async def _picker(self, message: LaunchMessage, login: Login, now: datetime) -> bytes:
+    async def _picker(
+        self, message: LaunchMessage, login: Login, now: datetime, language: Language
+    ) -> bytes:
         """Return the page on which a tutor chooses links for the platform. Raises LtiError."""
 
         def begun(connection: Connection) -> Offer:
@@ -86,7 +90,7 @@ class Landings:
 
         offer = await write(self.store, begun)
         text = signed_ticket(offer.ticket, self.secret, now)
-        return picker_page(offer, Picked(), text, self.catalogue, self.assets)
+        return picker_page(offer, Picked(), text, self.catalogue, self.assets, language)
 
     def _token(self, landing: Landing, now: datetime) -> str:
         """Return the token of a learner, or one of a preview, which may only have graded."""

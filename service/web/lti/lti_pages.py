@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from service.api.http.lookup import Catalogue
-from service.catalogue import Exercise
+from service.catalogue import Exercise, in_language
 from service.contract.courses import CourseAssignment
 from service.translations import Language, say
 from service.web.assets import Assets
@@ -142,6 +142,7 @@ def tutor_page(
     ticket: str,
     catalogue: Catalogue,
     assets: Assets,
+    language: Language,
     *,
     is_review: bool = False,
 ) -> bytes:
@@ -154,17 +155,23 @@ def tutor_page(
         "tutor.html",
         assets,
         [],
+        language=language,
         title=landing.link_title,
         course=landing.course_title,
         assignment=landing.assignment,
-        titles={name: each.title for name, each in catalogue.items()},
+        titles={name: in_language(each, language).title for name, each in catalogue.items()},
         ticket=ticket,
         is_review=is_review,
     )
 
 
 def choosing_page(
-    choice: Choice, course: str, ticket: str, catalogue: Catalogue, assets: Assets
+    choice: Choice,
+    course: str,
+    ticket: str,
+    catalogue: Catalogue,
+    assets: Assets,
+    language: Language,
 ) -> bytes:
     """Return the form on which a tutor chooses the exercises of a resource link."""
     chosen = choice.chosen or {}
@@ -172,23 +179,29 @@ def choosing_page(
         "choose.html",
         assets,
         [],
+        language=language,
         course=course,
         choice=choice,
         chosen=chosen,
-        exercises=found(catalogue.values(), choice.search, chosen),
+        exercises=found(catalogue, language, choice.search, chosen),
         ticket=ticket,
     )
 
 
 def found(
-    exercises: Iterable[Exercise], search: str, chosen: Mapping[str, str]
+    catalogue: Catalogue, language: Language, search: str, chosen: Mapping[str, str]
 ) -> Sequence[tuple[Exercise, str]]:
     """Return the exercises with all words of a search, after the chosen ones, and their points."""
     words = search.lower().split()
+
+    def has_words(each: Exercise) -> bool:
+        known = words_of(each, language, catalogue[each.id]).lower()
+        return all(word in known for word in words)
+
     listed = [
         (each, chosen.get(each.id) or f"{sum(part.points for part in each.parts):g}")
-        for each in exercises
-        if each.id in chosen or all(word in words_of(each).lower() for word in words)
+        for each in (in_language(it, language) for it in catalogue.values())
+        if each.id in chosen or has_words(each)
     ]
     return sorted(listed, key=lambda it: it[0].id not in chosen)
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Any, Final
-from urllib.parse import parse_qs
+from urllib.parse import parse_qs, urlencode
 
 from fastapi import APIRouter, Request
 from pydantic import ValidationError
@@ -18,6 +18,8 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from service.access.caller import Caller, Scope
 from service.api.courses.asking import read, write
+from service.api.http.language import LANGUAGE_FIELD, language_of
+from service.api.http.problems import message_of
 from service.api.permissions.access import is_same_origin
 from service.attempts.storage.lti_tables import contexts, resource_links
 from service.contract.courses import NewAssignment
@@ -28,6 +30,7 @@ from service.lti.problems import LtiError
 from service.lti.registrations import registration
 from service.lti.roles import LtiRole
 from service.lti.tickets import LtiTicket, ticket_in
+from service.translations import Language, say
 from service.web.lti.landing import Landings
 from service.web.lti.lti_pages import Choice, choosing_page, frame_headers, tutor_page
 from service.web.page_headers import NO_STORE
@@ -35,7 +38,7 @@ from service.web.sign_in import SESSION, form_fields, set_session_cookie
 
 _MOST_FIELDS: Final = 1000
 
-Answered = Callable[[Callable[[], Awaitable[Response]]], Awaitable[Response]]
+Answered = Callable[[Callable[[], Awaitable[Response]], Language], Awaitable[Response]]
 
 
 def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
@@ -54,6 +57,7 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
         """Search exercises, or make the assignment of a resource link."""
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
+        language = language_of(request, fields.get("locale", [""])[0])
 
         async def chosen() -> Response:
             ticket = await asked(request, text)
@@ -68,9 +72,9 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
                 known_ones = landings.catalogue
                 made = await write(store, lambda it: _assigned(it, link.number, new, known_ones))
             except _NotYetError as error:
-                shown = replace(choice, message=str(error))
+                shown = replace(choice, message=message_of(error))
                 content = choosing_page(
-                    shown, course.title, text, landings.catalogue, landings.assets
+                    shown, course.title, text, landings.catalogue, landings.assets, language
                 )
             else:
                 landing = Landing(
@@ -79,30 +83,37 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
                     link_title=made.title,
                     assignment=made,
                 )
-                content = tutor_page(landing, text, landings.catalogue, landings.assets)
+                content = tutor_page(landing, text, landings.catalogue, landings.assets, language)
             return HTMLResponse(content, headers=frame_headers(known.frame_origins))
 
-        return await answered(chosen)
+        return await answered(chosen, language)
 
     @router.post("/session")
     async def session(request: Request) -> Response:
         """Start a tutor's session, and open the course."""
         fields = await form_fields(request)
+        language = language_of(request, fields.get("locale", ""))
 
         async def begun() -> Response:
             ticket = await asked(request, fields.get("ticket", ""))
             context, _ = await read(store, lambda it: _rows(it, ticket))
             caller = Caller(frozenset({Scope.TUTOR}), key_id=context.key, course=context.course)
-            learner = f"/learner?learner={ticket.learner}" if ticket.learner else ""
-            address = f"../tutor/courses/{context.course}{learner}"
+            address = _course_address(context.course, ticket.learner, language)
             answer = RedirectResponse(address, HTTPStatus.SEE_OTHER, NO_STORE)
             text = keys.session(caller, datetime.now(UTC) + SESSION)
             set_session_cookie(answer, request, text)
             return answer
 
-        return await answered(begun)
+        return await answered(begun, language)
 
     return router
+
+
+def _course_address(course: str, learner: str, language: Language) -> str:
+    """Return the address of a course, or of one of its learners, in the language of the tutor."""
+    query = {"learner": learner} if learner else {}
+    page = "/learner" if learner else ""
+    return f"../tutor/courses/{course}{page}?{urlencode({**query, LANGUAGE_FIELD: language.code})}"
 
 
 class _NotYetError(Exception):
@@ -144,9 +155,9 @@ def _choice(fields: Mapping[str, list[str]]) -> Choice:
 def _new_assignment(choice: Choice, link: int) -> NewAssignment:
     """Return the assignment that a form asks for. Raises _NotYetError."""
     if not choice.chosen:
-        raise _NotYetError("Choose at least one exercise.")
+        raise _NotYetError(say("Choose at least one exercise."))
     if not choice.title:
-        raise _NotYetError("Enter a title.")
+        raise _NotYetError(say("Enter a title."))
     listed = [{"exercise": each, "points": points} for each, points in choice.chosen.items()]
     fields = {
         "id": new_assignment_id(link),
@@ -157,11 +168,11 @@ def _new_assignment(choice: Choice, link: int) -> NewAssignment:
     try:
         return NewAssignment.model_validate(fields)
     except ValidationError as error:
-        raise _NotYetError("Points are numbers above 0, at most 10000.") from error
+        raise _NotYetError(say("Points are numbers above 0, at most 10000.")) from error
 
 
 def _assigned(connection: Connection, link: int, new: NewAssignment, catalogue: Any) -> Any:
     try:
         return assign(connection, link, new, catalogue)
     except CourseError as error:
-        raise _NotYetError(str(error)) from error
+        raise _NotYetError(message_of(error)) from error

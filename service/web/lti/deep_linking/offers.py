@@ -9,6 +9,7 @@ from zoneinfo import ZoneInfo
 from pydantic import ValidationError
 from sqlalchemy import Connection
 
+from service.api.http.problems import message_of
 from service.catalogue import Exercise
 from service.contract.courses import MOST_EXERCISES, CourseAssignment, NewAssignment
 from service.courses import roll
@@ -18,6 +19,7 @@ from service.courses.times import moment, zone_named
 from service.lti.deep_linking.responses import NewLink
 from service.lti.registrations import Registration
 from service.lti.tickets import LinkingTicket
+from service.translations import say
 
 _LONGEST_LINE: Final = 200
 
@@ -97,9 +99,9 @@ def links_of(picked: Picked, offer: Offer, catalogue: Mapping[str, Exercise]) ->
     if picked.points:
         links += _of_exercises(picked, offer, catalogue)
     if not links:
-        raise NotYetError("Choose at least one exercise.")
+        raise NotYetError(say("Choose at least one exercise."))
     if len(links) > 1 and not offer.ticket.takes_several:
-        raise NotYetError("Your platform accepts one link here: choose one.")
+        raise NotYetError(say("Your platform accepts one link here: choose one."))
     return links
 
 
@@ -108,13 +110,15 @@ def _of_exercises(
 ) -> Sequence[NewLink]:
     points = picked.points or {}
     if any(name not in catalogue for name in points):
-        raise NotYetError("One of these exercises is not there any more.")
+        raise NotYetError(say("One of these exercises is not there any more."))
     if picked.is_one and not picked.title:
-        raise NotYetError("Enter a title.")
+        raise NotYetError(say("Enter a title."))
     new = _checked(picked, list(points.items()))
     opens, due = _date(new.opens, offer.zone), _date(new.due, offer.zone)
     if opens and due and opens > due:
-        raise NotYetError("The due date is before the date from which on attempts are accepted.")
+        raise NotYetError(
+            say("The due date is before the date from which on attempts are accepted.")
+        )
     given = {each.exercise: each.points for each in new.exercises}
     if picked.is_one:
         return [NewLink(new.title, given, opens=opens, due=due, variants=picked.variants)]
@@ -135,8 +139,8 @@ def _checked(picked: Picked, points: Sequence[tuple[str, str]]) -> NewAssignment
         return NewAssignment.model_validate(fields)
     except ValidationError as error:
         if {"opens", "due"} & {each["loc"][0] for each in error.errors()}:
-            raise NotYetError("Write dates as 2026-11-30 23:59.") from error
-        raise NotYetError("Points are numbers above 0, at most 10000.") from error
+            raise NotYetError(say("Write dates as 2026-11-30 23:59.")) from error
+        raise NotYetError(say("Points are numbers above 0, at most 10000.")) from error
 
 
 def _date(written: datetime | None, zone: ZoneInfo) -> datetime | None:
@@ -145,4 +149,4 @@ def _date(written: datetime | None, zone: ZoneInfo) -> datetime | None:
     try:
         return moment(written, zone)
     except CourseError as error:
-        raise NotYetError(str(error)) from error
+        raise NotYetError(message_of(error)) from error

@@ -9,11 +9,14 @@ from sqlalchemy import Connection
 from starlette.responses import HTMLResponse, Response
 
 from service.api.courses.asking import read, write
+from service.api.http.language import language_of
+from service.api.http.problems import message_of
 from service.api.permissions.access import is_same_origin
 from service.lti.deep_linking.responses import NewLink, signed_response
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration, RegistrationError, origin_of, registration
 from service.lti.tickets import LinkingTicket, ticket_in
+from service.translations import Language
 from service.web.lti.deep_linking.offers import (
     NotYetError,
     Offer,
@@ -36,11 +39,14 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
     store, secret = landings.store, landings.secret
 
     async def sent_back(
-        ticket: LinkingTicket, known: Registration, links: Sequence[NewLink]
+        ticket: LinkingTicket,
+        known: Registration,
+        links: Sequence[NewLink],
+        language: Language,
     ) -> Response:
         now = datetime.now(UTC)
         text = await write(store, lambda it: signed_response(it, ticket, known, links, secret, now))
-        content = return_page(ticket.return_url, text, landings.assets)
+        content = return_page(ticket.return_url, text, landings.assets, language)
         targets = (origin_of(ticket.return_url), *known.frame_origins)
         headers = {**frame_headers(known.frame_origins, *targets), **_REFERRER}
         return HTMLResponse(content, headers=headers)
@@ -50,6 +56,7 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
         """Search exercises, or answer the platform with links, or with none."""
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
+        language = language_of(request, fields.get("locale", [""])[0])
 
         async def picked() -> Response:
             if not is_same_origin(request):
@@ -60,16 +67,18 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
             try:
                 match fields.get("action", [""])[0]:
                     case "cancel":
-                        return await sent_back(ticket, known, [])
+                        return await sent_back(ticket, known, [], language)
                     case "add":
                         links = links_of(chosen, offer, landings.catalogue)
-                        return await sent_back(ticket, known, links)
+                        return await sent_back(ticket, known, links, language)
             except NotYetError as error:
-                chosen = chosen.with_message(str(error))
-            content = picker_page(offer, chosen, text, landings.catalogue, landings.assets)
+                chosen = chosen.with_message(message_of(error))
+            content = picker_page(
+                offer, chosen, text, landings.catalogue, landings.assets, language
+            )
             return HTMLResponse(content, headers=frame_headers(known.frame_origins))
 
-        return await answered(picked)
+        return await answered(picked, language)
 
     return router
 

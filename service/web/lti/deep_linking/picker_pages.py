@@ -1,6 +1,7 @@
 """The pages of deep linking: the picker, and the form that sends the answer to the platform."""
 
 from service.api.http.lookup import Catalogue
+from service.translations import Language
 from service.web.assets import Assets
 from service.web.catalogue_words import kinds_of
 from service.web.lti.deep_linking.offers import Offer, Picked
@@ -8,7 +9,12 @@ from service.web.lti.lti_pages import found, lti_page
 
 
 def picker_page(
-    offer: Offer, picked: Picked, ticket: str, catalogue: Catalogue, assets: Assets
+    offer: Offer,
+    picked: Picked,
+    ticket: str,
+    catalogue: Catalogue,
+    assets: Assets,
+    language: Language,
 ) -> bytes:
     """Return the form on which a tutor chooses exercises; it works without scripts."""
     chosen = picked.points or {}
@@ -17,15 +23,17 @@ def picker_page(
         assets,
         [],
         ["catalogue.css", "picker.css"],
+        language=language,
         offer=offer,
         picked=picked,
         chosen=chosen,
-        exercises=found(catalogue.values(), picked.search, chosen),
+        exercises=found(catalogue, language, picked.search, chosen),
         kinds_of=kinds_of,
         ticket=ticket,
     )
 
 
-def return_page(address: str, response: str, assets: Assets) -> bytes:
+def return_page(address: str, response: str, assets: Assets, language: Language) -> bytes:
     """Return the page that posts the signed answer to the platform."""
-    return lti_page("return.html", assets, ["send_form.js"], address=address, response=response)
+    values = {"address": address, "response": response}
+    return lti_page("return.html", assets, ["send_form.js"], language=language, **values)
