@@ -20,7 +20,7 @@ _MENU: Final = (
     (say("Exercises"), ""),
     (say("Practice"), "practice"),
     (say("Free play"), "play"),
-    (say("Help"), "help"),
+    (say("Help"), "help/expressions"),
 )
 _TUTORS_MENU: Final = (*_MENU, (say("For tutors"), "tutor"))
 

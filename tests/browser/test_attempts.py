@@ -295,13 +295,14 @@ def test_the_pages_of_attempts_are_accessible(
     check()
 
 
-@pytest.mark.campaign
+@pytest.mark.long
 def test_the_api_page_shows_recorded_answers_as_text(recording: Recording, visit: Opening) -> None:
     """Recorded answers are shown as text when a tutor tries an operation at /docs."""
     attempt = recording.record(PICTURE, WRONG)
     page = visit(viewport=NARROW, bypass_csp=True).page
     recording.sign_in(page)
-    page.goto(f"{recording.address}/docs#/attempts/getAttempt")
+    page.goto(f"{recording.address}/docs")
+    page.locator("#operations-attempts-getAttempt .opblock-summary-control").click()
     page.get_by_placeholder("attempt_id").fill(attempt)
     page.get_by_role("button", name="Execute").click()
     answer = page.locator(".live-responses-table")

@@ -43,7 +43,7 @@ def writing(folder: Path) -> Iterator[str]:
 
 
 # The service is the first fixture, so that it ends last: the page sends requests until its end.
-@pytest.mark.campaign
+@pytest.mark.long
 def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -> None:
     opened = visit()
     page = opened.page
@@ -55,10 +55,10 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     save = page.get_by_role("button", name="Save")
     save.click()
     told = page.get_by_role("status")
-    expect(told.filter(has_text="scara.toml is saved")).to_be_visible()
-    file = folder / "scara.toml"
+    expect(told.filter(has_text="scara-copy.toml is saved")).to_be_visible()
+    file = folder / "scara-copy.toml"
     assert file.read_text(encoding="utf-8") == text.input_value() != written
-    page.reload()
+    page.goto(f"{writing}/tutor/editor?exercise=scara-copy")
     expect(text).to_have_value(file.read_text(encoding="utf-8"))
 
     # If somebody else has changed the file meanwhile, it is not overwritten.
@@ -73,6 +73,6 @@ def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -
     save.click()
     expect(told.filter(has_text="is saved")).to_have_count(0)
     expect(page.locator("#findings li").first).to_be_visible()
-    assert [each.name for each in folder.iterdir()] == ["scara.toml"]
+    assert [each.name for each in folder.iterdir()] == ["scara-copy.toml"]
     assert all("409" in each for each in opened.complaints)
     opened.complaints.clear()

@@ -3,7 +3,8 @@
 from typing import Any, NamedTuple
 
 from service.api.http.lookup import Catalogue
-from service.catalogue import Exercise
+from service.catalogue import Exercise, in_language
+from service.translations import Language, say
 from service.web.assets import Assets
 from service.web.pages import page
 
@@ -18,6 +19,7 @@ class CoursePlace(NamedTuple):
 def attempts_page(
     catalogue: Catalogue,
     assets: Assets,
+    language: Language,
     place: CoursePlace,
     *,
     of_all: bool = True,
@@ -28,11 +30,13 @@ def attempts_page(
     Without ``of_all``, the list always shows one exercise; without ``forgets``, there is no
     deletion, because it concerns all exercises and courses.
     """
-    all_of_them = [("", "All exercises")] if of_all else []
-    choices = [*all_of_them, *((each.id, each.title) for each in catalogue.values())]
+    all_of_them = [("", say("All exercises"))] if of_all else []
+    titles = ((each.id, in_language(each, language).title) for each in catalogue.values())
+    choices = [*all_of_them, *titles]
     return _page(
         "attempts",
         assets,
+        language,
         "../",
         "attempts.js",
         choices=choices,
@@ -41,35 +45,41 @@ def attempts_page(
     )
 
 
-def attempt_page(attempt_id: str, assets: Assets) -> bytes:
+def attempt_page(attempt_id: str, assets: Assets, language: Language) -> bytes:
     """Return the page of an attempt: the answers, their report, and the points that tutors give."""
-    return _page("attempt", assets, "../../", "attempt.js", attempt_id=attempt_id)
+    return _page("attempt", assets, language, "../../", "attempt.js", attempt_id=attempt_id)
 
 
-def statistics_page(exercise: Exercise, assets: Assets, place: CoursePlace) -> bytes:
+def statistics_page(
+    exercise: Exercise, assets: Assets, language: Language, place: CoursePlace
+) -> bytes:
     """Return the page of an exercise with the statistics of its attempts, export, and regrade."""
     return _page(
         "statistics",
         assets,
+        language,
         "../../",
         "statistics.js",
-        exercise=exercise,
+        exercise=in_language(exercise, language),
         **place._asdict(),
     )
 
 
-def nothing_recorded_page(assets: Assets, root: str) -> bytes:
+def nothing_recorded_page(assets: Assets, language: Language, root: str) -> bytes:
     """Return the page that says how to start the service so that it records attempts."""
-    return _page("nothing_recorded", assets, root)
+    return _page("nothing_recorded", assets, language, root)
 
 
-def _page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) -> bytes:
+def _page(
+    name: str, assets: Assets, language: Language, root: str, *scripts: str, **values: Any
+) -> bytes:
     return page(
         f"web/tutor/templates/{name}.html",
         assets,
         root,
         ["page.js", *scripts],
         styles=["tutor.css", "records.css"],
+        language=language,
         tutor=True,
         **values,
     )

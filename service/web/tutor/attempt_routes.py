@@ -4,11 +4,13 @@ import re
 from typing import Final
 
 from fastapi import APIRouter, Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import Response
 
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
 from service.api.permissions.access import require_reach
 from service.web.assets import Assets
+from service.web.page_answer import page_answer
 from service.web.page_headers import PRIVATE_HEADERS
 from service.web.tutor.attempt_pages import (
     CoursePlace,
@@ -27,9 +29,10 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     router = APIRouter(prefix="/tutor", include_in_schema=False)
     access = tutoring.access
 
-    def answer(shown: bytes, root: str) -> Response:
-        content = shown if tutoring.records else nothing_recorded_page(assets, root)
-        return HTMLResponse(content, headers=PRIVATE_HEADERS)
+    def answer(request: Request, shown: bytes, root: str) -> Response:
+        if not tutoring.records:
+            shown = nothing_recorded_page(assets, language_of(request), root)
+        return page_answer(request, shown, PRIVATE_HEADERS)
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
@@ -40,22 +43,24 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
         drawn = attempts_page(
             shown,
             assets,
+            language_of(request),
             _place(request),
             of_all=caller.exercises is None,
             forgets=caller.reaches_all,
         )
-        return answer(drawn, "../")
+        return answer(request, drawn, "../")
 
     @router.get("/attempts/{attempt_id}")
-    async def attempt(attempt_id: str) -> Response:
+    async def attempt(request: Request, attempt_id: str) -> Response:
         """Answer with the page of an attempt."""
-        return answer(attempt_page(attempt_id, assets), "../../")
+        return answer(request, attempt_page(attempt_id, assets, language_of(request)), "../../")
 
     @router.get("/statistics/{exercise_id}")
     async def statistics(request: Request, exercise_id: str) -> Response:
         """Answer with the page of an exercise's statistics and regrade."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        return answer(statistics_page(exercise, assets, _place(request)), "../../")
+        drawn = statistics_page(exercise, assets, language_of(request), _place(request))
+        return answer(request, drawn, "../../")
 
     return router
 

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from urllib.request import Request, urlopen
 
 import pytest
@@ -14,10 +15,10 @@ from tests.browser.languages.test_pseudo_language import UNTOLD, fits
 from tests.guards import ANSWER
 
 # Names that others have given are not translated: titles of exercises, ids, learners.
-OWN = UNTOLD.replace(
-    '"math, code,',
-    '"math, code, tbody, option, bdi, .groups, .gradebook th, .exports, .exercises h2, ',
-)
+NAMED = ".statistics h3, tbody, option, bdi, .groups, .gradebook th, .exports, .exercises h2"
+OWN = UNTOLD.replace('"math, code,', f'"math, code, time, {NAMED}, ')
+# Ids, and the headings of a class list, which are those of the file.
+GIVEN = {"robots", "homework-1", "Planar RR arm", "SCARA manipulator", "placeholder: id,name,email"}
 ASSIGNMENT = {
     "id": "homework-1",
     "title": "Hómework",
@@ -32,16 +33,21 @@ def test_the_pages_of_a_course_are_told(visit: Callable[..., Visit], tmp_path: P
     database = {"DH_GRADER_DATABASE": str(tmp_path / "attempts.db")}
     with served(tmp_path, module="tests.translations.pseudo", **database) as server:
 
-        def post(path: str, body: object) -> None:
+        def post(path: str, body: object) -> Any:
             content = json.dumps(body).encode()
             headers = {"Content-Type": "application/json"}
             request = Request(f"{server.address}/v1/{path}", content, headers)
             with urlopen(request, timeout=ANSWER) as answer:
                 assert answer.status in (200, 201)
+                return json.load(answer)
 
         post("courses", {"id": "robots", "title": "Róbots", "zone": "Europe/Berlin"})
         post("courses/robots/learners", {"csv": "id,name\nu1,Ádá\n"})
         post("courses/robots/assignments", ASSIGNMENT)
+        answers = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
+        body = {"learner": "u1", "answers": answers}
+        attempt = post("exercises/planar-rr/attempts", body | {"answers": {"table": "7 0 0 θ1"}})
+        post("exercises/scara/attempts", body)
         page = visit().page
         for path in (
             "tutor",
@@ -51,6 +57,10 @@ def test_the_pages_of_a_course_are_told(visit: Callable[..., Visit], tmp_path: P
             "tutor/courses/robots/gradebook",
             "tutor/courses/robots/learner?learner=u1",
             "tutor/class",
+            "tutor/attempts",
+            "tutor/attempts?course=robots&assignment=homework-1",
+            f"tutor/attempts/{attempt['attempt']['id']}",
+            "tutor/statistics/scara",
         ):
             page.goto(f"{server.address}/{path}{'&' if '?' in path else '?'}lang=qps")
             page.wait_for_load_state("networkidle")
@@ -58,8 +68,7 @@ def test_the_pages_of_a_course_are_told(visit: Callable[..., Visit], tmp_path: P
             for each in page.locator("details").all():
                 each.evaluate("each => each.open = true")
             untold = page.evaluate(OWN)
-            # The headings of a class list are those of the file.
-            assert set(untold) <= {"placeholder: id,name,email"}, f"{path}: {untold}"
+            assert set(untold) <= GIVEN, f"{path}: {untold}"
             fits(page)
         page.goto(f"{server.address}/tutor/courses/robots/assignments/homework-1?lang=de")
         page.get_by_text("Löschen", exact=True).click()

@@ -1,7 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { decimal, message, number, points, visible } from "../../../service/web/static/shared/dom.js";
-import { count, dayName, earned, percent, query, startOf } from "../../../service/web/static/tutor/records/records.js";
+import {
+  attemptsInWords,
+  dayName,
+  earned,
+  percent,
+  query,
+  startOf,
+} from "../../../service/web/static/tutor/records/records.js";
 
 test("invisible characters are shown as code points", () => {
   assert.equal(visible("a\u202eb\u200bc"), "a[U+202E]b[U+200B]c");
@@ -57,7 +64,7 @@ test("a day begins at midnight of the browser, also over the end of a month", ()
 });
 
 test("numbers and days are written as in English", () => {
-  assert.equal(count(1, "attempt"), "1 attempt");
-  assert.equal(count(1200, "attempt"), "1,200 attempts");
+  assert.equal(attemptsInWords(1), "1 attempt");
+  assert.equal(attemptsInWords(1200), "1,200 attempts");
   assert.equal(dayName("2026-11-22"), "22 Nov 2026");
 });

@@ -3,6 +3,7 @@
 import { byId, h, number, points, visible } from "../../shared/dom.js";
 import { RecordedReport } from "./recorded_report.js";
 import { earned, failed, learnerName, moment, percent, tell } from "./records.js";
+import { placed, worded } from "../../shared/words/words.js";
 import { address, get, send } from "../tutor_service.js";
 
 const id = byId("main", HTMLElement).dataset.attempt ?? "";
@@ -41,7 +42,7 @@ function show(found, exercise, attempts) {
   document.title = `${title} · DH Grader`;
   const drawn = new RecordedReport(exercise, found.submission);
   drawn.show(found.report);
-  const about = h("section", { class: "card facts", "aria-label": "Facts" });
+  const about = h("section", { class: "card facts", "aria-label": worded("Facts") });
   const given = new OverrideForm(attempt, (changed) => update(changed));
   /** @type {(now: Api.AttemptDetail) => void} */
   const update = (now) => {
@@ -61,12 +62,14 @@ function show(found, exercise, attempts) {
 function reports({ report, earlier_reports: earlier }, drawn) {
   if (!earlier.length) return null;
   const all = [
-    { report, text: `Newest report: ${points(report.points, report.max_points)}` },
+    { report, text: worded("Newest report: {points}", { points: points(report.points, report.max_points) }) },
     ...earlier.toReversed().map((each) => ({
       report: each.report,
-      text: `Until ${moment(each.replaced_at).textContent}: ${
-        points(each.report.points, each.max_points)
-      }, version ${each.version}`,
+      text: worded("Until {when}: {points}, version {version}", {
+        when: moment(each.replaced_at).textContent ?? "",
+        points: points(each.report.points, each.max_points),
+        version: each.version,
+      }),
     })),
   ];
   const options = all.map(({ text }, i) => h("option", { value: i }, visible(text)));
@@ -76,7 +79,7 @@ function reports({ report, earlier_reports: earlier }, drawn) {
     { id: "which-report", onchange: () => drawn.show(all[choice.selectedIndex].report) },
     ...options,
   );
-  return h("p", { class: "field" }, h("label", { for: "which-report" }, "Report"), choice);
+  return h("p", { class: "field" }, h("label", { for: "which-report" }, worded("Report")), choice);
 }
 
 /** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
@@ -87,35 +90,46 @@ function facts({ attempt, submission, report, hints = [] }, exercise, attempts) 
   const isOld = exercise && exercise.version !== version;
   /** @type {([string, Front.Child] | false)[]} */
   const pairs = [
-    ["Learner", list({ learner }, learnerName(learner))],
-    ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
+    [worded("Learner"), list({ learner }, learnerName(learner))],
+    [worded("Exercise"), list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
     variant !== undefined && [
-      "Variant",
+      worded("Variant"),
       h("a", { href: address(`exercises/${attempt.exercise}~${variant}`) }, h("code", {}, variant)),
     ],
-    ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
+    [worded("Handed in"), h("span", {}, moment(at), late ? `, ${worded("late")}` : "")],
     [
-      "Attempt",
+      worded("Attempt"),
       ordinal === undefined
-        ? `does not count: ${isEmpty(submission.answers) ? "it is empty" : "nothing could be read"}`
-        : `no. ${ordinal}`,
+        ? isEmpty(submission.answers)
+          ? worded("does not count: it is empty")
+          : worded("does not count: nothing could be read")
+        : worded("no. {number}", { number: ordinal }),
     ],
     attempts.length > 1 &&
-    ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
-    ["Points", h("strong", {}, earned(attempt))],
-    attempt.awarded !== undefined && ["Without the override", points(attempt.points, attempt.max_points)],
+    [worded("All attempts"), h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
+    [worded("Points"), h("strong", {}, earned(attempt))],
+    attempt.awarded !== undefined && [worded("Without the override"), points(attempt.points, attempt.max_points)],
     (late || cost > 0) && report.points > 0 &&
     [
-      "Points in the report",
+      worded("Points in the report"),
       [
         points(report.points, report.max_points),
-        cost > 0 && `−${number(cost)} for hints`,
+        cost > 0 && worded("−{points} for hints", { points: number(cost) }),
         late && report.points > cost && lateShare(attempt.points / (report.points - cost)),
       ].filter(Boolean).join(", "),
     ],
-    hints.length > 0 && ["Hints before it", h("ul", {}, ...hints.map(hintInWords))],
-    ["Angles without a unit", String(submission.angle_unit ?? "radians")],
-    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the current version)" : ""}, program ${grader}`)],
+    hints.length > 0 && [worded("Hints before it"), h("ul", {}, ...hints.map(hintInWords))],
+    [worded("Angles without a unit"), submission.angle_unit === "degrees" ? worded("degrees") : worded("radians")],
+    [
+      worded("Graded by"),
+      h(
+        "span",
+        {},
+        isOld
+          ? worded("exercise {version} (not the current version), program {grader}", { version, grader })
+          : worded("exercise {version}, program {grader}", { version, grader }),
+      ),
+    ],
   ];
   const shown = pairs.filter((pair) => pair !== false);
   return h("dl", {}, ...shown.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
@@ -127,9 +141,12 @@ function hintInWords({ part, code, row, cell, step, price }) {
   return h(
     "li",
     {},
-    `step ${step} of `,
-    h("code", {}, code),
-    ` at ${visible(where)}${price ? `, ${percent(price)}` : ""}`,
+    ...placed(worded("step {step} of {code} at {place}"), {
+      step: String(step),
+      code: h("code", {}, code),
+      place: visible(where),
+    }),
+    price ? `, ${percent(price)}` : "",
   );
 }
 
@@ -139,8 +156,9 @@ function hintInWords({ part, code, row, cell, step, price }) {
  * @param {number} share
  */
 function lateShare(share) {
-  if (share > 0.999) return "all of it counts although it is late";
-  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it counts because it is late`;
+  if (share > 0.999) return worded("all of it counts although it is late");
+  if (Math.abs(share - 0.5) < 0.001) return worded("half of it counts because it is late");
+  return worded("{share} of it counts because it is late", { share: percent(share) });
 }
 
 /**
@@ -161,8 +179,16 @@ function isEmpty(answer) {
  */
 function ofLearner({ id: other, ordinal }) {
   const name = ordinal === undefined ? "–" : String(ordinal);
-  const spoken = ordinal === undefined ? "an attempt that does not count" : `no. ${ordinal}`;
-  if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
+  const spoken = ordinal === undefined
+    ? worded("an attempt that does not count")
+    : worded("no. {number}", { number: ordinal });
+  if (other === id) {
+    return h(
+      "li",
+      {},
+      h("strong", { "aria-current": "true", "aria-label": worded("{attempt}, shown", { attempt: spoken }) }, name),
+    );
+  }
   return h(
     "li",
     {},
@@ -195,20 +221,20 @@ class OverrideForm {
     });
     this.reason = h("input", { id: "reason", type: "text", maxlength: 1000, required: true, autocomplete: "off" });
     this.author = h("input", { id: "author", type: "text", maxlength: 150, autocomplete: "name" });
-    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw override");
+    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, worded("Withdraw override"));
     this.told = h("p", { class: "state-line", role: "status" });
     this.list = h("ul", { class: "given" });
     this.element = h(
       "section",
       { class: "card override", "aria-labelledby": "override-title" },
-      h("h2", { id: "override-title" }, "Override mark"),
+      h("h2", { id: "override-title" }, worded("Override mark")),
       h(
         "form",
         { onsubmit: (event) => this.#give(event) },
-        field("Points", this.points, `of ${number(most)}`),
-        field("Reason", this.reason, "recorded, but not shown to the learner"),
-        field("Your name", this.author, "if several tutors override marks"),
-        h("p", { class: "choices" }, h("button", { type: "submit" }, "Save"), this.withdrawal),
+        field(worded("Points"), this.points, worded("of {points}", { points: number(most) })),
+        field(worded("Reason"), this.reason, worded("recorded, but not shown to the learner")),
+        field(worded("Your name"), this.author, worded("if several tutors override marks")),
+        h("p", { class: "choices" }, h("button", { type: "submit" }, worded("Save")), this.withdrawal),
       ),
       this.told,
       this.list,
@@ -239,8 +265,8 @@ class OverrideForm {
       tell(
         this.told,
         isWithdrawal
-          ? "Override withdrawn: the points of the report count."
-          : `The attempt has ${number(awarded)} points.`,
+          ? worded("Override withdrawn: the points of the report count.")
+          : worded("The attempt has {points} points.", { points: number(awarded) }),
       );
     } catch (error) {
       failed(error, this.told);
@@ -266,7 +292,7 @@ function override({ points: given, reason, author, at }) {
   return h(
     "li",
     {},
-    h("strong", {}, given === undefined ? "Withdrawn" : `${number(given)} points`),
+    h("strong", {}, given === undefined ? worded("Withdrawn") : worded("{points} points", { points: number(given) })),
     ": ",
     h("bdi", {}, visible(reason)),
     h("span", { class: "quiet" }, " ", h("bdi", {}, visible(author)), ", ", moment(at)),

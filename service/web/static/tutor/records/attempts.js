@@ -2,7 +2,8 @@
 
 import { byId, h } from "../../shared/dom.js";
 import {
-  count,
+  attemptsInWords,
+  counted,
   earned,
   failed,
   fieldOf,
@@ -16,6 +17,7 @@ import {
   tell,
   within,
 } from "./records.js";
+import { placed, worded, wordedFor } from "../../shared/words/words.js";
 import { address, get, send } from "../tutor_service.js";
 
 const FIELDS = ["exercise", "learner", "since", "until", "counted"];
@@ -53,16 +55,17 @@ function draw({ attempts, next }, wanted) {
     tell(state, "");
     const isNarrowed = Object.values(wanted).some(Boolean);
     list.replaceChildren(
-      isNarrowed ? nothing("No attempt matches the filters", "Remove a filter.") : nothing(
-        "Nobody has handed in yet",
-        "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts.",
+      isNarrowed ? nothing(worded("No attempt matches the filters"), worded("Remove a filter.")) : nothing(
+        worded("Nobody has handed in yet"),
+        worded("Attempts appear here when a course records them: POST /v1/exercises/{{id}}/attempts."),
       ),
     );
     return;
   }
   const page = cursors.length;
-  const more = next || page > 1 ? `Page ${page}: ` : "";
-  tell(state, `${more}${count(attempts.length, "attempt")}${next ? ", and there are older ones" : ""}.`);
+  const found = attemptsInWords(attempts.length);
+  if (next) tell(state, worded("Page {page}: {found}, and there are older ones.", { page, found }));
+  else tell(state, page > 1 ? worded("Page {page}: {found}.", { page, found }) : `${found}.`);
   list.replaceChildren(
     wanted.exercise
       ? h(
@@ -71,11 +74,15 @@ function draw({ attempts, next }, wanted) {
         h(
           "a",
           { href: address(`tutor/statistics/${encodeURIComponent(wanted.exercise)}`) },
-          "Statistics and regrade of this exercise",
+          worded("Statistics and regrade of this exercise"),
         ),
       )
       : "",
-    table("Attempts", ["When", "Learner", "Points", "No.", "Exercise", "Remarks"], attempts.map(row)),
+    table(
+      worded("Attempts"),
+      [worded("When"), worded("Learner"), worded("Points"), worded("No."), worded("Exercise"), worded("Remarks")],
+      attempts.map(row),
+    ),
     pages(next),
   );
 }
@@ -84,16 +91,16 @@ function draw({ attempts, next }, wanted) {
 function row(attempt) {
   const { id, exercise, learner, ordinal, at, is_late: late, awarded } = attempt;
   const remarks = [
-    ordinal === undefined && "nothing readable",
-    late && "late",
-    awarded !== undefined && "mark overridden",
+    ordinal === undefined && worded("nothing readable"),
+    late && worded("late"),
+    awarded !== undefined && worded("mark overridden"),
   ];
   // The link keeps the filters, so that the attempt's page can link back to this list.
   const open = h(
     "a",
     { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search },
     moment(at),
-    h("span", { class: "aloud" }, " by ", learnerName(learner)),
+    h("span", { class: "aloud" }, " ", ...placed(worded("by {learner}"), { learner: learnerName(learner) })),
   );
   return [
     open,
@@ -118,11 +125,11 @@ function pages(next) {
   };
   return h(
     "nav",
-    { class: "pages", "aria-label": "Pages of the list" },
+    { class: "pages", "aria-label": worded("Pages of the list") },
     cursors.length > 1
-      ? h("button", { type: "button", onclick: turnTo(cursors.slice(0, -1)) }, "Newer attempts")
+      ? h("button", { type: "button", onclick: turnTo(cursors.slice(0, -1)) }, worded("Newer attempts"))
       : null,
-    next ? h("button", { type: "button", onclick: turnTo([...cursors, next]) }, "Older attempts") : null,
+    next ? h("button", { type: "button", onclick: turnTo([...cursors, next]) }, worded("Older attempts")) : null,
   );
 }
 
@@ -161,7 +168,9 @@ async function lookUp(event) {
   try {
     /** @type {Api.ForgottenData} */
     const found = await send("v1/learners/forget", { learner });
-    if (!found.attempts && !found.courses) return tell(forgetState(), `Nothing is recorded for ${learner}.`);
+    if (!found.attempts && !found.courses) {
+      return tell(forgetState(), worded("Nothing is recorded for {learner}.", { learner }));
+    }
     tell(forgetState(), "");
     return confirm(found);
   } catch (error) {
@@ -172,10 +181,11 @@ async function lookUp(event) {
 /** @param {Api.ForgottenData} found */
 const amounts = ({ attempts, earlier_reports: earlier, overrides, courses }) =>
   [
-    count(attempts, "attempt"),
-    earlier && count(earlier, "earlier report"),
-    overrides && count(overrides, "overridden mark"),
-    courses && `the place in ${count(courses, "course")}`,
+    attemptsInWords(attempts),
+    earlier &&
+    wordedFor("{count} earlier report", "{count} earlier reports", earlier, { count: counted(earlier) }),
+    overrides && wordedFor("{count} overridden mark", "{count} overridden marks", overrides),
+    courses && wordedFor("the place in {count} course", "the place in {count} courses", courses),
   ]
     .filter(Boolean)
     .join(", ");
@@ -187,18 +197,21 @@ function confirm(found) {
   const dialog = h(
     "dialog",
     { "aria-labelledby": "forget-title", onclose: () => dialog.remove() },
-    h("h2", { id: "forget-title" }, "Forget ", learnerName(found.learner), "?"),
-    h("p", {}, `This permanently deletes ${amounts(found)}. Backups are not changed.`),
+    h(
+      "h2",
+      { id: "forget-title" },
+      ...placed(worded("Forget {learner}?"), { learner: learnerName(found.learner) }),
+    ),
+    h("p", {}, worded("This permanently deletes {data}. Backups are not changed.", { data: amounts(found) })),
     h(
       "p",
       { class: "choices" },
       h(
         "button",
         { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) },
-        "Delete all data of ",
-        learnerName(found.learner),
+        ...placed(worded("Delete all data of {learner}"), { learner: learnerName(found.learner) }),
       ),
-      h("button", { type: "button", autofocus: true, onclick: close }, "Cancel"),
+      h("button", { type: "button", autofocus: true, onclick: close }, worded("Cancel")),
     ),
   );
   document.body.append(dialog);
@@ -211,9 +224,12 @@ async function forget(learner) {
     /** @type {Api.ForgottenData} */
     const deleted = await send("v1/learners/forget", { learner, apply: true });
     const later = deleted.erased === false
-      ? " Another program is reading the database. The deleted text is overwritten in its files when that program ends."
+      ? worded(
+        "Another program is reading the database. The deleted text is overwritten in its files when that program ends.",
+      )
       : "";
-    tell(forgetState(), `Deleted for ${learner}: ${amounts(deleted)}.${later}`);
+    const told = worded("Deleted for {learner}: {data}.", { learner, data: amounts(deleted) });
+    tell(forgetState(), later ? `${told} ${later}` : told);
     fieldOf("forgotten").value = "";
     await changed();
   } catch (error) {

@@ -1,6 +1,7 @@
 // A small bar chart of counts by day, with its text alternative.
 
 import { dayName } from "./records.js";
+import { worded } from "../../shared/words/words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 160;
@@ -66,7 +67,9 @@ function inWords(counts) {
   const days = Object.entries(counts);
   const most = days.toSorted((one, other) => other[1] - one[1]).slice(0, MOST_SAID).sort();
   const said = most.map(([day, times]) => `${dayName(day)}: ${times}`).join(", ");
-  return days.length > most.length ? `most on ${said}; ${days.length} days in all` : said;
+  return days.length > most.length
+    ? worded("most on {days}; {count} days in all", { days: said, count: days.length })
+    : said;
 }
 
 /** @param {string} tag @param {Record<string, string | number>} attributes */

@@ -2,6 +2,7 @@
 
 import { make } from "./days_chart.js";
 import { percent } from "./records.js";
+import { worded } from "../../shared/words/words.js";
 
 const WIDTH = 120;
 const HEIGHT = 36;
@@ -18,7 +19,9 @@ export function learningCurve(having, all) {
   if (shares.length < 2) return null;
   const step = (WIDTH - 2 * MARGIN) / (shares.length - 1);
   const points = shares.map((share, i) => [MARGIN + i * step, HEIGHT - MARGIN - share * (HEIGHT - 2 * MARGIN)]);
-  const told = shares.map((share, i) => `attempt ${i + 1}: ${percent(share)} of ${all[i]}`).join(", ");
+  const told = shares.map((share, i) =>
+    worded("attempt {number}: {share} of {all}", { number: i + 1, share: percent(share), all: all[i] })
+  ).join(", ");
   const size = { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT };
   const drawn = make("svg", { ...size, role: "img", "aria-label": told, class: "curve" });
   const title = make("title", {});

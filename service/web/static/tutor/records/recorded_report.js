@@ -1,11 +1,13 @@
 // A recorded submission with its report, as the student saw it. It is read-only.
 
-import { h, points, visible } from "../../shared/dom.js";
+import { h, visible } from "../../shared/dom.js";
 import { cellsOf } from "../../student/handin/answer_cells.js";
 import { lostItems } from "../../student/report/lost_points.js";
 import { item } from "../../student/messages.js";
 import { PartView } from "../../student/part_view.js";
 import { Previewer } from "../../student/previewer.js";
+import { earnedInWords, verdictName } from "../../shared/words/phrases.js";
+import { worded } from "../../shared/words/words.js";
 import { send } from "../tutor_service.js";
 import { playedTable } from "../../student/report/played_table.js";
 
@@ -172,10 +174,10 @@ function bare(report) {
       "header",
       {},
       h("h2", {}, visible(part)),
-      h("span", { class: "badge", "data-verdict": verdict }, verdict),
-      h("span", { class: "points" }, `${points(earned, most)} points`),
+      h("span", { class: "badge", "data-verdict": verdict }, verdictName(verdict)),
+      h("span", { class: "points" }, earnedInWords(earned, most)),
     ),
-    h("p", { class: "quiet" }, "The exercise no longer has this part."),
+    h("p", { class: "quiet" }, worded("The exercise no longer has this part.")),
     h("ul", { class: "messages", hidden: !items.length }, ...items),
   );
 }
@@ -188,7 +190,7 @@ function asSent(answer) {
   return h(
     "details",
     { class: "as-sent" },
-    h("summary", {}, "As it was sent"),
+    h("summary", {}, worded("As it was sent")),
     h("pre", { tabindex: 0 }, h("code", {}, lines)),
   );
 }

@@ -1,10 +1,13 @@
 // Helpers of the pages of recorded attempts: numbers and times as text, messages, tables.
 
 import { byId, h, number, points, visible } from "../../shared/dom.js";
+import { language, wordedFor } from "../../shared/words/words.js";
 import { address, refusal } from "../tutor_service.js";
 
-const MOMENT = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
-const DAY = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeZone: "UTC" });
+// English dates as most countries write them: the day first.
+const TAG = language === "en" ? "en-GB" : language;
+const MOMENT = new Intl.DateTimeFormat(TAG, { dateStyle: "medium", timeStyle: "short" });
+const DAY = new Intl.DateTimeFormat(TAG, { dateStyle: "medium", timeZone: "UTC" });
 
 /**
  * Return a time in the browser's time zone.
@@ -27,8 +30,16 @@ export const dayName = (day) => DAY.format(new Date(`${day}T00:00:00Z`));
  */
 export const learnerName = (learner) => h("bdi", {}, visible(learner));
 
-/** @param {number} many @param {string} noun */
-export const count = (many, noun) => `${many.toLocaleString("en-GB")} ${noun}${many === 1 ? "" : "s"}`;
+/** Return a count with the separators of thousands of the language. @param {number} many */
+export const counted = (many) => many.toLocaleString(TAG);
+
+/** @param {number} many */
+export const attemptsInWords = (many) =>
+  wordedFor("{count} attempt", "{count} attempts", many, { count: counted(many) });
+
+/** @param {number} many */
+export const learnersInWords = (many) =>
+  wordedFor("{count} learner", "{count} learners", many, { count: counted(many) });
 
 /**
  * Return a share in whole per cent; only a share of 1 becomes 100.

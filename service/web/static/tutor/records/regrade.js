@@ -1,7 +1,8 @@
 // The regrade of an exercise: first a preview of the changes with their reasons, then the regrade itself.
 
 import { h, message, number, points } from "../../shared/dom.js";
-import { count, failed, learnerName, query, span, table, tell } from "./records.js";
+import { attemptsInWords, failed, learnerName, query, span, table, tell } from "./records.js";
+import { worded } from "../../shared/words/words.js";
 import { address, pause, sendPatiently } from "../tutor_service.js";
 
 // How many changes are listed.
@@ -17,11 +18,15 @@ const OTHERS = 1;
  */
 export function regradeForm(exercise, done) {
   const state = h("p", { class: "state-line", role: "status" });
-  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts regraded" });
+  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": worded("Attempts regraded") });
   const changes = h("div", {});
-  const preview = h("button", { type: "button", onclick: () => run(false) }, "Preview regrade");
-  const write = h("button", { type: "button", hidden: true, onclick: () => run(true) }, "Write the new reports");
-  const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, "Stop");
+  const preview = h("button", { type: "button", onclick: () => run(false) }, worded("Preview regrade"));
+  const write = h(
+    "button",
+    { type: "button", hidden: true, onclick: () => run(true) },
+    worded("Write the new reports"),
+  );
+  const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, worded("Stop"));
   let isStopped = false;
 
   /** @param {boolean} apply */
@@ -30,7 +35,7 @@ export function regradeForm(exercise, done) {
     preview.disabled = write.disabled = true;
     stop.hidden = bar.hidden = false;
     bar.removeAttribute("value");
-    tell(state, apply ? "Writing …" : "Grading …");
+    tell(state, apply ? worded("Writing …") : worded("Grading …"));
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement : preview;
     try {
       const { graded, changed, left } = await allSteps(apply);
@@ -74,16 +79,23 @@ export function regradeForm(exercise, done) {
   /** @param {boolean} apply @param {number} graded @param {Api.AttemptChange[]} changed @param {number} left */
   function told(apply, graded, changed, left) {
     const kept = changed.filter(({ awarded }) => awarded !== undefined).length;
-    const ofWhich = kept ? `; ${kept} of these would keep the overridden mark` : "";
-    const stopped = left ? ` Stopped: ${count(left, "attempt")} left.` : "";
-    if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The earlier reports are kept.${stopped}`);
-    else if (!graded) tell(state, "All attempts were graded by this version of the exercise and of the program.");
-    else {tell(
-        state,
-        `${
-          count(graded, "attempt")
-        } graded by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
-      );}
+    const found = { attempts: attemptsInWords(graded), changed: changed.length, kept };
+    let result = "";
+    if (apply) result = worded("Regraded: {attempts}. The earlier reports are kept.", found);
+    else if (!graded) result = worded("All attempts were graded by this version of the exercise and of the program.");
+    else if (!kept) {
+      result = worded(
+        "{attempts} graded by another version; {changed} would change. Nothing is written yet.",
+        found,
+      );
+    } else {
+      result = worded(
+        "{attempts} graded by another version; {changed} would change; {kept} of these would keep the overridden mark. Nothing is written yet.",
+        found,
+      );
+    }
+    const stopped = left ? worded("Stopped: {attempts} left.", { attempts: attemptsInWords(left) }) : "";
+    tell(state, stopped ? `${result} ${stopped}` : result);
     changes.replaceChildren(...(changed.length ? [list(changed)] : []));
   }
 
@@ -96,20 +108,33 @@ export function regradeForm(exercise, done) {
         "a",
         { href: address(`tutor/attempts/${encodeURIComponent(id)}`) },
         learnerName(learner),
-        h("span", { class: "aloud" }, `, attempt ${ordinal ?? "that does not count"}`),
+        h(
+          "span",
+          { class: "aloud" },
+          ", ",
+          ordinal === undefined
+            ? worded("an attempt that does not count")
+            : worded("attempt {number}", { number: ordinal }),
+        ),
       ),
       String(ordinal ?? "–"),
       `${points(before, most).split(" / ")[0]} → ${points(after, most)}`,
       h(
         "span",
         {},
-        ...message(reasons.join("; ") || "the rule for late attempts"),
-        awarded === undefined ? "" : `; the overridden mark ${number(awarded)} stays`,
+        ...message(reasons.join("; ") || worded("the rule for late attempts")),
+        ...(awarded === undefined
+          ? []
+          : ["; ", worded("the overridden mark {points} stays", { points: number(awarded) })]),
       ),
     ]);
     const more = changed.length - rows.length;
-    const all = table("Changes", ["Learner", "No.", "Points", "Why"], rows);
-    return h("div", {}, all, more > 0 ? h("p", { class: "quiet" }, `and ${more} more`) : null);
+    const all = table(
+      worded("Changes"),
+      [worded("Learner"), worded("No."), worded("Points"), worded("Why")],
+      rows,
+    );
+    return h("div", {}, all, more > 0 ? h("p", { class: "quiet" }, worded("and {count} more", { count: more })) : null);
   }
 
   return h(
@@ -118,7 +143,9 @@ export function regradeForm(exercise, done) {
     h(
       "p",
       { class: "quiet" },
-      "Grade again all attempts that were graded by another version of the exercise or of the program, for example after a correction. Overridden marks and the earlier reports are kept.",
+      worded(
+        "Grade again all attempts that were graded by another version of the exercise or of the program, for example after a correction. Overridden marks and the earlier reports are kept.",
+      ),
     ),
     h("p", { class: "choices" }, preview, write, stop),
     bar,

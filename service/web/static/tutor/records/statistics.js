@@ -6,8 +6,22 @@ import { learningCurve } from "./learning_curve.js";
 import { pair } from "../../shared/pasted_block.js";
 import { layoutOf } from "../../student/kinds.js";
 import { cellsInWords } from "../../student/report/places.js";
-import { count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
+import {
+  attemptsInWords,
+  counted,
+  failed,
+  learnerName,
+  learnersInWords,
+  nothing,
+  percent,
+  query,
+  showExports,
+  span,
+  table,
+  tell,
+} from "./records.js";
 import { regradeForm } from "./regrade.js";
+import { placed, worded, wordedFor } from "../../shared/words/words.js";
 import { address, get } from "../tutor_service.js";
 
 const exercise = byId("main", HTMLElement).dataset.exercise ?? "";
@@ -81,41 +95,50 @@ function draw(statistics) {
     const isNarrowed = Object.values(span()).some(Boolean);
     place.replaceChildren(
       nothing(
-        isNarrowed ? "Nobody handed in on these days" : "Nobody has handed in yet",
-        "Statistics appear here after the first recorded attempt.",
+        isNarrowed ? worded("Nobody handed in on these days") : worded("Nobody has handed in yet"),
+        worded("Statistics appear here after the first recorded attempt."),
       ),
     );
     return;
   }
   tell(
     state,
-    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Every attempt counts.`,
+    worded("{attempts} of {learners}. Every attempt counts.", {
+      attempts: attemptsInWords(attempts),
+      learners: learnersInWords(learners),
+    }),
   );
   place.replaceChildren(
     section(
-      "Right answers",
-      "The share of answers that are right. An unreadable part or cell counts as an answer that is not right. If a whole table is unreadable, its rows are not counted.",
+      worded("Right answers"),
+      worded(
+        "The share of answers that are right. An unreadable part or cell counts as an answer that is not right. If a whole table is unreadable, its rows are not counted.",
+      ),
       parts.map(partShares),
     ),
     section(
-      "Misconceptions",
-      "How many attempts have each misconception, the most frequent first, and on which days (UTC). The sentence is an example from one of the reports. The learning curve is the share of learners who have it in their first attempt, their second one, and so on.",
+      worded("Misconceptions"),
+      worded(
+        "How many attempts have each misconception, the most frequent first, and on which days (UTC). The sentence is an example from one of the reports. The learning curve is the share of learners who have it in their first attempt, their second one, and so on.",
+      ),
       [
         misconceptions.length
           ? folded(misconceptions, slipsOf(misconceptions, statistics.learners_by_attempt ?? []))
-          : h("p", {}, "None found."),
+          : h("p", {}, worded("None found.")),
       ],
     ),
     hints.length
-      ? section("Hints", "How often learners took each step of the hints for a message.", [folded(hints, hintsTaken)])
+      ? section(worded("Hints"), worded("How often learners took each step of the hints for a message."), [
+        folded(hints, hintsTaken),
+      ])
       : "",
     section(
-      "Identical wrong answers",
-      "Several learners sent exactly the same wrong answer. This does not prove that anybody copied.",
+      worded("Identical wrong answers"),
+      worded("Several learners sent exactly the same wrong answer. This does not prove that anybody copied."),
       [
         identical.length
           ? folded(identical, (groups) => h("ul", { class: "groups" }, ...groups.map(group)))
-          : h("p", {}, "None found."),
+          : h("p", {}, worded("None found.")),
       ],
     ),
   );
@@ -128,8 +151,11 @@ const section = (title, note, content) =>
 /** @param {Api.PartFigures} figures */
 function partShares({ part, rows, ...share }) {
   const told = share.share === undefined
-    ? "nobody answered"
-    : `${percent(share.share)} right of ${count(share.answered, "answer")}`;
+    ? worded("nobody answered")
+    : wordedFor("{share} right of {count} answer", "{share} right of {count} answers", share.answered, {
+      share: percent(share.share),
+      count: counted(share.answered),
+    });
   const body = rows.length ? shares(part, rows) : null;
   return h(
     "section",
@@ -151,18 +177,18 @@ function shares(part, rows) {
   // In a list, a row has only one cell.
   const shown = names.get(part)?.isList ? [] : labels;
   const heads = [
-    "Row",
+    worded("Row"),
     ...shown.map((label) => columnName(part, label)),
-    shown.length ? "Whole row" : "Right",
-    "Answers",
+    shown.length ? worded("Whole row") : worded("Right"),
+    worded("Answers"),
   ];
   const body = rows.map(({ label, cells, ...whole }) => [
     rowName(part, label),
     ...shown.map((each) => shareCell(cells.find((cell) => cell.label === each))),
     shareCell(whole),
-    h("td", { class: "answers" }, whole.answered.toLocaleString("en-GB")),
+    h("td", { class: "answers" }, counted(whole.answered)),
   ]);
-  return table(`Shares: ${titleOf(part)}`, heads, body);
+  return table(worded("Shares: {part}", { part: titleOf(part) }), heads, body);
 }
 
 /** @param {Figures | undefined} figures */
@@ -171,7 +197,11 @@ function shareCell(figures) {
   const told = figures.share === undefined ? "–" : percent(figures.share);
   return h(
     "td",
-    { class: "share", "data-share": band(figures), title: `${figures.correct} of ${figures.answered}` },
+    {
+      class: "share",
+      "data-share": band(figures),
+      title: worded("{count} of {all}", { count: figures.correct, all: figures.answered }),
+    },
     told,
   );
 }
@@ -204,14 +234,18 @@ function slipsOf(misconceptions, learners) {
     learningCurve(having, learners) ?? "",
   ];
   return (/** @type {Api.MisconceptionFigures[]} */ shown) =>
-    table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days", "Learning curve"], shown.map(row));
+    table(
+      worded("Misconceptions"),
+      [worded("Misconception"), worded("Part"), worded("Attempts"), worded("Over days"), worded("Learning curve")],
+      shown.map(row),
+    );
 }
 
 /** @param {Api.HintFigures[]} hints */
 const hintsTaken = (hints) =>
   table(
-    "Hints",
-    ["Message", "Part", "What to look at", "The rule", "The rule here"],
+    worded("Hints"),
+    [worded("Message"), worded("Part"), worded("What to look at"), worded("The rule"), worded("The rule here")],
     hints.map(({ part, code, taken }) => [h("code", {}, visible(code)), titleOf(part), ...taken.map(String)]),
   );
 
@@ -221,19 +255,22 @@ function group({ learners, attempts, wrong, among }) {
     i ? ", " : "",
     h("a", { href: address(`tutor/attempts?${new URLSearchParams({ exercise, learner })}`) }, learnerName(learner)),
   ]);
-  const more = learners > among.length ? ` and ${learners - among.length} more` : "";
+  const more = learners > among.length ? ` ${worded("and {count} more", { count: learners - among.length })}` : "";
+  const many = h("strong", {}, learnersInWords(learners));
   return h(
     "li",
     { class: "card" },
     h(
       "p",
       {},
-      h("strong", {}, count(learners, "learner")),
-      attempts > learners ? ` in ${count(attempts, "attempt")}: ` : ": ",
+      ...(attempts > learners
+        ? placed(worded("{learners} in {attempts}:"), { learners: many, attempts: attemptsInWords(attempts) })
+        : placed(worded("{learners}:"), { learners: many })),
+      " ",
       ...names,
       more,
     ),
-    h("p", { class: "quiet" }, `Wrong in ${placesInWords(wrong)}`),
+    h("p", { class: "quiet" }, worded("Wrong in {places}", { places: placesInWords(wrong) })),
   );
 }
 
@@ -261,7 +298,7 @@ function placesInWords(places) {
 }
 
 /** @param {string} row */
-const inWords = (row) => (row.includes(" ") ? row : `row ${row}`);
+const inWords = (row) => (row.includes(" ") ? row : worded("row {row}", { row }));
 
 /**
  * Return the first items as they are drawn, and the rest folded below.
@@ -274,7 +311,9 @@ function folded(all, draw) {
   const [first, rest] = [all.slice(0, SHOWN), all.slice(SHOWN)];
   return [
     draw(first),
-    rest.length ? h("details", { class: "source" }, h("summary", {}, `${rest.length} more`), draw(rest)) : null,
+    rest.length
+      ? h("details", { class: "source" }, h("summary", {}, worded("{count} more", { count: rest.length })), draw(rest))
+      : null,
   ];
 }
 
