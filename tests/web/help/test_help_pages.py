@@ -124,8 +124,6 @@ def test_pages_lead_to_the_help(catalogue: Mapping[str, Exercise]) -> None:
     assert first.headers["location"] == "help/expressions"
     assert f"{LANGUAGE_COOKIE}=de;" in first.headers["set-cookie"]
     assert 'href="../help/expressions">Help' in asyncio.run(get("/help/points")).text
-    exercise = asyncio.run(get("/exercises/scara")).text
     for topic, title in TOPICS.items():
-        assert f'href="../help/{topic}"' in exercise
         answer = asyncio.run(get(f"/help/{topic}"))
         assert f"<h1>{title}</h1>" in answer.text

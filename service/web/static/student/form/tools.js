@@ -1,8 +1,8 @@
-// The line above the parts: the angle unit, whether the answers are saved, the link to them, and Clear.
+// The line above the parts: the angle unit, whether the answers are saved, the link to them, Clear, and Help.
 
 import { h } from "../../shared/dom.js";
 import { fragment } from "../../shared/storage.js";
-import { worded } from "../../shared/words/words.js";
+import { language, worded } from "../../shared/words/words.js";
 
 export class Tools {
   /**
@@ -38,6 +38,11 @@ export class Tools {
       this.saved,
       this.share,
       h("button", { type: "button", class: "quiet-button", onclick: clear }, worded("Clear")),
+      h(
+        "a",
+        { class: "help-link", href: host.service.address(`help/expressions?lang=${language}`), target: "_blank" },
+        worded("Help"),
+      ),
     );
   }
 
