@@ -90,6 +90,11 @@ def practice(page: Page, service: str) -> None:
     drawing.evaluate("image => image.decode()")
 
 
+def reading_help(page: Page, service: str) -> None:
+    """Open the first page of help."""
+    page.goto(f"{service}/help/expressions")
+
+
 def ten_minutes(page: Page, service: str) -> None:
     """Answer a screen of DH in ten minutes with a mistake."""
     page.goto(f"{service}/learn-dh#alpha")
@@ -163,6 +168,7 @@ VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
     "free-play": free_play,
     "practice": practice,
     "learn-dh": ten_minutes,
+    "help": reading_help,
     "frames": frames,
     "find-the-slip": slip,
     "solution": solution,
