@@ -139,7 +139,7 @@ image: $(dev) ## build the image and try it: no root, nothing to write to, healt
 
 # Only pins that pyproject.toml no longer allows are changed; `make lock UPGRADE=--upgrade` takes the newest.
 # One resolution serves every Python and platform; later files repeat the pins of earlier ones.
-compile = "$$tmp/bin/python" -m uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+compile = "$$tmp/bin/python" -m uv pip compile --quiet --universal --python-version 3.11 --no-strip-extras --generate-hashes \
 	--no-header --no-emit-index-url --no-emit-find-links --no-annotate $(UPGRADE)
 lock: ## regenerate the lock files (UPGRADE=--upgrade for the newest versions)
 	@tmp=$$(mktemp -d) && trap 'rm -rf "$$tmp"' EXIT && \

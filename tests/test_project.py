@@ -47,7 +47,7 @@ def test_a_lock_holds_only_pinned_requirements_with_hashes(lock: str) -> None:
     lines = logical_lines(read(lock))
     assert lines
     for line in lines:
-        assert re.match(r"[a-z0-9-]+==\S+ ", line), line
+        assert re.match(r"[a-z0-9-]+(\[[a-z0-9,-]+\])?==\S+ ", line), line
         assert re.search(r" --hash=sha256:[0-9a-f]{64}", line), line
 
 
@@ -67,6 +67,31 @@ def test_the_runtime_lock_satisfies_the_declared_dependencies() -> None:
         ]
         assert versions, f"{wanted.name} is not locked: run `make lock`"
         assert all(wanted.specifier.contains(version) for version in versions), wanted
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_a_lock_names_the_extras_that_locked_packages_ask_for(lock: str) -> None:
+    """With hashes, pip looks at a newer release of `name[extra]` if the lock pins only `name`."""
+    locked: dict[str, set[str]] = {}
+    for pin in pins(lock):
+        locked.setdefault(canonicalize_name(pin.name), set()).update(pin.extras)
+    asked: list[tuple[str, Requirement]] = []
+    for name, extras in locked.items():
+        try:
+            lines = importlib.metadata.requires(name) or []
+        except importlib.metadata.PackageNotFoundError:  # of another platform
+            continue
+        asked += [
+            (name, wanted)
+            for wanted in map(Requirement, lines)
+            if wanted.extras
+            and (
+                wanted.marker is None
+                or any(wanted.marker.evaluate({"extra": extra}) for extra in ("", *extras))
+            )
+        ]
+    for name, wanted in asked:
+        assert wanted.extras <= locked[canonicalize_name(wanted.name)], f"{name} needs {wanted}"
 
 
 def test_the_development_lock_repeats_the_pins_of_the_others() -> None:

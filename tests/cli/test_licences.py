@@ -10,7 +10,7 @@ LOCK = (Path(__file__).parents[2] / "requirements.lock").read_text(encoding="utf
 
 
 def test_every_locked_package_that_is_installed_is_listed_with_its_licence() -> None:
-    locked = set(re.findall(r"^([a-z0-9-]+)==", LOCK, re.MULTILINE))
+    locked = set(re.findall(r"^([a-z0-9-]+)(?:\[[a-z0-9,-]+\])?==", LOCK, re.MULTILINE))
     installed = set()
     for name in locked:
         try:
