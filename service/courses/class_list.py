@@ -1,7 +1,9 @@
 """Read a class list: CSV as Moodle or Canvas export it, or as a tutor writes it."""
 
+import codecs
 import csv
 import io
+import re
 from typing import Final
 
 from pydantic import ValidationError
@@ -10,18 +12,45 @@ from service.contract.courses import MOST_LEARNERS, NewLearner
 from service.courses.errors import CourseError
 from service.formats.shared.plain_text import visible
 
-# The headings of each field in small letters, the preferred one first. Sources: Canvas, "How do I
-# export grades in the Gradebook?"; Moodle, "Grade export" and "Participants".
+# The headings of each field in small letters, the preferred one first, as English, German, Spanish,
+# French and Chinese lists have them. Sources: Canvas, "How do I export grades in the Gradebook?";
+# Moodle, "Grade export" and "Participants", and its language packs.
 _HEADINGS: Final = {
     "learner": ("learner", "sis login id", "sis user id", "id number", "username", "identifier",
-                "id"),
-    "name": ("name", "full name", "student", "student name"),
-    "email": ("email", "e-mail", "email address", "e-mail address"),
-    "first": ("first name",),
-    "last": ("last name", "surname"),
+                "id", "id-nummer", "matrikelnummer", "anmeldename", "número de id",
+                "nombre de usuario", "numéro d'identification", "nom d'utilisateur", "学号",
+                "编号", "用户名"),
+    "name": ("name", "full name", "student", "student name", "vollständiger name",
+             "nombre completo", "nombre", "nom complet", "nom", "姓名", "全名"),
+    "email": ("email", "e-mail", "email address", "e-mail address", "e-mail-adresse", "mail",
+              "correo", "correo electrónico", "dirección de correo", "dirección email",
+              "dirección de correo electrónico", "courriel", "adresse de courriel",
+              "adresse e-mail", "电子邮件", "电子邮件地址", "电子邮箱", "邮箱", "email地址"),
+    "first": ("first name", "vorname", "nombre", "nombre(s)", "prénom", "名", "名字"),
+    "last": ("last name", "surname", "nachname", "apellido(s)", "apellidos", "apellido",
+             "nom de famille", "nom", "name", "姓", "姓氏"),
 }  # fmt: skip
-# Canvas writes this below the headings.
-_POINTS: Final = "points possible"
+# Lines of Canvas that are no learners: one below the headings, and the view of a student.
+_NO_LEARNERS: Final = ("points possible", "student, test")
+# Chinese names have the family name first, and no space.
+_HAN: Final = re.compile(r"[\u3400-\u9fff]")
+
+
+def decoded(data: bytes) -> str:
+    """Return the text of a file in UTF-8, UTF-16, or, as Excel on Windows writes it, Windows-1252.
+
+    Raises CourseError.
+    """
+    try:
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            return data.decode("utf-16")
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        pass
+    try:
+        return data.decode("cp1252")
+    except UnicodeDecodeError as error:
+        raise CourseError("unusable", "The class list is not in UTF-8: save it so.") from error
 
 
 def read_class_list(text: str) -> list[NewLearner]:
@@ -47,18 +76,22 @@ def read_class_list(text: str) -> list[NewLearner]:
         cells = {
             field: row[column].strip() for field, column in columns.items() if column < len(row)
         }
-        if cells.get("name", "").lower() != _POINTS:
+        # Canvas also writes a line that says of some columns who sees them, and no name.
+        if any(cells.values()) and cells.get("name", "").lower() not in _NO_LEARNERS:
             found.append(_learner(cells, line))
     return found
 
 
 def _columns(head: list[str]) -> dict[str, int]:
-    headings = [cell.strip().lower() for cell in head]
+    headings = [cell.strip().lower().replace("’", "'") for cell in head]
     columns = {
         field: headings.index(next(name for name in names if name in headings))
         for field, names in _HEADINGS.items()
         if set(names) & set(headings)
     }
+    if {"first", "last"} <= columns.keys():
+        # "Name" beside "Vorname", or "Nombre" beside "Apellidos", is only one half of it.
+        columns.pop("name", None)
     has_name = "name" in columns or "last" in columns
     if not has_name or columns.keys().isdisjoint({"learner", "email"}):
         raise CourseError(
@@ -69,7 +102,8 @@ def _columns(head: list[str]) -> dict[str, int]:
 
 
 def _learner(cells: dict[str, str], line: int) -> NewLearner:
-    name = cells.get("name") or f"{cells.get('first', '')} {cells.get('last', '')}"
+    first, last = cells.get("first", ""), cells.get("last", "")
+    name = cells.get("name") or (f"{last}{first}" if _HAN.match(last) else f"{first} {last}")
     learner, email = cells.get("learner") or None, cells.get("email") or None
     if learner is None and email is None:
         raise CourseError("unusable", f"Line {line} of the class list has no id and no e-mail.")

@@ -84,3 +84,18 @@ def test_a_mistyped_assignment_is_refused_with_advice(
     told = CliRunner().invoke(program, words)
     assert told.exit_code == 2
     assert said in " ".join(told.output.split())
+
+
+def test_an_assignment_says_what_it_does_not_have(
+    class_: Class, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    add = ["courses", "assignments", "add", "robots", "hw", "--exercise", "scara", "--variants"]
+    said = CliRunner().invoke(program, [*add, "--due", "2026-10-15 23:59"]).output
+    assert "no late attempts" in said
+    assert "but not in scara: no variants there" in said
+    change = ["courses", "assignments", "change", "robots", "hw"]
+    said = CliRunner().invoke(program, [*change, "--closes", "2026-10-17 23:59"]).output
+    assert "late attempts earn 50%" in said
+    said = CliRunner().invoke(program, [*change, "--closes", "none", "--due", "none"]).output
+    assert "no due date" in said

@@ -1,6 +1,8 @@
+import codecs
+
 import pytest
 
-from service.courses.class_list import read_class_list
+from service.courses.class_list import decoded, read_class_list
 from service.courses.errors import CourseError
 
 CANVAS = """\
@@ -13,6 +15,15 @@ MOODLE = """\
 \ufeffFirst name,Last name,ID number,Email address,Course total
 Ada,Lovelace,s1,ada@example.edu,3
 Grace,Hopper,,grace@x.org,4
+"""
+# As Canvas exports it if an assignment has a posting policy, with the view of a student.
+POSTED = """\
+Student,ID,SIS User ID,SIS Login ID,Section,Homework 0 (17)
+,,,,,Manual Posting
+    Points Possible,,,,,10
+"Lovelace, Ada",7,s1,ada1,A,3
+"Student, Test",9,,7f3ad0,A,
+"Student, Test",8,,,A,
 """
 SEMICOLONS = "id;Name\r\n\r\n4711;Ada  Lovelace\r\n4712;Grace Hopper\r\n"
 
@@ -28,6 +39,13 @@ SEMICOLONS = "id;Name\r\n\r\n4711;Ada  Lovelace\r\n4712;Grace Hopper\r\n"
                 (None, "Grace Hopper", "grace@x.org"),
             ],
         ),
+        (POSTED, [("ada1", "Lovelace, Ada", None)]),
+        ("Vorname,Nachname,E-Mail-Adresse\nAda,Müller,a@b.c\n", [(None, "Ada Müller", "a@b.c")]),
+        ("Matrikelnummer;Name;Vorname\n47;Müller;Ada\n", [("47", "Ada Müller", None)]),
+        ("Nombre;Apellido(s);Número de ID\nAda;Pérez;47\n", [("47", "Ada Pérez", None)]),
+        ("Nombre,Correo\nAda Pérez,a@b.c\n", [(None, "Ada Pérez", "a@b.c")]),
+        ("Prénom,Nom,Numéro d’identification\nAda,Brontë,47\n", [("47", "Ada Brontë", None)]),
+        ("姓,名,学号\n王,小明,47\n", [("47", "王小明", None)]),
         (SEMICOLONS, [("4711", "Ada Lovelace", None), ("4712", "Grace Hopper", None)]),
         ("email\tname\na@b.c\tAda\n", [(None, "Ada", "a@b.c")]),
         ('name,email\n"Ada\nL",a@b.c\n', [(None, "Ada L", "a@b.c")]),
@@ -57,3 +75,17 @@ def test_a_class_list_of_a_platform_or_by_hand(
 def test_an_unusable_class_list_is_refused_with_the_line(text: str, reason: str) -> None:
     with pytest.raises(CourseError, match=reason):
         read_class_list(text)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-be", "cp1252"])
+def test_a_file_in_an_encoding_of_spreadsheets(encoding: str) -> None:
+    mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
+    data = mark + "id;name\n1;Zoë Müller\n".encode(encoding)
+    [found] = read_class_list(decoded(data))
+    assert (found.learner, found.name) == ("1", "Zoë Müller")
+
+
+def test_a_file_that_is_no_text_is_refused() -> None:
+    for data in (b"\xff\xfea", b"PK\x03\x04\x81\x8d", b"\x00" * 9):
+        with pytest.raises(CourseError):
+            read_class_list(decoded(data))

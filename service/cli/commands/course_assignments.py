@@ -364,7 +364,9 @@ def _print(assignment: CourseAssignment) -> None:
     limit = "not limited" if assignment.limit is None else f"at most {assignment.limit}"
     levels = [FeedbackLevel(each).value for each in assignment.feedback or ()]
     told = ", ".join(levels) or "that of each exercise"
-    screen.print(f"  attempts {limit}; late attempts earn {assignment.late_worth:.0%}")
+    takes_late = assignment.closes or any(each.closes for each in assignment.extensions)
+    late = f"late attempts earn {assignment.late_worth:.0%}" if takes_late else "no late attempts"
+    screen.print(f"  attempts {limit}; {late if assignment.due else 'no due date'}")
     screen.print(f"  feedback {told}", soft_wrap=True)
     screen.print(f"  practice {assignment.practice}; solution {assignment.solution}")
     if assignment.hint_prices is not None:
@@ -372,6 +374,11 @@ def _print(assignment: CourseAssignment) -> None:
         screen.print(f"  the steps of a hint cost {prices} of the points", soft_wrap=True)
     if assignment.variants:
         screen.print("  each learner has variants of their own", soft_wrap=True)
+        catalogue = installed()
+        names = [each.exercise for each in assignment.exercises]
+        same = [name for name in names if name in catalogue and catalogue[name].vary is None]
+        if same:
+            screen.print(f"  but not in {', '.join(same)}: no variants there", soft_wrap=True)
     for extension in assignment.extensions:
         due = f"due {extension.due:%Y-%m-%d %H:%M %Z}" if extension.due else ""
         own = f"at most {extension.limit} attempts" if extension.limit else ""

@@ -29,7 +29,7 @@ from service.contract.courses import (
     RemovalRequest,
 )
 from service.courses import deletion, roll
-from service.courses.class_list import read_class_list
+from service.courses.class_list import decoded, read_class_list
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links, written_links
 from service.courses.results.gradebook import gradebook, missing, written_gradebook
@@ -147,9 +147,9 @@ def import_learners(
     The first line has the headings: name, and email or id. Nobody is removed.
     """
     try:
-        text = sys.stdin.read() if str(file) == "-" else file.read_text(encoding="utf-8-sig")
-        listed = read_class_list(text)
-    except (OSError, UnicodeDecodeError) as error:
+        data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
+        listed = read_class_list(decoded(data))
+    except OSError as error:
         give_up(f"{file}: cannot be read: {error}")
     except CourseError as error:
         give_up(f"{file}: {error}")

@@ -56,6 +56,42 @@ function fieldsOf(row) {
   return [exercise, points];
 }
 
+// The service takes 256 KiB and 20,000 commas at once. A character is up to three bytes; quotes are escaped.
+const MOST = 60_000;
+const MOST_COMMAS = 15_000;
+
+/**
+ * Return a class list in pieces that are short enough to be sent. Each begins with the headings, and has an empty
+ * line for each line of earlier pieces, so that messages about it name the right line.
+ *
+ * @param {string} csv
+ */
+export function pieces(csv) {
+  /** @type {string[]} */
+  const records = [];
+  let isQuoted = false;
+  for (const line of csv.trimStart().split("\n")) {
+    if (isQuoted) records.push(`${records.pop()}\n${line}`);
+    else records.push(line);
+    if (line.split('"').length % 2 === 0) isQuoted = !isQuoted;
+  }
+  const [head, ...others] = records;
+  const found = [head];
+  let [size, commas] = [0, 0];
+  for (const [i, record] of others.entries()) {
+    const length = record.length + 1;
+    const more = record.split(",").length;
+    if (size && (size + length > MOST || commas + more > MOST_COMMAS)) {
+      found.push(head + "\n".repeat(i));
+      [size, commas] = [0, 0];
+    }
+    found.push(`${found.pop()}\n${record}`);
+    size += length;
+    commas += more;
+  }
+  return found;
+}
+
 /** @param {HTMLFormElement} form */
 async function post(form) {
   const state = form.querySelector("[role=status]") ?? form.appendChild(h("p", { role: "status" }));
@@ -64,7 +100,8 @@ async function post(form) {
   const body = bodyOf(form);
   button?.setAttribute("disabled", "");
   try {
-    await send(form.dataset.post ?? "", body);
+    const lists = typeof body.csv === "string" ? pieces(body.csv).map((csv) => ({ ...body, csv })) : [body];
+    for (const each of lists) await send(form.dataset.post ?? "", each);
     if (form.dataset.done) return tell(state, form.dataset.done);
     if (form.dataset.then) location.assign(address(form.dataset.then + String(body.id)));
     else location.reload();
@@ -99,11 +136,27 @@ function growing(list) {
   });
 }
 
+/**
+ * Return the text of a file in UTF-8, UTF-16, or, as Excel on Windows writes it, Windows-1252.
+ *
+ * @param {ArrayBuffer} data
+ */
+export function textOf(data) {
+  const [first, second] = new Uint8Array(data);
+  if (first === 0xff && second === 0xfe) return new TextDecoder("utf-16le").decode(data);
+  if (first === 0xfe && second === 0xff) return new TextDecoder("utf-16be").decode(data);
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(data);
+  } catch {
+    return new TextDecoder("windows-1252").decode(data);
+  }
+}
+
 /** @param {HTMLInputElement} input */
 function filling(input) {
   whenChosen(input, async ([file]) => {
     const place = document.getElementById(input.dataset.fills ?? "");
-    if (place instanceof HTMLTextAreaElement) place.value = await file.text();
+    if (place instanceof HTMLTextAreaElement) place.value = textOf(await file.arrayBuffer());
   });
 }
 
