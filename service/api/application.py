@@ -207,7 +207,7 @@ def application(
     # What is recorded, and every other list, has no drafts and no generated robots.
     practised = CatalogueWithPractice(catalogue)
     seen = practised if pages is None else CatalogueWithDrafts(practised, pages.drafts)
-    own, gate = OwnVariants(store, access), PracticeGate(store)
+    own, gate = OwnVariants(store, access), PracticeGate(store, catalogue)
     for router in (
         exercises.routes(seen, feedback, own),
         practice.routes(),

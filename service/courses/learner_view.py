@@ -1,7 +1,7 @@
 """The courses and assignments of one learner, as this learner sees them."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
@@ -120,30 +120,51 @@ def own_view(
 
 
 def closed_practice(
-    connection: Connection, learner: str, only: str | None, exercise: str, now: datetime
-) -> LearnerTerms | None:
-    """Return an assignment that does not let the learner practise the exercise; None if all do."""
-    for _, terms in learner_terms(connection, learner, only):
-        if exercise in terms.exercises:
-            full = terms.practice == "after" and has_full_marks(
-                connection, learner, terms.number, exercise
-            )
-            if not terms.may_practise(now, is_full=full):
-                return terms
+    connection: Connection,
+    learner: str,
+    only: str | None,
+    exercise: str,
+    alike: Collection[str],
+    now: datetime,
+) -> tuple[LearnerTerms, str] | None:
+    """Return an assignment that does not let the learner practise, and its exercise; else None.
+
+    If no assignment has the exercise itself, those with one of ``alike`` decide.
+    """
+    for terms, name in _assigned(connection, learner, only, exercise, alike):
+        full = terms.practice == "after" and has_full_marks(connection, learner, terms.number, name)
+        if not terms.may_practise(now, is_full=full):
+            return terms, name
     return None
 
 
 def hides_solution(
-    connection: Connection, learner: str, only: str | None, exercise: str, now: datetime
+    connection: Connection,
+    learner: str,
+    only: str | None,
+    exercise: str,
+    alike: Collection[str],
+    now: datetime,
 ) -> bool:
-    """True if an assignment of the learner does not show the solution of the exercise now."""
+    """True if an assignment of the learner does not show the solution of the exercise now.
+
+    If no assignment has the exercise itself, those with one of ``alike`` decide.
+    """
     return any(
-        exercise in terms.exercises
-        and not terms.shows_solution(
-            now, is_full=has_full_marks(connection, learner, terms.number, exercise)
+        not terms.shows_solution(
+            now, is_full=has_full_marks(connection, learner, terms.number, name)
         )
-        for _, terms in learner_terms(connection, learner, only)
+        for terms, name in _assigned(connection, learner, only, exercise, alike)
     )
+
+
+def _assigned(
+    connection: Connection, learner: str, only: str | None, exercise: str, alike: Collection[str]
+) -> list[tuple[LearnerTerms, str]]:
+    """Return the terms of the assignments of an exercise; if there are none, of those like it."""
+    found = [terms for _, terms in learner_terms(connection, learner, only)]
+    own = [(terms, exercise) for terms in found if exercise in terms.exercises]
+    return own or [(terms, name) for terms in found for name in terms.exercises if name in alike]
 
 
 def has_priced_hints(

@@ -15,9 +15,9 @@ from service.access.caller import Scope
 from service.access.key_table import add_key
 from service.access.key_text import new_key_text
 from service.attempts.tutoring import forget
-from service.contract.courses import AssignmentChange, Extension, LinksRequest
+from service.contract.courses import AssignmentChange, Extension, LinksRequest, NewAssignment
 from service.courses import roll
-from service.courses.assignments import assignments_of, change_assignment, extend
+from service.courses.assignments import add_assignment, assignments_of, change_assignment, extend
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links
 from service.courses.results.gradebook import gradebook, missing, written_gradebook
@@ -127,6 +127,32 @@ def test_no_practice_while_an_exercise_counts(class_: Class) -> None:
     assert practised() == [200, "report", 200]
     # Another exercise may be practised all the time.
     assert class_.ask("POST", "/v1/exercises/planar-rr/grade", answers={}).status_code == 200
+
+
+def test_an_exercise_with_the_same_robot_is_no_practice_either(class_: Class) -> None:
+    """A copy of an exercise, or one that finds the slip in its table, would give it away."""
+
+    def practised(exercise: str) -> list[int]:
+        paths = [f"/v1/exercises/{exercise}/{last}" for last in ("grade", "solution")]
+        return [class_.ask("POST", path, answers={}).status_code for path in paths]
+
+    # Empty answers have no full marks.
+    assert practised("scara-faded") == [200, 403]
+    class_.assign(limit=3, solution="after_due", due=days(1))
+    answer = class_.ask("POST", "/v1/exercises/find-the-slip-scara/grade", answers={}).json()
+    assert answer["type"] == "urn:dh-grader:problem:no-practice"
+    assert "scara has the same robot" in answer["detail"]
+    assert practised("scara-faded") == [403, 403]
+    assert practised("planar-rrr") == [200, 403]
+    refused = class_.ask("POST", "/v1/exercises/scara-faded/solution", answers={}).json()
+    assert refused["detail"] == "An assignment does not show you this solution now."
+    # The terms of an assignment with the exercise itself come first.
+    exercises = [{"exercise": "scara-faded", "points": 1}]
+    fields = {"id": "warm-up", "title": "Warm-up", "exercises": exercises, "practice": "open"}
+    new = NewAssignment.model_validate(fields)
+    class_.do(lambda it: add_assignment(it, "robots", new, {"scara-faded"}))
+    assert practised("scara-faded") == [200, 403]
+    assert practised("find-the-slip-scara") == [403, 403]
 
 
 def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class) -> None:

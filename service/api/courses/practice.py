@@ -5,6 +5,7 @@ from http import HTTPStatus
 from typing import TYPE_CHECKING
 
 from service.access.caller import Caller
+from service.api.http.lookup import Catalogue
 from service.api.http.problems import ProblemError, store_down
 from service.api.recording.store import ask
 from service.attempts.errors import StoreDownError
@@ -18,8 +19,9 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 class PracticeGate:
     """Refuses to grade answers that are not recorded, if an assignment of the learner says so."""
 
-    def __init__(self, store: "AttemptStore | None") -> None:
+    def __init__(self, store: "AttemptStore | None", catalogue: Catalogue) -> None:
         self._store = store
+        self._catalogue = catalogue
 
     async def check(self, caller: Caller, exercise: str) -> None:
         """Raise ProblemError if this learner may not practise the exercise now."""
@@ -59,11 +61,11 @@ class PracticeGate:
             return
         from service.courses.learner_view import hides_solution
 
-        now = datetime.now(UTC)
+        now, alike = datetime.now(UTC), self._alike(exercise)
         hidden = await ask(
             self._store,
             lambda store: store.read(
-                lambda it: hides_solution(it, learner, caller.course, exercise, now)
+                lambda it: hides_solution(it, learner, caller.course, exercise, alike, now)
             ),
         )
         if hidden:
@@ -81,10 +83,10 @@ class PracticeGate:
             return None
         from service.courses.learner_view import closed_practice
 
-        now = datetime.now(UTC)
+        now, alike = datetime.now(UTC), self._alike(exercise)
         try:
             closed = await self._store.read(
-                lambda it: closed_practice(it, learner, caller.course, exercise, now)
+                lambda it: closed_practice(it, learner, caller.course, exercise, alike, now)
             )
         except StoreDownError:
             if caller.course is None:
@@ -94,13 +96,28 @@ class PracticeGate:
             return store_down(detail)
         if closed is None:
             return None
-        return ProblemError(
-            HTTPStatus.FORBIDDEN,
-            say(
+        terms, counted = closed
+        if counted == exercise:
+            detail = say(
                 "This exercise counts in the assignment {assignment}: hand it in there. Answers "
                 "that are not recorded are not graded.",
-                assignment=closed.title,
-            ),
-            "no-practice",
-            say("This exercise cannot be practised now"),
-        )
+                assignment=terms.title,
+            )
+        else:
+            detail = say(
+                "The exercise {exercise} has the same robot, and counts in the assignment "
+                "{assignment}. Answers that are not recorded are not graded.",
+                exercise=counted,
+                assignment=terms.title,
+            )
+        title = say("This exercise cannot be practised now")
+        return ProblemError(HTTPStatus.FORBIDDEN, detail, "no-practice", title)
+
+    def _alike(self, exercise: str) -> set[str]:
+        """Return the exercises with the same robot, such as a copy: their answers are the same."""
+        reference = getattr(self._catalogue.get(exercise), "reference", None)
+        return {
+            name
+            for name, each in self._catalogue.items()
+            if reference is not None and each.reference == reference
+        }
