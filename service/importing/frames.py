@@ -11,11 +11,13 @@ from itertools import pairwise
 import numpy as np
 
 from service.importing.axes import PARALLEL, HomeAxis, common_normal
-from service.kinematics.chain import Table, pose
+from service.importing.snapping import NEAR, STEP
+from service.kinematics.chain import ALPHA, THETA, Table, pose
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 _NONE = 1e-9
+_IS_ANGLE = np.isin(np.arange(4), (ALPHA, THETA))
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,14 @@ def placed(axes: list[HomeAxis], tip: Matrices) -> Placed:
         rows.append(row)
     row, frame = _last_row(frame, tip)
     rows.append(row)
-    return Placed(np.array(rows), base, inverse(frame) @ tip)
+    return Placed(_snapped(np.array(rows)), base, inverse(frame) @ tip)
+
+
+def _snapped(table: Table) -> Table:
+    """Return the table with clean angles: axes that a file places crookedly leave 90.005°."""
+    multiples = np.round(table / STEP) * STEP
+    is_near = (np.abs(table - multiples) <= NEAR) & _IS_ANGLE
+    return np.asarray(np.where(is_near, multiples, table))
 
 
 def _base_frame(axis: HomeAxis) -> Matrices:

@@ -10,8 +10,8 @@ import numpy as np
 
 from service.kinematics.transforms import Numbers
 
-_STEP: Final = math.radians(15)
-_NEAR: Final = 1e-4
+STEP: Final = math.radians(15)
+NEAR: Final = 1e-4
 _FEWEST_DECIMALS: Final = 2
 _LENGTH_DECIMALS: Final = 5
 
@@ -26,10 +26,10 @@ def snapped_angle(text: str) -> float:
     (True, 1.6)
     """
     value = float(text)
-    multiple = round(value / _STEP) * _STEP
+    multiple = round(value / STEP) * STEP
     decimals = len(text.partition(".")[2]) if "e" not in text.lower() else 0
     rounded = decimals >= _FEWEST_DECIMALS and round(multiple, decimals) == value
-    return multiple if rounded or abs(value - multiple) <= _NEAR else value
+    return multiple if rounded or abs(value - multiple) <= NEAR else value
 
 
 def snapped_length(text: str) -> float:
@@ -39,5 +39,5 @@ def snapped_length(text: str) -> float:
 
 def snapped_direction(direction: Numbers) -> Numbers:
     """Return a unit vector without entries that rounding left near 0."""
-    kept = np.where(np.abs(direction) <= _NEAR, 0.0, direction)
+    kept = np.where(np.abs(direction) <= NEAR, 0.0, direction)
     return np.asarray(kept / np.linalg.norm(kept))

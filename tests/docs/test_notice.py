@@ -43,6 +43,7 @@ def test_each_vendored_file_has_an_entry() -> None:
 def test_each_entry_has_the_text_of_its_licence() -> None:
     phrases = {"MIT": "MIT License", "Apache-2.0": "Apache License", "MPL-2.0": "Mozilla Public"}
     phrases["BSD-3-Clause"] = "Redistribution and use in source and binary forms"
+    phrases["BSD-2-Clause"] = "BSD 2-Clause License"
     for each in VENDORED:
         assert phrases[each.licence] in (ROOT / each.text).read_text(encoding="utf-8")
         assert all((ROOT / file).is_file() for file in each.files)

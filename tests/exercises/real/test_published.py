@@ -78,9 +78,9 @@ PUBLISHED: Mapping[str, Published] = {
         (0.18, 0.6, 0.12, 0, 0, 0), (-90, 0, 90, -90, 90, 180), (0.4, 0, 0, -0.62, 0, -0.115),
     ),
     "sawyer": Published(
-        "Robotics Toolbox, models/DH/Sawyer.py",
+        "Robotics Toolbox, models/DH/Sawyer.py, but the last length as in sawyer_base.urdf.xacro",
         (0.081, 0, 0, 0, 0, 0, 0), (-90,) * 6 + (0,),
-        (0.317, 0.1925, 0.4, 0.1685, 0.4, 0.1363, 0.13375),
+        (0.317, 0.1925, 0.4, 0.1685, 0.4, 0.1363, 0.1345),
     ),
     "adept-cobra-600": Published(
         "Robotics Toolbox, models/DH/Cobra600.py",
