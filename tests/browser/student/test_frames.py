@@ -1,5 +1,6 @@
 """The form in which a student places frames: names are offered, every step works by keyboard."""
 
+from collections import Counter
 from collections.abc import Callable
 
 import pytest
@@ -58,6 +59,24 @@ def test_a_table_of_frames_is_pasted(visit: Opening, service: str) -> None:
     box.get_by_role("button").click()
     expect(cells(page).nth(17)).to_have_value(RIGHT[17])
     assert [each.input_value() for each in cells(page).all()[:18]] == RIGHT
+
+
+def test_a_phone_shows_all_cells_of_a_frame_without_sideways_scrolling(
+    visit: Opening, service: str
+) -> None:
+    page = visit(**PHONE).page
+    open_exercise(page, service, "planar-rrr-frames")
+    for box, text in zip(cells(page).all(), [*RIGHT, "0"], strict=False):
+        box.fill(text)
+    form = part(page, 0)
+    expect(form.locator(".cell-head").first).to_be_visible()
+    [inner, outer] = form.locator(".scroll").evaluate("it => [it.scrollWidth, it.clientWidth]")
+    assert inner == outer
+    # Screen readers still get a table: the tree of Chromium itself has its heads and cells.
+    tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
+    roles = Counter(each["role"]["value"] for each in tree if "role" in each)
+    assert roles["columnheader"] >= 6
+    assert roles["gridcell"] + roles["cell"] >= 18
 
 
 @pytest.mark.long

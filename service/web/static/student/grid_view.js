@@ -49,18 +49,23 @@ function gridElement(grid, part, owner, id, rows) {
     body.append(view.element, view.notes);
   });
   const caption = h("caption", { class: grid.title ? "named" : "aloud" }, ...typeset(grid.title || part.title));
-  const table = h("table", { class: grid.look }, caption, h("thead", { class: isMatrix ? "aloud" : null }, head), body);
+  const look = `${grid.look}${isWide(grid) ? " wide" : ""}`;
+  const table = h("table", { class: look }, caption, h("thead", { class: isMatrix ? "aloud" : null }, head), body);
   return h("div", { class: "scroll" }, table);
 }
 
+/** True if a phone shows each row of the table as two lines. @param {Front.Grid} grid */
+const isWide = ({ look, columns }) => look === "table" && columns.length > 4;
+
+/** @param {Front.Column} column */
+const letterOf = ({ head, index }) => [h("i", {}, head), index ? h("sub", {}, index) : null];
+
 /** @param {Front.Column} column */
 function headOf(column) {
-  const seen = h("span", { "aria-hidden": column.spoken ? "true" : null }, h("i", {}, column.head));
-  if (column.index) seen.append(h("sub", {}, column.index));
   return h(
     "th",
     { scope: "col" },
-    seen,
+    h("span", { "aria-hidden": column.spoken ? "true" : null }, ...letterOf(column)),
     column.spoken ? h("span", { class: "aloud" }, column.spoken) : null,
     helpOf(column),
   );
@@ -94,7 +99,7 @@ export class RowView {
       const isNumber = row.spoken && grid.look === "table" && !grid.hasNamedRows;
       const name = isNumber ? worded("row {row}", { row: row.spoken }) : row.spoken;
       const where = [column.spoken, name, row.isGiven && worded("given")];
-      return new Cell(
+      const cell = new Cell(
         {
           id: `${id}-${j}`,
           part: part.id,
@@ -108,6 +113,11 @@ export class RowView {
         },
         owner,
       );
+      // Phones show it above the cell, in place of the head of the column.
+      if (isWide(grid)) {
+        cell.element.prepend(h("span", { class: "cell-head", "aria-hidden": "true" }, ...letterOf(column)));
+      }
+      return cell;
     });
     const aloud = h("span", { class: "aloud" }, row.head);
     const head = h(
