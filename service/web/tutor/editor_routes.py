@@ -10,6 +10,7 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import is_at_the_machine
@@ -60,6 +61,7 @@ def editor_routes(
             text,
             mark,
             assets,
+            language_of(request),
             can_write=folder.can_write and is_at_the_machine(request),
             copied=exercise_id if is_copy else "",
         )

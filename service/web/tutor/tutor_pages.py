@@ -8,7 +8,7 @@ from service.api.http.lookup import Catalogue
 from service.catalogue import Exercise, Robot, in_language
 from service.formats.shared.html_templates import own_html
 from service.solutions import solve
-from service.translations import Language
+from service.translations import Language, told
 from service.typeset.statement import formula_html
 from service.web.assets import Assets
 from service.web.pages import page
@@ -44,17 +44,21 @@ def tutor_page(
     )
 
 
-def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) -> bytes:
+def solution_page(
+    exercise: Exercise, assets: Assets, language: Language, *, of_all: bool = True
+) -> bytes:
     """Return the page with the right answer to each part, and the steps of the solution.
 
     Without ``of_all``, it has no link to the editor.
     """
+    exercise = in_language(exercise, language)
     solution = solve(exercise)
     pose, answered = solution.pose, [part.text for part in solution.parts]
     return _page(
         "solution",
         assets,
         "../../",
+        language=language,
         exercise=exercise,
         of_all=of_all,
         has_frames=isinstance(exercise.reference, Robot),
@@ -68,7 +72,9 @@ def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) ->
     )
 
 
-def misconceptions_page(exercise: Exercise, catalogue: Catalogue, assets: Assets) -> bytes:
+def misconceptions_page(
+    exercise: Exercise, catalogue: Catalogue, assets: Assets, language: Language
+) -> bytes:
     """Return the page of the mistakes that the grader can name, each with its sentences."""
     # Imported here, because it loads an algebra system.
     from service.authoring.misconceptions import misconceptions_of
@@ -77,13 +83,22 @@ def misconceptions_page(exercise: Exercise, catalogue: Catalogue, assets: Assets
         "misconceptions",
         assets,
         "../../",
-        exercise=exercise,
+        language=language,
+        exercise=in_language(exercise, language),
         misconceptions=misconceptions_of(exercise, catalogue),
+        told=lambda sentence: told(sentence, language.translation),
     )
 
 
 def editor_page(
-    exercise_id: str, text: str, mark: str, assets: Assets, *, can_write: bool, copied: str = ""
+    exercise_id: str,
+    text: str,
+    mark: str,
+    assets: Assets,
+    language: Language,
+    *,
+    can_write: bool,
+    copied: str = "",
 ) -> bytes:
     """Return the page of the editor with the text of a file, or of a copy of ``copied``."""
     return _page(
@@ -91,6 +106,7 @@ def editor_page(
         assets,
         "../",
         "editor.js",
+        language=language,
         exercise_id=exercise_id,
         text=text,
         mark=mark,

@@ -93,17 +93,19 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         """Answer with the model solution of an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
         of_all = access.caller(request).reaches_all
-        key = (exercise.id, exercise.version, exercise.title, of_all)
-        drawn = partial(solution_page, exercise, assets, of_all=of_all)
+        language = language_of(request)
+        key = (exercise.id, exercise.version, exercise.title, of_all, language.code)
+        drawn = partial(solution_page, exercise, assets, language, of_all=of_all)
         content = await solutions.of(key, drawn)
         return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 
     @router.get("/misconceptions/{exercise_id}")
-    async def misconceptions(exercise_id: str) -> Response:
+    async def misconceptions(request: Request, exercise_id: str) -> Response:
         """Answer with the mistakes that the grader can name in an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        key = (exercise.id, exercise.version, exercise.title)
-        drawn = partial(misconceptions_page, exercise, catalogue, assets)
+        language = language_of(request)
+        key = (exercise.id, exercise.version, exercise.title, language.code)
+        drawn = partial(misconceptions_page, exercise, catalogue, assets, language)
         content = await named.of(key, drawn)
         return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 

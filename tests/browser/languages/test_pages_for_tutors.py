@@ -15,10 +15,20 @@ from tests.browser.languages.test_pseudo_language import UNTOLD, fits
 from tests.guards import ANSWER
 
 # Names that others have given are not translated: titles of exercises, ids, learners.
-NAMED = ".statistics h3, tbody, option, bdi, .groups, .gradebook th, .exports, .exercises h2"
+NAMED = (
+    ".statistics h3, tbody, option, bdi, .groups, .gradebook th, .exports, .exercises h2, "
+    "textarea, #preview, #findings .verdict, .solution h2, .solution > .quiet, .aloud"
+)
 OWN = UNTOLD.replace('"math, code,', f'"math, code, time, {NAMED}, ')
 # Ids, and the headings of a class list, which are those of the file.
-GIVEN = {"robots", "homework-1", "Planar RR arm", "SCARA manipulator", "placeholder: id,name,email"}
+GIVEN = {
+    "robots",
+    "homework-1",
+    "Planar RR arm",
+    "SCARA manipulator",
+    "placeholder: id,name,email",
+    "LaTeX",
+}
 ASSIGNMENT = {
     "id": "homework-1",
     "title": "Hómework",
@@ -61,6 +71,8 @@ def test_the_pages_of_a_course_are_told(visit: Callable[..., Visit], tmp_path: P
             "tutor/attempts?course=robots&assignment=homework-1",
             f"tutor/attempts/{attempt['attempt']['id']}",
             "tutor/statistics/scara",
+            "tutor/editor",
+            "tutor/solutions/scara",
         ):
             page.goto(f"{server.address}/{path}{'&' if '?' in path else '?'}lang=qps")
             page.wait_for_load_state("networkidle")

@@ -2,13 +2,14 @@
 
 import { byId, h, message, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
+import { worded } from "../shared/words/words.js";
 import { importForm } from "./import_form.js";
 import { post, refusal } from "./tutor_service.js";
 
 // Milliseconds after the last key until the text is checked.
 const PAUSE = 300;
 /** @type {Record<string, string>} */
-const LEVELS = { unusable: "cannot be used", failed: "failed", warning: "warning" };
+const LEVELS = { unusable: worded("cannot be used"), failed: worded("failed"), warning: worded("warning") };
 
 const area = byId("text", HTMLTextAreaElement);
 const name = byId("id", HTMLInputElement);
@@ -51,7 +52,7 @@ async function check() {
   try {
     show(await (await post("../tutor/check", JSON.stringify(asked))).json());
   } catch (error) {
-    found.replaceChildren(h("h2", {}, "Findings"), h("p", { class: "level-unusable" }, refusal(error)));
+    found.replaceChildren(h("h2", {}, worded("Findings")), h("p", { class: "level-unusable" }, refusal(error)));
   }
   busy = false;
   const now = body();
@@ -65,9 +66,9 @@ function show({ findings, summary, preview }) {
   const verdict = findings.some(({ level }) => level !== "warning") ? "incorrect" : "correct";
   const told = { incorrect: "✗ ", correct: "✓ " }[verdict];
   found.replaceChildren(
-    h("h2", {}, "Findings"),
+    h("h2", {}, worded("Findings")),
     h("p", { class: `verdict ${verdict}` }, h("span", { "aria-hidden": "true" }, told), visible(summary)),
-    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "No problems found."),
+    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, worded("No problems found.")),
   );
   if (preview) showPreview(preview);
   else shown.classList.add("outdated");
@@ -75,7 +76,9 @@ function show({ findings, summary, preview }) {
 
 /** @param {Finding} finding */
 function item({ level, field, text, line }) {
-  const place = line ? h("button", { type: "button", class: "line", onclick: () => go(line) }, `line ${line}`) : null;
+  const place = line
+    ? h("button", { type: "button", class: "line", onclick: () => go(line) }, worded("line {line}", { line }))
+    : null;
   return h(
     "li",
     {},
@@ -105,10 +108,16 @@ function showPreview({ title, source, statement_html: statement, parts, figure }
   picture = figure ? URL.createObjectURL(new Blob([figure], { type: "image/svg+xml" })) : "";
   shown.classList.remove("outdated");
   shown.replaceChildren(
-    h("h2", {}, "What students see"),
+    h("h2", {}, worded("What students see")),
     h("h3", {}, visible(title)),
     h("p", { class: "quiet" }, visible(source)),
-    picture ? h("figure", {}, h("img", { src: picture, alt: `Drawing of the robot: ${visible(title)}` })) : "",
+    picture
+      ? h(
+        "figure",
+        {},
+        h("img", { src: picture, alt: worded("Drawing of the robot: {title}", { title: visible(title) }) }),
+      )
+      : "",
     h("div", { class: "statement" }, ...html(statement)),
     h("ol", {}, ...parts.map((part) => h("li", {}, visible(part)))),
   );
@@ -124,7 +133,7 @@ async function tryOut() {
     const element = document.createElement("dh-exercise");
     element.setAttribute("exercise", draft);
     form.replaceChildren(element);
-    tryButton.textContent = "Update the form";
+    tryButton.textContent = worded("Update the form");
   } catch (error) {
     tried.textContent = refusal(error);
   }
@@ -135,7 +144,7 @@ function download() {
   h("a", { href: address, download: `${name.value.trim() || "exercise"}.toml` }).click();
   setTimeout(() => URL.revokeObjectURL(address), 1000);
   kept = area.value;
-  saved.textContent = "Downloaded";
+  saved.textContent = worded("Downloaded");
 }
 
 async function save() {
@@ -144,7 +153,7 @@ async function save() {
     const answer = await post("../tutor/files", JSON.stringify({ ...asked, before: mark }));
     ({ mark } = await answer.json());
     kept = asked.text;
-    saved.textContent = `${asked.id}.toml is saved`;
+    saved.textContent = worded("{file} is saved", { file: `${asked.id}.toml` });
   } catch (error) {
     saved.textContent = refusal(error);
   }

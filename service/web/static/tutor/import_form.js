@@ -1,6 +1,7 @@
 // The form *New exercise from…* of the editor: a URDF file or a DH table becomes the text of an exercise file.
 
 import { byId, h, visible, whenChosen } from "../shared/dom.js";
+import { worded } from "../shared/words/words.js";
 import { post, refusal } from "./tutor_service.js";
 
 // The most characters that the service takes, with room for the other fields and for escapes.
@@ -38,7 +39,9 @@ export function importForm({ id, named, written }) {
 
   async function make() {
     if (robot.value.length > MOST) {
-      state.textContent = "This file is too large for the browser. Use dh-grader exercises import on a command line.";
+      state.textContent = worded(
+        "This file is too large for the browser. Use dh-grader exercises import on a command line.",
+      );
       return;
     }
     const body = {
@@ -54,7 +57,7 @@ export function importForm({ id, named, written }) {
     try {
       const { text, remarks } = await (await post("../tutor/import", JSON.stringify(body))).json();
       written(text);
-      const all = [...remarks, "The exercise is in the editor. Read its statement, then save it."];
+      const all = [...remarks, worded("The exercise is in the editor. Read its statement, then save it.")];
       state.replaceChildren(...all.flatMap((each) => [visible(each), h("br")]));
     } catch (error) {
       state.textContent = refusal(error);
