@@ -32,6 +32,7 @@ from service.courses import deletion, roll
 from service.courses.class_list import decoded, read_class_list
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links, written_links
+from service.courses.names import told_apart
 from service.courses.results.gradebook import gradebook, missing, written_gradebook
 from service.courses.results.workbook import gradebook_workbook
 from service.formats.shared.plain_text import number, visible
@@ -218,7 +219,7 @@ def show_missing(
 ) -> None:
     """List who has not handed in which exercises."""
     found = changed(lambda it: missing(it, course, assignment))
-    screen = stdout()
+    screen, names = stdout(), told_apart(found)
     for each in found:
         dates = [
             f"{name} {when:%Y-%m-%d %H:%M %Z}"
@@ -226,5 +227,5 @@ def show_missing(
             if when is not None
         ]
         told = ", ".join((*each.exercises, *dates))
-        screen.print(f"{visible(each.name)}: {told}", soft_wrap=True)
+        screen.print(f"{visible(names[each.learner])}: {told}", soft_wrap=True)
     screen.print(f"Not complete: {number(len(found))} learners.")

@@ -16,6 +16,7 @@ from service.contract.courses import (
 )
 from service.contract.own_courses import OwnCourse
 from service.contract.scores import PlatformScore
+from service.courses.names import told_apart
 from service.translations import Language
 from service.web.assets import Assets
 from service.web.pages import page
@@ -96,7 +97,7 @@ def assignment_page(
     language: Language,
 ) -> bytes:
     """Return the page of an assignment: its fields, extensions, missing learners and points."""
-    names = {each.learner: each.name for each in state.learners}
+    names = told_apart(state.learners)
     return _page(
         "assignment",
         assets,

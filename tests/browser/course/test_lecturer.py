@@ -26,7 +26,12 @@ from tests.guards import ANSWER
 SECRET = "0123456789abcdef" * 4
 RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 QUOTED = PICTURE.replace('"', '""')
-CLASS = f'id,name,email\nu1,Ada Lovelace,ada@example.edu\nu2,"{QUOTED}",\n'
+CLASS = f"""id,name,email
+u1,Ada Lovelace,ada@example.edu
+u2,"{QUOTED}",
+u3,Alan Turing,
+u4,Alan Turing,alan@example.edu
+"""
 
 
 def administrator(database: str) -> str:
@@ -90,7 +95,7 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         page.get_by_role("button", name="Add learners").click()
         expect(page.get_by_role("link", name=PICTURE)).to_be_visible()
         _set_homework(page)
-        expect(page.get_by_role("cell", name="0 of 2")).to_be_visible()
+        expect(page.get_by_role("cell", name="0 of 4")).to_be_visible()
         expect(page.get_by_role("cell", name="2030-10-15 23:59")).to_be_visible()
         check()
         with page.expect_download() as downloading:
@@ -100,8 +105,12 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         hand_in({row["learner"]: row["link"] for row in links}["u1"], server.address)
 
         page.get_by_role("link", name="Homework 1").click()
-        page.get_by_text("Not complete: 1 of 2 learners").click()
-        page.get_by_label("Learner", exact=True).select_option("u2")
+        page.get_by_text("Not complete: 3 of 4 learners").click()
+        # Two learners have one name.
+        chosen = page.get_by_label("Learner", exact=True)
+        for told in ("Alan Turing (u3)", "Alan Turing (alan@example.edu)"):
+            chosen.select_option(label=told)
+        chosen.select_option("u2")
         page.get_by_label("Due").nth(0).fill("2030-10-20T12:00")
         check()
         page.get_by_role("button", name="Save extension").click()
@@ -110,6 +119,8 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         # The table is worth 8 of 24 points, here of 20.
         row = page.locator("#book tbody tr").filter(has_text="Ada Lovelace")
         expect(row.locator("td")).to_have_text(["6.67", "6.67"])
+        heads = page.locator("#book tbody th").filter(has_text="Alan")
+        expect(heads).to_have_text(["Alan Turing u3", "Alan Turing alan@example.edu"])
         first = page.locator("#book tbody tr").first
         page.get_by_role("button", name="Total").click()
         expect(first).to_contain_text("Ada Lovelace")
@@ -137,7 +148,7 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         expect(page.get_by_text("0 attempts of this learner will stay.")).to_be_visible()
         page.get_by_role("button", name="Delete permanently").click()
         expect(page.get_by_role("link", name="Ada Lovelace")).to_have_count(0)
-        _delete(page, "the place of 1 learner, 1 link", check)
+        _delete(page, "the place of 3 learners, 3 links", check)
         expect(page).to_have_url(f"{server.address}/tutor/courses")
         expect(page.get_by_role("link", name="Robots 2026")).to_have_count(0)
 

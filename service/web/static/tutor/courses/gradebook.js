@@ -16,6 +16,8 @@ let book = { course, columns: [], rows: [] };
 // The column by which the rows are sorted: -1 for the name, the number of columns for the total.
 let sorting = { column: -1, descending: false };
 let isWhole = false;
+// The names that several learners have.
+let shared = new Set();
 
 const path = `v1/courses/${encodeURIComponent(course)}`;
 /** @param {string} learner */
@@ -30,6 +32,8 @@ async function load() {
   history.replaceState(null, "", location.pathname + query({ assignment }));
   try {
     book = await get(`${path}/gradebook${query({ assignment })}`);
+    const names = book.rows.map(({ name }) => name).sort();
+    shared = new Set(names.filter((name, i) => name === names[i - 1]));
     if (sorting.column > book.columns.length) sorting = { column: -1, descending: false };
     draw();
   } catch (error) {
@@ -123,11 +127,12 @@ function focus({ currentTarget }) {
 }
 
 /** @param {Api.GradebookRow} learner */
-function row({ learner, name, points, total }) {
+function row({ learner, name, email, points, total }) {
+  const more = shared.has(name) && h("span", { class: "quiet" }, " ", learnerName(email ?? learner));
   return h(
     "tr",
     {},
-    h("th", { scope: "row" }, h("a", { href: pageOf(learner) }, learnerName(name))),
+    h("th", { scope: "row" }, h("a", { href: pageOf(learner) }, learnerName(name)), more),
     ...points.map((earned, i) => h("td", {}, cell(learner, earned, book.columns[i]))),
     h("td", {}, h("strong", {}, number(total))),
   );
