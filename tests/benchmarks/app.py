@@ -30,8 +30,8 @@ async def processor_seconds() -> float:
     return time.process_time()
 
 
-def _with_trivial(*arguments: Any) -> FastAPI:
-    app = installed_app(*arguments)
+def _with_trivial(*arguments: Any, **options: Any) -> FastAPI:
+    app = installed_app(*arguments, **options)
     app.post("/trivial")(trivial)
     app.get("/processor-seconds")(processor_seconds)
     return app
