@@ -17,6 +17,7 @@ from service.expressions.limits import LIMITS
 from service.expressions.parsing.degrees import in_degrees, without_degree_functions
 from service.expressions.parsing.equation import right_side
 from service.expressions.parsing.lexing.lexer import Lexer
+from service.expressions.parsing.lexing.tokens import END, Token
 from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.printing.latex import to_latex
@@ -40,6 +41,14 @@ _CACHED_TREES: Final = 128
 _CACHED_SYMBOL_SETS: Final = 1024
 # For each operator: the operators of a left operand that needs no brackets and extends its run.
 _RUNS: Final = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
+# A token becomes at most 20 nodes, so so few of them never exceed the limit of nodes: c123456789.
+_FEW_TOKENS: Final = LIMITS.nodes // 20
+# The levels of the tree that a token adds at most, if not one. The square of a hypotenuse has four.
+# All operands together add three: c12 is a cosine of a sum of symbols.
+_LEVELS: Final = {
+    "NAME": 0, "NUMBER": 0, "LEFT": 0, "RIGHT": 0, "OPEN": 0, "CLOSE": 0, END: 0, "FUNCTION": 4,
+}  # fmt: skip
+_LEVELS_OF_OPERAND: Final = 3
 _DECIMAL: Final = re.compile(r"\d\.|\.\d")
 # The number of repaired texts that may be tried for one unreadable text, and the number of symbols
 # in all of them (about two texts of the longest that are repaired).
@@ -267,10 +276,13 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
     # One typed character, such as ½, may become several.
     if len(characters.text) > LIMITS.characters:
         raise UnreadableError("beyond", (0, len(text)), limit="terms")
-    tokens = Lexer(text, characters, vocabulary, degrees=degrees, notes=notes).run()
+    lexer = Lexer(text, characters, vocabulary, degrees=degrees, notes=notes)
+    tokens = lexer.run()
     builder = Builder(text, notes, vocabulary.turning, degrees=degrees)
     tree = parse(tokens, builder)
-    symbols = _shared(_used_symbols(tree))
+    if not _is_small(tokens):
+        _check_limits(tree)
+    symbols = _shared(frozenset(lexer.symbols))
     if degrees:
         tree = in_degrees(tree, is_angle=is_angle, notes=notes)
     elif builder.degree_functions:
@@ -284,24 +296,29 @@ def _shared(symbols: frozenset[str]) -> frozenset[str]:
     return symbols
 
 
-def _used_symbols(tree: Node) -> frozenset[str]:
-    """Return the canonical names in ``tree``. Raises UnreadableError if it is too large or deep.
+def _is_small(tokens: list[Token]) -> bool:
+    """True if no tree of these tokens exceeds a limit. This is faster than to look at the tree."""
+    if len(tokens) > _FEW_TOKENS:
+        return False
+    levels = sum([_LEVELS.get(token[0], 1) for token in tokens])
+    return levels + _LEVELS_OF_OPERAND <= LIMITS.depth
+
+
+def _check_limits(tree: Node) -> None:
+    """Raise UnreadableError if ``tree`` is too large or deep.
 
     A run of sums, or of products, counts as one level of depth.
     """
-    symbols = set()
     count, depth = 0, 0
     nodes: list[Any] = [tree]
     while nodes:
         below: list[Any] = []
         for node in nodes:
             kind = type(node)
-            if kind is SymbolNode:
-                symbols.add(node.symbol.name)
-            elif kind is Binary:
+            if kind is Binary:
                 (nodes if _is_run(node) else below).append(node.left)
                 below.append(node.right)
-            elif kind is not Number:
+            elif kind is not Number and kind is not SymbolNode:
                 below += children(node)
         count, depth = count + len(nodes), depth + 1
         if count > LIMITS.nodes or depth > LIMITS.depth:
@@ -309,7 +326,6 @@ def _used_symbols(tree: Node) -> frozenset[str]:
         nodes = below
     if count > LIMITS.tree_depth and _is_beyond_depth(tree):
         raise UnreadableError("beyond", (tree.start, tree.end), limit="terms")
-    return frozenset(symbols)
 
 
 def _is_beyond_depth(tree: Node) -> bool:

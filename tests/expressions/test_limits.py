@@ -1,10 +1,13 @@
 """Limits on expressions."""
 
+import contextlib
 import time
 
 import pytest
 
 from service.expressions import LIMITS, ExpressionError, Vocabulary, read
+from service.expressions.tree import Binary, Node, SymbolNode, children
+from tests.expressions.fuzzing import seeds, texts
 from tests.guards import STALL
 
 
@@ -48,6 +51,58 @@ def test_a_text_within_the_limits_is_read(text: str, arm: Vocabulary) -> None:
     expression = read(text, arm, quantity="angle", angle_unit="degrees")
     assert expression.mathml()
     assert expression.latex()
+
+
+@pytest.mark.parametrize(
+    ("opening", "closing"),
+    [
+        ("-", ""),
+        ("√", ""),
+        ("sin ", ""),
+        ("cos^2 ", ""),
+        ("sec^2(", ")"),
+        ("hypot^2(1,", ")"),
+        ("pow(2,", ")"),
+        ("Plus[k,k,", "]"),
+        ("|", "|"),
+        ("-(", ")^2"),
+        ("k+k*(", ")"),
+        ("2^(", ")"),
+        (r"\frac{1}{", "}"),
+        ("rad(cos ", ")"),
+    ],
+)
+@pytest.mark.parametrize("innermost", ["k", "c12", "M_SQRT1_2", "90deg"])
+def test_short_texts_are_accepted_up_to_the_limit_of_depth(
+    opening: str, closing: str, innermost: str, arm: Vocabulary
+) -> None:
+    depths = []
+    for times in range(1, 42):
+        with contextlib.suppress(ExpressionError):
+            depths.append(_depth(read(opening * times + innermost + closing * times, arm).tree))
+    assert LIMITS.depth // 2 <= max(depths) <= LIMITS.depth
+    assert len(depths) < 41
+
+
+def _depth(node: Node) -> int:
+    """Return the depth of a tree, with a run of sums or of products as one level."""
+    runs = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
+    depths = [_depth(child) for child in children(node)]
+    if isinstance(node, Binary) and isinstance(node.left, Binary):
+        depths[0] -= node.left.operator in runs[node.operator]
+    return 1 + max(depths, default=0)
+
+
+def test_all_symbols_of_a_text_are_known(arm: Vocabulary) -> None:
+    for text in [*seeds(), *texts(300, seed=5)]:
+        with contextlib.suppress(ExpressionError):
+            expression = read(text, arm)
+            pending, names = [expression.tree], set()
+            while pending:
+                node = pending.pop()
+                names |= {node.symbol.name} if isinstance(node, SymbolNode) else set()
+                pending += children(node)
+            assert expression.symbols == names, text
 
 
 def test_the_limits_are_those_of_the_design() -> None:

@@ -150,7 +150,15 @@ class _Compiler:
         kind = type(node)
         if kind is Binary:
             left, right = self.part(node.left), self.part(node.right)  # type: ignore[union-attr]
-            return self._apply(node.operator, left, right)  # type: ignore[union-attr]
+            name = node.operator  # type: ignore[union-attr]
+            steps = self.steps
+            if self.constants or name in _MAY_BE_NON_FINITE or self.maybe_non_finite:
+                return self._apply(name, left, right)
+            # A fast path, as in ``_apply``.
+            first, second = steps[left], steps[right]
+            is_short = first and second and len(first) + len(second) < _LONGEST_KEY
+            steps += (f"{first} {second} {name}" if is_short else None, name, left, right)
+            return len(steps) - 4
         if kind is SymbolNode:
             steps = self.steps
             steps += (node.symbol.name, None)  # type: ignore[union-attr]
@@ -158,7 +166,11 @@ class _Compiler:
         if kind is Call:
             function, arguments = node.function, node.arguments  # type: ignore[union-attr]
             if type(arguments[0]) is SymbolNode and (function == "cos" or function == "sin"):
-                return self._sine_or_cosine(function, arguments[0].symbol.name)
+                # A fast path for most calls.
+                steps, symbol = self.steps, arguments[0].symbol.name
+                at = len(steps)
+                steps += (symbol, None, _sine_or_cosine_key(function, symbol), function, at, None)
+                return at + 2
             return self._apply(function, *map(self.part, arguments))
         if kind is Number:
             return self._constant(node.value)  # type: ignore[union-attr]
@@ -168,13 +180,6 @@ class _Compiler:
             operand = self.part(node.operand)  # type: ignore[union-attr]
             return self._apply("*", operand, self._constant(_RADIANS[node.unit]))  # type: ignore[union-attr]
         return self._constant(pi)
-
-    def _sine_or_cosine(self, function: str, symbol: str) -> int:
-        """Append the sine or cosine of a symbol; return its place. A fast path."""
-        steps = self.steps
-        at = len(steps)
-        steps += (symbol, None, _sine_or_cosine_key(function, symbol), function, at, None)
-        return at + 2
 
     def _constant(self, value: float) -> int:
         at = len(self.steps)

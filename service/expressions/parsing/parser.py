@@ -87,30 +87,40 @@ class _Parser:
         return left
 
     def product(self) -> Node:
+        tokens, builder = self.tokens, self.builder
         left = self.signed()
         while True:
-            terminal = self.tokens[self.at][0]
+            at = self.at
+            terminal = tokens[at][0]
             if terminal == "STAR":
-                self.at += 1
-                left = self.builder.multiply(left, self.signed())
+                # A fast path, as in ``signed``.
+                factor = tokens[at + 1]
+                if factor[0] in _SIMPLE and tokens[at + 2][0] not in _POSTFIXES:
+                    self.at = at + 2
+                    left = builder.multiply(left, factor[1])
+                    continue
+                self.at = at + 1
+                left = builder.multiply(left, self.signed())
             elif terminal == "JOIN":
                 self.at += 1
-                left = self.builder.join(left, self.power([]))
+                left = builder.join(left, self.power([]))
             elif terminal == "SLASH":
                 self.at += 1
-                left = self.builder.divide(left, self.signed())
+                left = builder.divide(left, self.signed())
             else:
                 return left
 
     def signed(self) -> Node:
         # A fast path for most factors: a name or a number without a sign, a unit or a power.
         tokens, at = self.tokens, self.at
-        if tokens[at][0] in _SIMPLE and tokens[at + 1][0] not in _POSTFIXES:
+        terminal = tokens[at][0]
+        if terminal in _SIMPLE and tokens[at + 1][0] not in _POSTFIXES:
             self.at += 1
             node: Node = tokens[at][1]
             return node
         pending: _Pending = []
-        self.signs(pending)
+        if terminal in _SUMS:
+            self.signs(pending)
         return self.power(pending)
 
     def signs(self, pending: _Pending) -> None:

@@ -28,6 +28,8 @@ from service.expressions.vocabulary.symbols import Symbol
 from service.translations import say
 
 _MOST_PARTS: Final = 64
+# The nodes that may be a number, with or without a sign or a unit.
+_MAY_BE_NUMBERS: Final = frozenset({Number, Negation, Unit})
 # The codes of notes that a number was read in radians.
 _ON_RADIANS: Final = frozenset({"bare_radians", "mixed_units"})
 
@@ -59,10 +61,11 @@ class Builder:
 
     def add(self, operator: Operator, left: Node, right: Node) -> Node:
         """Build left + right or left - right."""
-        self._note_degrees(left, right)
-        self._add_note(on_sum(left, right, degrees=self.degrees))
-        if operator == "+":
-            self._add_note(on_shorthand(self.source, left, right, self.turning))
+        if type(left) in _MAY_BE_NUMBERS or type(right) in _MAY_BE_NUMBERS:
+            self._note_degrees(left, right)
+            self._add_note(on_sum(left, right, degrees=self.degrees))
+            if operator == "+":
+                self._add_note(on_shorthand(self.source, left, right, self.turning))
         return Binary(operator, left, right, left.start, right.end)
 
     def multiply(self, left: Node, right: Node) -> Node:

@@ -11,7 +11,7 @@ from service.expressions.parsing.lexing.indices import INDEX
 from service.expressions.parsing.lexing.joint_markers import read_star
 from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS, Token
 from service.expressions.parsing.lexing.word_lexer import WordLexer
-from service.expressions.parsing.lexing.words import RUN
+from service.expressions.parsing.lexing.words import RUN, sole_operand
 from service.expressions.tree import Number
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -42,46 +42,59 @@ class Lexer(WordLexer):
 
     def run(self) -> list[Token]:
         """Return the tokens, with END last. May raise UnreadableError."""
-        text, match, position = self.text, _TOKEN.match, 0
-        in_place, length = self.starts is None, len(text)
+        text, position, length = self.text, 0, len(self.text)
         while position < length:
-            found = match(text, position)
-            # The last alternative takes any character, so something is always found.
-            assert found is not None
-            group = found.lastindex or 0
-            start, position = found.span(group)
-            if group == 1:
-                position = self._word(found[1], start, position)
-            elif group == 3:
-                operator = found[3]
-                terminal = _TERMINALS.get(operator)
-                if terminal is None or (operator == "*" and self._is_joint()):
-                    position = self._operator(operator, start, position)
-                    continue
-                # A fast path for most tokens: an unambiguous operator in an unchanged text.
-                a, b = (start, position) if in_place else self._span(start, position)
-                self.tokens.append((terminal, None, a, b))
-                self.last = terminal
-            elif group == 2:
-                self._number(found[2], start, position)
-            elif not self._is_percent_pi(found[4], position):
-                raise self._stray(found[4], self._span(start, position))
+            position = self._run_from(position, text)
         end = len(self.source)
         self.tokens.append((END, None, end, end))
         if self.indices:
             self._check_indices()
         return self.tokens
 
+    def _run_from(self, position: int, text: str) -> int:
+        """Read tokens until one of them takes more than its match; return the place after it."""
+        tokens, vocabulary, in_place = self.tokens, self.vocabulary, self.starts is None
+        # The last alternative takes any character, so no character is skipped.
+        for found in _TOKEN.finditer(text, position):
+            group = found.lastindex or 0
+            start, position = found.span(group)
+            if group == 1:
+                # A fast path for most names.
+                piece = sole_operand(found[1], vocabulary) if in_place else None
+                if piece is not None:
+                    self._sole_operand(piece, start, position)
+                    continue
+                position = self._word(found[1], start, position)
+            elif group == 3:
+                operator = found[3]
+                terminal = _TERMINALS.get(operator)
+                if terminal is not None and not (
+                    operator == "*" and self.last == "NAME" and self._is_joint()
+                ):
+                    # A fast path for most tokens: an unambiguous operator in an unchanged text.
+                    a, b = (start, position) if in_place else self._span(start, position)
+                    tokens.append((terminal, None, a, b))
+                    self.last = terminal
+                    continue
+                position = self._operator(operator, start, position)
+            elif group == 2:
+                self._number(found[2], start, position)
+            elif not self._is_percent_pi(found[4], position):
+                raise self._stray(found[4], self._span(start, position))
+            if position != found.end():
+                break
+        return position
+
     # --- numbers
 
     def _number(self, literal: str, start: int, end: int) -> None:
-        span = self._span(start, end)
+        a, b = span = self._span(start, end)
         value = float(literal)
-        if not math.isfinite(value):
+        if value == math.inf:
             raise UnreadableError("not_finite", span)
         if "e" in literal or "E" in literal:
             self._check_power_of_ten(literal, span)
-        self._operand("NUMBER", Number(value, literal, *span), *span)
+        self._operand("NUMBER", Number(value, literal, a, b), a, b)
 
     def _check_power_of_ten(self, literal: str, span: Span) -> None:
         """Raise UnreadableError for 2e1 if e1 is declared, and for 2e-1 if e is declared."""

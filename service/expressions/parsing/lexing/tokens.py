@@ -25,7 +25,7 @@ class TokenWriter:
 
     __slots__ = (
         "brackets", "degrees", "ends", "fraction_end", "from_one", "has_separators", "indices",
-        "last", "notes", "partners", "source", "starts", "text", "tokens", "vocabulary",
+        "last", "notes", "partners", "source", "starts", "symbols", "text", "tokens", "vocabulary",
     )  # fmt: skip
 
     def __init__(
@@ -45,6 +45,8 @@ class TokenWriter:
         self.degrees = degrees
         self.notes = WordNotes(source, vocabulary, notes)
         self.tokens: list[Token] = []
+        # The canonical names of the symbols so far.
+        self.symbols: set[str] = set()
         self.last = ""
         self.brackets = Brackets()
         self.has_separators = not source.isprintable()

@@ -46,6 +46,7 @@ class WordLexer(TokenWriter):
             a, b = (a, stop) if in_place else self._span(a, stop)
             if kind == "symbol":
                 symbol = piece.symbols[0]
+                self.symbols.add(symbol.name)
                 self._operand("NAME", SymbolNode(symbol, a, b), a, b)
                 if piece.word:
                     self.notes.other_capitals(piece.word, a, b)
@@ -152,10 +153,6 @@ class WordLexer(TokenWriter):
                     raise UnreadableError("index", span, reason="mixed")
 
     def _shorthand(self, piece: Piece, last: bool, end: int, a: int, b: int) -> None:
-        first, *others = piece.symbols
-        total: Node = SymbolNode(first, a, b)
-        for symbol in others:
-            total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
         if piece.ambiguous:
             goes_on = not last or self.text[end : end + 1] in {"(", "[", "{", ".", "°", "√", "^"}
             if self.degrees or goes_on:
@@ -164,7 +161,25 @@ class WordLexer(TokenWriter):
                     "ambiguous_shorthand", (a, b), function=piece.word, names=names
                 )
         self.notes.shorthand(piece, a, b)
-        self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
+        self._sole_operand(piece, a, b)
+
+    def _sole_operand(self, piece: Piece, a: int, b: int) -> None:
+        """Emit a symbol or a shorthand."""
+        symbols = piece.symbols
+        first = symbols[0]
+        node: Node = SymbolNode(first, a, b)
+        self.symbols.add(first.name)
+        if len(symbols) > 1:
+            for symbol in symbols[1:]:
+                self.symbols.add(symbol.name)
+                node = Binary("+", node, SymbolNode(symbol, a, b), a, b)
+        if piece.kind == "shorthand":
+            node = Call(piece.word, (node,), a, b)
+        if self.last in OPERAND_ENDS:
+            self._operand("NAME", node, a, b)
+        else:
+            self.tokens.append(("NAME", node, a, b))
+            self.last = "NAME"
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
         """Emit a function with the power after its name, if any; return the place after it."""

@@ -83,6 +83,22 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
     return tuple(_with_underscores(piece, kept, run) for piece in pieces)
 
 
+@lru_cache(maxsize=8192)
+def sole_operand(run: str, vocabulary: Vocabulary) -> Piece | None:
+    """Return the piece of a run that is one symbol or one shorthand, or None.
+
+    None also if the run is the name of a module, or if its shorthand may get a note.
+    """
+    pieces = None if run in functions.MODULES else split(run, vocabulary)
+    if pieces is None or len(pieces) > 1:
+        return None
+    piece = pieces[0]
+    is_noted = piece.ambiguous or run[0] in "CS"
+    if piece.kind == "symbol" or (piece.kind == "shorthand" and not is_noted):
+        return piece
+    return None
+
+
 def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
     start, end = kept[piece.start], kept[piece.end - 1] + 1
     ambiguous = piece.ambiguous and "_" not in run[start:end]
