@@ -8,6 +8,7 @@ PORT   ?= $(or $(DH_GRADER_PORT),8000)
 COUNT  ?= 100000
 TABLES ?= 1000
 ROBOTS ?= 5000
+SEEDS  ?= 10000
 SEED   ?= 1
 MINUTES ?= 10
 SECONDS ?= 60
@@ -25,7 +26,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips robots durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -123,6 +124,9 @@ wheel: $(dev) ## install the built wheel with pip and pipx on every Python that 
 slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
 	$(python) -m tests.pose_slips.unseen --arms 200 --show
+
+robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, links, labels, forms
+	for level in 1 2 3 4; do $(python) -m tests.variants.robots --level $$level --seeds "$(SEEDS)" || exit; done
 
 durability: $(dev) ## kill the service while it records attempts and hand-ins, and migrations, 20 times on each database
 	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py

@@ -210,7 +210,7 @@ def application(
     own, gate = OwnVariants(store, access), PracticeGate(store, catalogue)
     for router in (
         exercises.routes(seen, feedback, own),
-        practice.routes(),
+        practice.routes(practised),
         grading.routes(seen, feedback, access, monitor, gate, own),
         hints.routes(seen, feedback, access, gate, own),
         attempts.routes(catalogue, feedback, store, access, gate.check, monitor, cors_origins),

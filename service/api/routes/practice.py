@@ -1,16 +1,23 @@
 """The route that deals generated robots."""
 
+from functools import partial
 from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 
 from service.api.document.openapi import MAY_NEED_KEY, refusals
+from service.api.http.lookup import Catalogue
 from service.api.http.problems import invalid
-from service.api.turns import give_way
+from service.api.turns import give_way, run_in_turns
 from service.contract.exercises import PracticeRobot
 from service.kinematics.dh import Convention
-from service.variants.robots.dealing import candidates, difficulty_of, has_situation
+from service.variants.robots.dealing import (
+    asks_enough,
+    candidates,
+    difficulty_of,
+    has_situation,
+)
 from service.variants.robots.difficulty import Situation
 from service.variants.robots.practice_id import practice_id
 
@@ -23,8 +30,8 @@ _AFTER = Query(
 _FAVOUR = Query(description="A situation that the robot should have.")
 
 
-def routes() -> APIRouter:
-    """Return the route that deals robots."""
+def routes(catalogue: Catalogue) -> APIRouter:
+    """Return the route that deals robots of the catalogue."""
     router = APIRouter(prefix="/v1/practice", tags=["exercises"])
 
     @router.get(
@@ -53,10 +60,13 @@ def routes() -> APIRouter:
             detail = {"type": "unknown", "loc": ("after",), "msg": "is not the id of a robot"}
             raise invalid([detail])
         chosen = None
-        for chosen in candidates(level, convention, last, favour):
-            if favour is None or has_situation(chosen, favour):
-                break
+        for chosen in candidates(level, convention, last):
+            # A look takes a millisecond and a grading more, so others work in between.
             await give_way(request)
+            if favour is not None and not has_situation(chosen, favour):
+                continue
+            if await run_in_turns(request, partial(asks_enough, catalogue[str(chosen)])):
+                break
         assert chosen is not None
         return PracticeRobot(
             id=str(chosen), level=level, convention=convention, difficulty=difficulty_of(chosen)

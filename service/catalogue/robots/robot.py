@@ -52,6 +52,14 @@ class ReferenceTable:
     joints: tuple[Joint, ...]
     rows: tuple[FormulaRow, ...]
 
+    @property
+    def lazy_rows(self) -> list[dict[str, str]]:
+        """The answer that needs no knowledge: the joint variables in their columns, and zeros."""
+        rows = [dict.fromkeys(COLUMNS, "0") for _ in self.rows]
+        for row, joint in zip(rows, self.joints, strict=False):
+            row["d" if joint.prismatic else "theta"] = joint.variable
+        return rows
+
     @cached_property
     def labels(self) -> tuple[str, ...]:
         """The row labels: joint numbers, and "e" for the fixed row after the last joint.

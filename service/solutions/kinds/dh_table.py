@@ -2,7 +2,6 @@
 
 from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.solutions import layout
 from service.solutions.model_solution import PrintedAnswer
@@ -23,9 +22,5 @@ def lazy(part: DhTableSpec, exercise: Exercise) -> list[object]:
     """Return a table with the joint variables in their columns and 0 elsewhere."""
     robot, asked = exercise.robot, part.convention
     convention = asked if isinstance(asked, Convention) else robot.convention
-    table = robot.tables[convention]
-    rows = [dict.fromkeys(COLUMNS, "0") for _ in table.rows]
-    for row, joint in zip(rows, table.joints, strict=False):
-        row["d" if joint.prismatic else "theta"] = joint.variable
     named = {"convention": convention.value} if asked == "either" else {}
-    return [{"rows": rows, **named}]
+    return [{"rows": robot.tables[convention].lazy_rows, **named}]

@@ -4,10 +4,13 @@ import httpx
 import pytest
 
 from service.api.application import application
+from service.kinematics.dh import Convention
 from service.variants.robots.dealing import has_situation
 from service.variants.robots.difficulty import Situation
 from service.variants.robots.practice_catalogue import MOST_ROBOTS, CatalogueWithPractice, _memoized
-from service.variants.robots.practice_id import practice_id
+from service.variants.robots.practice_id import PracticeId, practice_id
+from service.variants.robots.robot_exercise import robot_exercise
+from tests.variants.robots.checks import lazy_share
 
 
 def test_a_robot_is_found_by_its_id_everywhere(client: httpx.Client) -> None:
@@ -32,6 +35,16 @@ def test_the_next_robot_follows_the_last_one(client: httpx.Client) -> None:
     harder = client.get(f"/v1/practice/next?level=2&convention=modified&after={first}").json()
     assert harder["id"] == "practice-2-modified~6"
     assert harder["difficulty"] > following["difficulty"]
+
+
+def test_a_robot_in_which_zeros_earn_much_is_not_dealt(client: httpx.Client) -> None:
+    # In robot 1000 of level 1 they earn more than a quarter, because marks give one row up.
+    for number in (998, 999, 1000):
+        last = PracticeId(1, Convention.MODIFIED, number)
+        dealt = client.get(f"/v1/practice/next?level=1&convention=modified&after={last}").json()
+        later = (last.following(steps) for steps in range(1, 9))
+        fair = next(each for each in later if lazy_share(robot_exercise(each)) <= 0.25)
+        assert dealt["id"] == str(fair)
 
 
 @pytest.mark.parametrize("favour", Situation)

@@ -30,7 +30,8 @@ _FORESHORTENED: Final = 0.2703
 # A table must have about as many cells with something to know as rows, or a lazy answer earns much.
 _LEAST_CONTENT: Final = 0.7903
 # With few rows, wrong cells that are not counted matter more: more cells than rows, and even more
-# if the last row is split. A few robots remain of which a lazy answer earns up to 38 %.
+# if the last row is split. The few robots in which a lazy answer earns more all the same are not
+# dealt (``asks_enough``).
 _FEW: Final = 4
 _SPLIT: Final = 3
 _SPATIAL: Final = 6
