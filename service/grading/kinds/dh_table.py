@@ -42,7 +42,12 @@ from service.grading.numerics.comparison import Match
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.tables.column_headers import QUANTITIES
-from service.grading.reading.tables.table import StudentRow, StudentTable, read_table
+from service.grading.reading.tables.table import (
+    StudentRow,
+    StudentTable,
+    read_table,
+    without_empty_end,
+)
 from service.grading.report import (
     CellReport,
     Place,
@@ -71,6 +76,7 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
     """Read the rows of a table; return None if there are none."""
     empty_is_zero = part.empty_cells == "zero"
     table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
+    table = without_empty_end(table, len(grading.exercise.robot.joints))
     return with_given_rows(part, table, grading) if table.rows else None
 
 

@@ -81,6 +81,11 @@ class StudentRow:
         return any(entry is GIVEN_UP for entry in self.entries)
 
     @property
+    def is_missing(self) -> bool:
+        """True if all cells are empty."""
+        return all(entry.verdict is Verdict.MISSING for entry in self.entries)
+
+    @property
     def has_decimal(self) -> bool:
         """True if any cell contains a decimal."""
         for entry in self.entries:
@@ -117,6 +122,16 @@ class StudentTable:
 
 # A function that reads a table with its columns in another order of "a", "alpha", "d", "theta".
 Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
+
+
+def without_empty_end(table: StudentTable, joints: int) -> StudentTable:
+    """Return the table without empty rows after the rows of all joints, as if they were absent.
+
+    So a table that is right in the other convention, with one row less than the form, is named.
+    """
+    written = [i for i, row in enumerate(table.rows) if not row.is_missing]
+    kept = max(joints, written[-1] + 1) if written else len(table.rows)
+    return replace(table, rows=table.rows[:kept], values=table.values[:kept])
 
 
 def read_table(

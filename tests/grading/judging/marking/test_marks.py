@@ -47,6 +47,17 @@ def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> N
     assert report.points == pytest.approx(6)
 
 
+def test_a_standard_table_is_named_if_the_row_of_the_tool_is_empty(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """In the standard convention, the three joints need three rows; the form has a fourth, e."""
+    rows = [(f"l{i}", "0", "0", f"q{i}") for i in (1, 2, 3)]
+    report = graded_table(catalogue["planar-rrr"], [*rows, ("", "", "", "")])
+    assert codes(report) == ["other_convention"]
+    assert report.points == 8 / 2
+    assert report.rows[3].verdict is Verdict.MISSING
+
+
 def test_a_slip_of_the_whole_table_costs_no_more_than_its_cells(
     catalogue: Mapping[str, Exercise],
 ) -> None:
