@@ -14,6 +14,8 @@ _INDEXED = re.compile(r"([^0-9]+)[0-9]+")
 _STEM = re.compile(r"[^0-9_]+")
 # The letters that textbooks use for lengths.
 _OF_LENGTHS: Final = frozenset("abdhlrLADHR")
+# A short name of a joint angle. It is not read as one: t may also be a time or a translation.
+_SHORT_ANGLE: Final = re.compile(r"t([0-9]{1,2})")
 _OF_JOINTS: Final = frozenset({"q", "theta", "θ"})
 _LISTED: Final = 8
 
@@ -26,12 +28,19 @@ def repair(failure: Failure) -> Repair:
     if (product := _product(run, vocabulary)) is not None:
         message = paragraph(message, say("For a product, write {product}.", product=product))
         return error(failure, "unknown_symbol", message)
-    known = nearest(run, vocabulary, failure.details["called"])
+    known = nearest(run, vocabulary, failure.details["called"]) or _angle(run, vocabulary)
     if known is not None:
         message = paragraph(message, say("Did you mean {name}?", name=known))
         return error(failure, "unknown_symbol", message, failure.replaced(known))
     message = paragraph(message, _names(normal_form(run), vocabulary))
     return error(failure, "unknown_symbol", message)
+
+
+def _angle(run: str, vocabulary: Vocabulary) -> str | None:
+    """Return the joint angle that t1 may mean, or None."""
+    match = _SHORT_ANGLE.fullmatch(normal_form(run))
+    angle = vocabulary.turning.get(int(match[1])) if match else None
+    return angle.name if angle else None
 
 
 def _product(run: str, vocabulary: Vocabulary) -> str | None:
