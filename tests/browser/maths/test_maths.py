@@ -81,3 +81,14 @@ def test_messages_are_typeset(visit: Callable[..., Visit], service: str) -> None
     told = page.locator(".part").first.locator(".messages math, .notes math")
     expect(told).not_to_have_count(0)
     assert plain(page) == []
+
+
+def test_messages_of_the_3d_view_are_typeset(visit: Callable[..., Visit], service: str) -> None:
+    page = visit().page
+    open_exercise(page, service, "planar-rr")
+    page.get_by_role("button", name="Move it in 3D").click()
+    for i, text in enumerate(["a1", "0", "0", "thta1"]):
+        cells(page).nth(i).fill(text)
+    told = page.locator(".told")
+    expect(told).to_contain_text("Did you mean")
+    expect(told.locator("math")).to_have_text(["θ", "θ1"])

@@ -99,3 +99,45 @@ def test_a_key_writes_at_the_caret_and_can_be_undone(visit: Opening, service: st
     expect(cell).not_to_have_value("π2*")
     for key in ["θ", "d", "π", "°", "α"]:
         expect(keys.get_by_text(key, exact=True)).to_have_count(1)
+
+
+PLACED = [
+    *["1", "+z", "0", "0", "0", "+x"],
+    *["2", "-z", "l1", "0", "0", "+x"],
+    *["3", "+z", "l1+l2", "0", "0", "+z"],
+]
+# How many pixels an element shows too little of what is in it.
+CUT = "each => each.scrollWidth - each.clientWidth"
+
+
+@pytest.mark.parametrize(
+    ("exercise", "texts"),
+    [("planar-rrr-frames", PLACED), ("planar-rr", ["a1", "0", "thta1", "thta1"])],
+)
+def test_nothing_is_cut_on_a_phone(
+    visit: Opening, service: str, exercise: str, texts: list[str]
+) -> None:
+    page = visit(**PHONE).page
+    open_exercise(page, service, exercise)
+    for i, text in enumerate(texts):
+        cells(page).nth(i).fill(text)
+    check(page, tap=True)
+    expect(page.locator(".repair")).to_have_count(4 if "thta1" in texts else 0)
+    # The columns, the names of the parts below, and the texts that are proposed.
+    for name in (".part .scroll", ".rail ol", ".repair"):
+        shown = page.locator(name).filter(visible=True)
+        assert [each.evaluate(CUT) for each in shown.all()] == [0] * shown.count(), name
+
+
+def test_the_tools_fit_on_one_line_beside_the_3d_view(visit: Opening, service: str) -> None:
+    page = visit(viewport={"width": 1280, "height": 800}).page
+    open_exercise(page, service, "scara")
+    cells(page).first.fill("a1")
+    page.get_by_role("button", name="Move it in 3D").click()
+    expect(page.locator(".saved")).to_have_text("Saved in this browser")
+    expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
+    helps = page.locator("dh-exercise .help-link").bounding_box()
+    unit = page.locator("dh-exercise .tools select").bounding_box()
+    assert helps is not None
+    assert unit is not None
+    assert abs(helps["y"] - unit["y"]) < unit["height"]

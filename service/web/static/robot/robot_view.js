@@ -1,7 +1,7 @@
 // The view of a moving robot: it decides what to request from the service, and when. The service computes
 // the pictures, `stage.js` shows them, in 3D if the browser can, and `view_panels.js` has the controls.
 
-import { h, message } from "../shared/dom.js";
+import { h } from "../shared/dom.js";
 import { ViewWords } from "./frames/view_words.js";
 import { pictureOf, sizeOf, Sweep } from "./motion.js";
 import { leftOutText } from "./placing/placed_words.js";
@@ -10,6 +10,7 @@ import { RowLoader } from "./rows/row_loader.js";
 import { Stage } from "./stage.js";
 import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
 import { worded } from "../shared/words/words.js";
+import { typesetMessage } from "../typeset/names.js";
 
 const STYLE = new URL("./robot_view.css", import.meta.url).href;
 const AFTER_A_KEY = 250;
@@ -182,7 +183,7 @@ export class RobotView {
       this.#show(answer);
     } catch (error) {
       if (turn !== this.#turn || this.#closed) return undefined;
-      this.told.replaceChildren(...message(error.message));
+      this.told.replaceChildren(...typesetMessage(error.message));
       if (error.kind !== "refused") this.#timer = setTimeout(() => this.#refresh(), RETRY);
     }
     return undefined;
@@ -368,7 +369,7 @@ export class RobotView {
       ? worded("The view shows the frames before it.")
       : "";
     this.told.replaceChildren(
-      ...message([reason, ends, leftOutText(placed), ...lost].filter(Boolean).join(" ")),
+      ...typesetMessage([reason, ends, leftOutText(placed), ...lost].filter(Boolean).join(" ")),
     );
     this.told.hidden = !this.told.textContent;
   }

@@ -8,6 +8,7 @@ import { Playback } from "./playback.js";
 import { frameAt, movesOf } from "./row_moves.js";
 import { amountText, axisText, captionText, moveText, placeText } from "./row_words.js";
 import { worded } from "../../shared/words/words.js";
+import { typeset } from "../../typeset/names.js";
 
 const STYLE = new URL("./rows.css", import.meta.url).href;
 const STEP = 0.05;
@@ -236,7 +237,14 @@ export class RowPlayer {
   // Words.
 
   #announce() {
-    this.view.host.announce([this.caption, this.told].map((each) => each.textContent).join(" "));
+    this.view.host.announce([this.caption, this.told].map((each) => each.dataset.text).join(" "));
+  }
+
+  /** Show a text with its names typeset, if it has changed. @param {HTMLElement} element @param {string} text */
+  #say(element, text) {
+    if (element.dataset.text === text) return;
+    element.dataset.text = text;
+    element.replaceChildren(...typeset(text));
   }
 
   #write() {
@@ -244,7 +252,7 @@ export class RowPlayer {
     const [row, convention, unit] = [this.#row, this.#convention, this.unit];
     const moves = this.#moves(row);
     const caption = captionText({ row, at, moves, convention, unit });
-    if (this.caption.textContent !== caption) this.caption.textContent = caption;
+    this.#say(this.caption, caption);
     if (!this.bar.matches(":active")) this.bar.value = String(at);
     this.bar.setAttribute("aria-valuetext", caption);
     this.run.textContent = this.playback.isRunning ? worded("Pause") : worded("Play");
@@ -253,7 +261,7 @@ export class RowPlayer {
     const texts = moves.map((move) => moveText(move, row, convention, unit));
     if (this.list.dataset.texts !== texts.join()) {
       this.list.dataset.texts = texts.join();
-      this.list.replaceChildren(...texts.map((text) => h("li", {}, text)));
+      this.list.replaceChildren(...texts.map((text) => h("li", {}, ...typeset(text))));
     }
     const current = at > 0 ? this.#current : -1;
     [...this.list.children].forEach((item, i) => {
@@ -268,14 +276,14 @@ export class RowPlayer {
   #tell(moves) {
     const start = this.#picture.frames?.[this.#row - 1];
     this.told.classList.remove("misses");
-    if (this.playback.isRunning || !start) return this.told.replaceChildren();
+    if (this.playback.isRunning || !start) return this.#say(this.told, "");
     const frame = frameAt(start, moves, this.playback.at);
     const lines = [placeText(frame)];
     const found = this.#axisGap(frame);
     if (found) lines.push(axisText(this.#row, found.joint, found.gap));
     const tool = this.#toolGap(frame);
     if (tool) lines.push(gapSentence(tool));
-    this.told.textContent = lines.join(" ");
+    this.#say(this.told, lines.join(" "));
     return this.told.classList.toggle("misses", [found?.gap, tool].some((gap) => gap && !isClosed(gap)));
   }
 
