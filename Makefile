@@ -26,7 +26,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows policies prints slips robots durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows sums policies prints slips robots durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -110,6 +110,9 @@ rows: $(dev) ## grade tables with one wrong row; leave rows and cells of wrong t
 	$(python) -m tests.frame_choice.rows.one_row --tables 5000 --seed "$(SEED)"
 	$(python) -m tests.frame_choice.rows.blanking --tries 20000 --seed "$(SEED)"
 	$(python) -m tests.frame_choice.rows.careless --seed "$(SEED)"
+
+sums: $(dev) ## hand in 1,000 random wrong answers to the tables of each exercise: do the points add up? (SEED=)
+	$(python) -m tests.grading.judging.marking.sums --tables --seed "$(SEED)"
 
 policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
 	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"
