@@ -33,11 +33,19 @@ def known_cells(
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
 
-def of_rows(known: KnownCells) -> Content:
+def of_rows(
+    known: KnownCells,
+    *,
+    most: int | None = None,
+    empty_is_wrong: bool = False,
+    usual: tuple[int, int] | None = None,
+) -> Content:
     """Return the content of rows ``(rows, cells)`` that each have a worth: tables and screws."""
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
-    return Content(rows, groups, besides=True)
+    return Content(
+        rows, groups, besides=True, most=most, empty_is_wrong=empty_is_wrong, usual=usual
+    )
 
 
 def of_one_row(known: KnownCells) -> Content:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, count, repeat
 from string import ascii_lowercase
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,8 @@ from service.kinematics.dh import Convention
 from service.kinematics.frames.frame_choice import NO_SUCH_CELL, ROW_COSTS, WRONG_CELL, departure
 from service.kinematics.transforms import Matrices, Numbers
 from service.translations import say
+
+_ARE_ANGLES: Final = tuple(IS_ANGLE.tolist())
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,11 +150,12 @@ def _plainly_differs(
     expected = reference_values(reference, grading.samples)
     if len(rows) != len(expected):
         return False
-    limits = [each * PLAINLY_DIFFERENT for each in column_scales(grading).tolist()]
+    length = PLAINLY_DIFFERENT * grading.exercise.length_scale
     for row, right in zip(rows, expected[..., 0].tolist(), strict=True):
-        cells = zip(row.values[:, 0].tolist(), right, limits, IS_ANGLE.tolist(), strict=True)
-        for value, wanted, limit, is_angle in cells:
+        cells = zip(row.values[:, 0].tolist(), right, _ARE_ANGLES, strict=True)
+        for value, wanted, is_angle in cells:
             error = math.remainder(value - wanted, math.tau) if is_angle else value - wanted
+            limit = PLAINLY_DIFFERENT if is_angle else length
             if abs(error) > limit:
                 return True
     return False

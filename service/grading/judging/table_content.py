@@ -46,7 +46,7 @@ def table_content(
     of_robot = exercise.robot.convention
     same = task if convention is of_robot else replace(task, convention=of_robot)
     usual = _of_reference(same).usual
-    return replace(of_rows(known), most=most, empty_is_wrong=True, usual=usual)
+    return of_rows(known, most=most, empty_is_wrong=True, usual=usual)
 
 
 def _differs_from_lazy(

@@ -161,7 +161,8 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
     table[~finite] = 0.0
     variables = variables_of(roles, grading.samples)
     right = finite & moves_with(table, changes(variables), IS_ANGLE[:, None])
-    wrong = frozenset((i, column) for i, column in np.argwhere(~right).tolist())
+    places = [] if right.all() else np.argwhere(~right).tolist()
+    wrong = frozenset((i, column) for i, column in places)
     return _Case(roles, table, variables, wrong, convention, grading)
 
 

@@ -152,6 +152,8 @@ def with_true_numbers(
     ``as_written`` of a row keeps its numbers. Return ``roles`` itself if the table is already valid
     (perhaps because its angles were made exact, ``rounded_angles``), or no shifts make it valid.
     """
+    if not _has_decimals(roles):
+        return roles
     written, known = _with_known_angles(roles, grading)
     decimals = _decimals(written, grading, known)
     if decimals is None or _has_pose(roles, convention, grading):
@@ -171,7 +173,7 @@ def with_rounded_cells(
     ``nearest`` was computed from the rounded numbers, so that even right cells differ slightly.
     """
     roles = nearest.roles
-    if nearest.cost < WRONG_CELL:
+    if nearest.cost < WRONG_CELL or not _has_decimals(roles):
         return nearest
     written, known = _with_known_angles(roles, grading)
     if _decimals(written, grading, known) is None:
@@ -211,9 +213,9 @@ def with_rounded_cells(
 def _decimals(
     roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex]
 ) -> SharedDecimals | None:
-    """Return the rounded decimals of a table; None if it has none, or a cell has no value."""
+    """Return the rounded decimals of a table; None if all are exact, or a cell has no value."""
     rows = [role.row for role in roles if role.row is not None]
-    if len(rows) < len(roles) or not any(row.has_decimal for row in rows):
+    if len(rows) < len(roles):
         return None
     if not np.isfinite(handed_in_values(roles)).all():
         return None
@@ -223,6 +225,11 @@ def _decimals(
     decimals = SharedDecimals(expressions, grading.samples)
     # A number whose rounding is below the tolerance counts as exact.
     return decimals if decimals.units.max(initial=0.0) > EXACT_VALUE else None
+
+
+def _has_decimals(roles: tuple[Role, ...]) -> bool:
+    """True if any cell of a table contains a decimal."""
+    return any(role.row is not None and role.row.has_decimal for role in roles)
 
 
 def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> bool:
