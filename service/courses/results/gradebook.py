@@ -1,9 +1,9 @@
 """The gradebook of a course, and the learners who have not handed in."""
 
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
 
-from sqlalchemy import JSON, Connection, func, or_, select, text, true, type_coerce
+from sqlalchemy import JSON, ColumnElement, Connection, func, or_, select, text, true, type_coerce
 
 from service.attempts.storage.tables import assignments, attempts
 from service.contract.courses import (
@@ -26,8 +26,11 @@ SHARE = func.coalesce(attempts.c.awarded, attempts.c.points) / func.nullif(attem
 # A learner, an assignment and an exercise.
 GradebookPlace = tuple[str, str, str]
 
-# The aggregate that makes a JSON object, by the name of the SQL dialect.
-_TOGETHER: Final = {"postgresql": func.json_object_agg, "sqlite": func.json_group_object}
+# The aggregate that makes a list, by the name of the SQL dialect.
+_TOGETHER: Final[Mapping[str, Callable[[ColumnElement[Any]], ColumnElement[Any]]]] = {
+    "postgresql": func.array_agg,
+    "sqlite": lambda column: type_coerce(func.json_group_array(column), JSON),
+}
 # The index of a gradebook has the order of its groups. Without statistics, as in a database that
 # was filled a moment ago, PostgreSQL would hash and sort all rows instead, on the disk.
 _IN_ORDER: Final = text(
@@ -48,12 +51,11 @@ def gradebook(connection: Connection, course: str, assignment: str | None = None
     points_of: dict[str, list[float | None]] = {
         each.learner: [None] * len(columns) for each in persons
     }
-    for learner, name, shares in _shares(connection, course, assignment):
-        points = points_of.get(learner, [])
-        for exercise, share in shares.items():
-            place = place_of.get((name, exercise))
-            if place is not None and points:
-                points[place] = round((share or 0.0) * columns[place].points, 6)
+    for learner, name, exercise, share in _shares(connection, course, assignment):
+        place = place_of.get((name, exercise))
+        points = points_of.get(learner)
+        if place is not None and points is not None:
+            points[place] = round((share or 0.0) * columns[place].points, 6)
     rows = []
     for person in persons:
         points = points_of[person.learner]
@@ -65,14 +67,16 @@ def gradebook(connection: Connection, course: str, assignment: str | None = None
 def missing(connection: Connection, course: str, assignment: str) -> list[MissingLearner]:
     """Return who has not handed in which exercises of an assignment. Raises CourseError."""
     [chosen] = _chosen(connection, course, assignment)
-    present = {learner: shares for learner, _, shares in _shares(connection, course, assignment)}
+    present = {
+        (learner, exercise) for learner, _, exercise, _ in _shares(connection, course, assignment)
+    }
     extension_of = {each.learner: each for each in chosen.extensions}
     found = []
     for person in people(connection, course):
         absent = [
             each.exercise
             for each in chosen.exercises
-            if each.exercise not in present.get(person.learner, {})
+            if (person.learner, each.exercise) not in present
         ]
         if absent:
             own = extension_of.get(person.learner) or Extension(learner=person.learner)
@@ -129,8 +133,8 @@ def _chosen(connection: Connection, course: str, assignment: str | None) -> list
 
 def _shares(
     connection: Connection, course: str, assignment: str | None
-) -> Iterator[tuple[str, str, dict[str, float | None]]]:
-    """Yield learner, assignment, and the share of the points that counts, by exercise.
+) -> Iterator[tuple[str, str, str, float | None]]:
+    """Yield learner, assignment, exercise, and the share of the points that counts.
 
     A share is there for each exercise with an attempt that counts.
     """
@@ -153,11 +157,12 @@ def _shares(
     ).c
     if connection.dialect.name == "postgresql":
         connection.execute(_IN_ORDER)
-    # One row for each learner and assignment: a row for each exercise takes twice as long.
-    together = _TOGETHER[connection.dialect.name](best.exercise, best.share)
-    rows = connection.execute(
-        select(best.learner, best.assignment, type_coerce(together, JSON)).group_by(
-            best.assignment, best.learner
-        )
-    ).all()
-    return ((learner, names[number], shares) for learner, number, shares in rows)
+    # One row for each assignment: a row for each exercise takes three times as long.
+    together = _TOGETHER[connection.dialect.name]
+    lists = (together(best[name]) for name in ("learner", "exercise", "share"))
+    rows = connection.execute(select(best.assignment, *lists).group_by(best.assignment)).all()
+    return (
+        (learner, names[number], exercise, share)
+        for number, *found in rows
+        for learner, exercise, share in zip(*found, strict=True)
+    )
