@@ -140,6 +140,22 @@ def test_a_figure_draws_the_given_frames_and_no_others(name: str, frames: str) -
     assert found == {*axes, f"y{frames[0]}", *(f"{{{frame}}}" for frame in frames)}
 
 
+# The wrist alone, from {3} to {6}, is in the list above.
+@pytest.mark.parametrize("name", sorted({*TABLES} - {"spherical-wrist"}))
+def test_a_figure_draws_base_and_tool_if_they_are_given(name: str) -> None:
+    exercise, told = SHIPPED[name], labels(drawn(name))
+    free = {
+        frame
+        for part in exercise.parts
+        for frame in ("base", "tool")
+        if getattr(part, frame, "given") == "free"
+    }
+    joints = len(exercise.robot.joints)
+    base, *ends = ({f"x{i}", f"z{i}", f"{{{i}}}"} for i in (0, joints, "e"))
+    assert (base <= told) is ("base" not in free)
+    assert any(end <= told for end in ends) is ("tool" not in free)
+
+
 # What the statements of the `-drawn` exercises say of each frame in the home configuration: where
 # its z and x axes point, and its origin.
 X, Y, UP, DOWN = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1)
