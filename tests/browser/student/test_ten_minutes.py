@@ -17,12 +17,14 @@ Opening = Callable[..., Visit]
 WRONG = {
     "theta": ("q2", "the variable of joint 2"),
     "d": ("0", "A distance is left out of d"),
-    "a": ("r", "check the distance along x"),
+    "a": ("r", "check the distance along x. r is the length of link 2."),
     "alpha": ("-90", "The sign of α is wrong"),
 }
 RIGHT = {"theta": "q1", "d": "h", "a": "w", "alpha": "90"}
 LAST_ROWS = {"standard": ["r", "0", "0", "q2"], "modified": ["r", "0", "0", "0"]}
 DIRECTIONS = {"standard": "to the side", "modified": "up, along the column"}
+# The direction of the other convention, and what the page says about it.
+NEIGHBOURS = {"standard": "points up is", "modified": "points to the side is"}
 PHONE = {"width": 390, "height": 844}
 IS_3D = re.compile("three|robot_view|/scene")
 
@@ -47,11 +49,15 @@ def test_six_screens_are_solved_by_keyboard(
     page.on("request", lambda request: loaded.append(request.url))
     page.goto(service)
     page.get_by_role("link", name="DH in ten minutes").click()
-    for name in (re.compile(convention, re.IGNORECASE), DIRECTIONS[convention]):
+    other = DIRECTIONS["modified" if convention == "standard" else "standard"]
+    for name in (re.compile(convention, re.IGNORECASE), other, DIRECTIONS[convention]):
         radio = page.get_by_role("radio", name=name)
         radio.focus()
         page.keyboard.press("Space")
         expect(radio).to_be_checked()
+        if name == other:
+            page.keyboard.press("Enter")
+            expect(told(page)).to_contain_text(NEIGHBOURS[convention])
     page.keyboard.press("Enter")
     expect(told(page)).to_contain_text("Right.")
     assert violations(page, "") == []
@@ -73,6 +79,9 @@ def test_six_screens_are_solved_by_keyboard(
         expect(told(page)).to_contain_text("Right.")
     follow_by_keyboard(page, "Next")
     expect(page.locator("#table h2")).to_be_focused()
+    # Each of the four moves is told when it is shown, not only the last one.
+    page.locator("#table").get_by_role("button", name="Play", exact=True).press("Enter")
+    expect(page.locator("#table .caption")).to_contain_text("1 of 4")
     page.locator("#table input").first.focus()
     for text in LAST_ROWS[convention]:
         page.keyboard.insert_text(text)

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { gapBetween, gapText, isClosed } from "../../../service/web/static/robot/frames/gap.js";
+import { gapBetween, gapText, isClosed, missText } from "../../../service/web/static/robot/frames/gap.js";
 import { takePlace } from "../../../service/web/static/robot/frames/label_places.js";
 import { directionText, nearestAxes } from "../../../service/web/static/robot/placing/axis_words.js";
 import { leftOutText } from "../../../service/web/static/robot/placing/placed_words.js";
@@ -37,6 +37,14 @@ test("no two labels overlap, and one without room is left out", () => {
   );
 });
 
+test("a frame beside its goal is too low, too high, too far or short", () => {
+  const at = (x, y, z) => [[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z]];
+  const told = (one, other) => missText(gapBetween(one, other), "mm");
+  assert.equal(told(at(1, 2, 3), at(1, 2, 3.38)), "0.38 mm too low");
+  assert.equal(told(at(1, 2, 3), at(0.5, 2, 2.6)), "0.5 mm too far along x₀, 0.4 mm too high");
+  assert.equal(told(at(1, 2, 3), at(1, 2, 3)), "");
+});
+
 test("the text says where the tool and the frames are", () => {
   const mechanism = { tool: [3, 4, 0], frames: [IDENTITY, QUARTER] };
   const text = viewText({ frames: [IDENTITY], mechanism }, ["0", "2"], gapBetween(IDENTITY, QUARTER));
@@ -46,7 +54,7 @@ test("the text says where the tool and the frames are", () => {
       "Given frame {0}: origin (0, 0, 0), x along the base's x, z along the base's z. " +
       "Given frame {2}: origin (3, 4, 0), x along the base's y, z along the base's z. " +
       "Frame {0} of your table: origin (0, 0, 0), x along the base's x, z along the base's z. " +
-      "From the last frame of your table to the tool frame: 5, turned by 90°.",
+      "The last frame of your table misses the tool frame: 3 m short along x₀, 4 m short along y₀, turned by 90°.",
   );
   const closed = viewText({ frames: [QUARTER], mechanism: null }, [], gapBetween(QUARTER, QUARTER));
   assert.match(closed, /lies on the tool frame\.$/);

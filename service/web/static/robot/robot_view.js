@@ -47,7 +47,7 @@ export class RobotView {
    */
   constructor(host) {
     this.host = host;
-    this.words = new ViewWords((text) => this.rows.isOpen || host.announce?.(text)); // the player of rows has its own words
+    this.words = new ViewWords((text) => this.rows.isOpen || host.announce?.(text), host.unit ?? "m"); // rows have their own words
     this.stage = new Stage((theme) => this.#drawing(theme), this.words.text.id);
     this.told = h("p", { class: "told" });
     const [draw, build] = [

@@ -78,6 +78,8 @@ function arrows(frame, look, name) {
 export class ArmPicture {
   /** @type {Api.Convention} */
   #convention = "standard";
+  /** The number of the move that the caption tells. */
+  #told = 0;
 
   /**
    * `id` is the screen; `announce` tells screen readers where the frame is.
@@ -93,7 +95,7 @@ export class ArmPicture {
     const button = (text, act) => h("button", { type: "button", class: "quiet-button", onclick: act }, text);
     this.run = button(worded("Play"), () => this.#run());
     this.back = button(worded("Back to the start"), () => this.#start());
-    this.playback = new Playback(() => this.#draw(), () => this.#stopped());
+    this.playback = new Playback(() => this.#moved(), () => this.#stopped());
     const buttons = ROWS[id] ? [this.run, this.back] : [];
     element.replaceChildren(this.drawing, this.caption, h("div", { class: "buttons" }, ...buttons));
   }
@@ -136,6 +138,17 @@ export class ArmPicture {
     return undefined;
   }
 
+  /** Draw, and tell each move when it begins. */
+  #moved() {
+    this.#draw();
+    if (this.#move !== this.#told) this.#tell();
+  }
+
+  /** The number of the current move, 0 at the start. */
+  get #move() {
+    return Math.ceil(this.playback.at - SMALL);
+  }
+
   #stopped() {
     this.#draw();
     this.#tell();
@@ -144,6 +157,7 @@ export class ArmPicture {
   /** Say what the picture shows. */
   #tell() {
     const [row, at] = [this.#row, this.playback.at];
+    this.#told = this.#move;
     this.run.textContent = this.playback.isRunning ? worded("Pause") : worded("Play");
     if (row === undefined) {
       this.caption.textContent = worded("The blue z of a joint lies along the line about which it turns.");
@@ -183,6 +197,15 @@ export class ArmPicture {
     ]);
     for (const [name, from, to, by] of lengths) {
       parts.push(label(gone(from, to.map((each, i) => each - from[i]), MIDDLE), name, "length", by));
+    }
+    /** @type {[string, number[], number[], [number, number], string][]} */
+    const names = [
+      [worded("column"), foot, top, [-14, -22], "quiet-name at-end"],
+      [worded("link {link}", { link: 1 }), top, joint, [4, -18], "quiet-name"],
+      [worded("link {link}", { link: 2 }), joint, tip, [9, 32], "quiet-name at-start"],
+    ];
+    for (const [name, from, to, by, look] of names) {
+      parts.push(label(gone(from, to.map((each, i) => each - from[i]), MIDDLE), name, look, by));
     }
     const last = all.length - 1;
     const named = row === undefined ? all.map((_, i) => i) : [row, row + 1];

@@ -6,6 +6,12 @@ import { typesetMessage } from "../typeset/names.js";
 import { worded } from "../shared/words/words.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
+/** What each length of the picture is. @type {Record<string, string>} */
+const LENGTHS = {
+  h: worded("h is the height of the column."),
+  w: worded("w is the length of link 1."),
+  r: worded("r is the length of link 2."),
+};
 
 export class Question {
   /** @type {Api.Convention} */
@@ -99,6 +105,14 @@ export class Question {
     const ofCells = found.flatMap(({ feedback }) => feedback);
     const ofPart = cells.length ? report?.feedback ?? [] : [];
     const texts = [...new Set([...ofCells, ...ofPart].map((each) => each.message))];
+    const written = [...this.form.querySelectorAll("input")];
+    const choice = written.find(({ checked }) => checked)?.dataset.whyNot;
+    if (choice) texts.push(choice);
+    // A length that belongs elsewhere.
+    for (const { label, verdict } of found) {
+      const length = LENGTHS[written[cells.indexOf(label)]?.value.trim()];
+      if (verdict === "incorrect" && length) texts.push(length);
+    }
     this.show.hidden = false;
     return this.#tell(
       "incorrect",

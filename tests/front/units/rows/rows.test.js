@@ -31,15 +31,15 @@ test("captions name the axis, the parameter and its number, in the order of the 
 });
 
 test("z must lie on the axis of the next joint, in either direction", () => {
-  const told = (joint) => axisText(1, 2, axisGap(FRAME, joint));
+  const told = (joint) => axisText(1, 2, axisGap(FRAME, joint), "m");
   assert.equal(told({ centre: [1, 2, 9], axis: [0, 0, -1], slides: false }), "z₁ lies on the axis of joint 2.");
   assert.equal(
     told({ centre: [4, 6, 9], axis: [0, 0, -1], slides: false }),
-    "z₁ misses the axis of joint 2: 5.",
+    "z₁ misses the axis of joint 2: 3 m short along x₀, 4 m short along y₀.",
   );
   assert.equal(
     told({ centre: [7, 2, 3.25], axis: [1, 0, 0], slides: false }),
-    "z₁ misses the axis of joint 2: 0.25, turned by 90°.",
+    "z₁ misses the axis of joint 2: 0.25 m too low, turned by 90°.",
   );
   // A sliding axis has a direction, but no place.
   assert.equal(told({ centre: [4, 6, 9], axis: [0, 0, 1], slides: true }), "z₁ lies on the axis of joint 2.");

@@ -54,3 +54,25 @@ export function gapText({ length, turn }) {
   if (turn < SMALL) return length < SMALL ? "" : values.length;
   return length < SMALL ? worded("turned by {angle}", values) : worded("{length}, turned by {angle}", values);
 }
+
+/**
+ * Return where a frame is beside its goal, such as: 0.38 m too low, turned by 90°. The sides are those of the base frame.
+ *
+ * @param {Gap} gap
+ * @param {string} unit
+ */
+export function missText({ from, to, turn }, unit) {
+  const sides = to.flatMap((value, i) => {
+    const way = value - from[i];
+    return Math.abs(way) < SMALL ? [] : [sideText(way > 0, i, `${short(Math.abs(way))} ${unit}`)];
+  });
+  const turned = turn < SMALL ? [] : [gapText({ from, to, length: 0, turn })];
+  return [...sides, ...turned].join(", ");
+}
+
+/** @param {boolean} isShort @param {number} i @param {string} length */
+function sideText(isShort, i, length) {
+  if (i === 2) return isShort ? worded("{length} too low", { length }) : worded("{length} too high", { length });
+  const values = { length, axis: `${"xy"[i]}₀` };
+  return isShort ? worded("{length} short along {axis}", values) : worded("{length} too far along {axis}", values);
+}

@@ -1,7 +1,7 @@
 // The text alternative of the 3D view: where the tool and the frames are.
 
 import { column } from "../motion.js";
-import { gapText, isClosed, short } from "./gap.js";
+import { isClosed, missText, short } from "./gap.js";
 import { worded } from "../../shared/words/words.js";
 
 const PARALLEL = 0.9999;
@@ -13,26 +13,28 @@ const PARALLEL = 0.9999;
  * @param {string[]} labels of the given frames
  * @param {Front.Gap | null} gap
  * @param {string[]} [placedLabels] of the frames that the student placed
+ * @param {string} [unit] of lengths
  */
-export function viewText({ frames, mechanism, placed }, labels, gap, placedLabels = []) {
+export function viewText({ frames, mechanism, placed }, labels, gap, placedLabels = [], unit = "m") {
   const lines = [];
   if (mechanism) lines.push(worded("The tool of the robot is at {point}.", { point: point(mechanism.tool) }));
   mechanism?.frames.forEach((frame, i) => lines.push(worded("Given frame {frame}: {place}.", named(labels[i], frame))));
   placed?.forEach((frame, i) => lines.push(worded("Your frame {frame}: {place}.", named(placedLabels[i], frame))));
   frames?.forEach((frame, i) => lines.push(worded("Frame {frame} of your table: {place}.", named(i, frame))));
-  if (gap) lines.push(gapSentence(gap));
+  if (gap) lines.push(gapSentence(gap, unit));
   return lines.join(" ");
 }
 
 /**
- * Say how far the last frame of the table is from the tool frame.
+ * Say where the last frame of the table is beside the tool frame.
  *
  * @param {Front.Gap} gap
+ * @param {string} unit
  */
-export function gapSentence(gap) {
+export function gapSentence(gap, unit) {
   return isClosed(gap)
     ? worded("The last frame of your table lies on the tool frame.")
-    : worded("From the last frame of your table to the tool frame: {gap}.", { gap: gapText(gap) });
+    : worded("The last frame of your table misses the tool frame: {gap}.", { gap: missText(gap, unit) });
 }
 
 /** @param {string | number} label @param {Front.Frame} frame */

@@ -14,9 +14,10 @@ export class ViewWords {
   #timer = 0;
   #said = "";
 
-  /** @param {(text: string) => void} announce */
-  constructor(announce) {
+  /** @param {(text: string) => void} announce @param {string} unit of lengths */
+  constructor(announce, unit) {
     this.announce = announce;
+    this.unit = unit;
     this.text = h("p", { class: "aloud", id: "where-frames-are" });
     this.legend = h("ul", { class: "view-legend", "aria-label": worded("Legend") });
   }
@@ -57,10 +58,12 @@ export class ViewWords {
       this.#answer?.mechanism?.frames ?? [],
       gap,
       this.#answer?.placed?.labels,
+      this.unit,
     );
     clearTimeout(this.#timer);
-    if (!gap || gapSentence(gap) === this.#said) return;
-    this.#timer = setTimeout(() => this.announce(this.#said = gapSentence(gap)), AT_REST);
+    const said = gap && gapSentence(gap, this.unit);
+    if (!said || said === this.#said) return;
+    this.#timer = setTimeout(() => this.announce(this.#said = said), AT_REST);
   }
 
   close() {

@@ -280,9 +280,9 @@ export class RowPlayer {
     const frame = frameAt(start, moves, this.playback.at);
     const lines = [placeText(frame)];
     const found = this.#axisGap(frame);
-    if (found) lines.push(axisText(this.#row, found.joint, found.gap));
+    if (found) lines.push(axisText(this.#row, found.joint, found.gap, this.unit));
     const tool = this.#toolGap(frame);
-    if (tool) lines.push(gapSentence(tool));
+    if (tool) lines.push(gapSentence(tool, this.unit));
     this.#say(this.told, lines.join(" "));
     return this.told.classList.toggle("misses", [found?.gap, tool].some((gap) => gap && !isClosed(gap)));
   }

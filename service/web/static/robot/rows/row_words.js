@@ -1,7 +1,7 @@
 // The words of a row that is played: its moves, where its ghost is, and what it misses.
 
 import { column } from "../motion.js";
-import { gapText, isClosed, short } from "../frames/gap.js";
+import { isClosed, missText, short } from "../frames/gap.js";
 import { worded } from "../../shared/words/words.js";
 
 const LOWERED = "₀₁₂₃₄₅₆₇₈₉";
@@ -80,9 +80,10 @@ export const placeText = (frame) =>
  * @param {number} row
  * @param {number} joint
  * @param {Front.Gap} gap
+ * @param {string} unit
  */
-export function axisText(row, joint, gap) {
+export function axisText(row, joint, gap, unit) {
   const z = `z${lowered(row)}`;
   if (isClosed(gap)) return worded("{axis} lies on the axis of joint {joint}.", { axis: z, joint });
-  return worded("{axis} misses the axis of joint {joint}: {gap}.", { axis: z, joint, gap: gapText(gap) });
+  return worded("{axis} misses the axis of joint {joint}: {gap}.", { axis: z, joint, gap: missText(gap, unit) });
 }
