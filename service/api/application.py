@@ -1,7 +1,7 @@
 """The application: all routes, limits and headers."""
 
 import gc
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -63,7 +63,7 @@ from service.version import VERSION
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
-    from service.lti.scores.sending import ScoreSending
+    from service.lti.scores.sending import BackgroundSending
 
 # Puts a layer around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
@@ -82,15 +82,23 @@ def _freeze_gc() -> None:
     gc.enable()
 
 
-def _score_sending(store: "AttemptStore", access: Access) -> "ScoreSending | None":
-    """Start the thread that sends scores to platforms, which needs the service's secret."""
+def _sending(
+    store: "AttemptStore", access: Access, catalogue: Catalogue
+) -> "Iterable[BackgroundSending]":
+    """Start the threads that send scores and reports to platforms, if there is a secret."""
     secret = None if access.keys is None else access.keys.secret
     if secret is None:
-        return None
-    # Imported only here, because it imports the database drivers.
-    from service.lti.scores.sending import ScoreSending
+        return
+    # Imported only here, because they import the database drivers.
+    from service.attempts.storage.score_queue import QUEUED
+    from service.lti.handed_files import queue
+    from service.lti.handed_files.file_reporting import FileReporting
+    from service.lti.scores.sender import ScoreSender
+    from service.lti.scores.sending import BackgroundSending
 
-    return ScoreSending(store.engine, secret)
+    engine = store.engine
+    yield BackgroundSending(engine, ScoreSender(engine, secret), QUEUED)
+    yield BackgroundSending(engine, FileReporting(engine, secret, catalogue), queue.QUEUED)
 
 
 class _Api(FastAPI):
@@ -98,6 +106,7 @@ class _Api(FastAPI):
 
     def __init__(
         self,
+        catalogue: Catalogue,
         cors_origins: tuple[str, ...],
         turns: Layer | None,
         store: "AttemptStore | None",
@@ -106,6 +115,7 @@ class _Api(FastAPI):
         monitor: Monitor | None,
         pages: WebPages | None,
     ) -> None:
+        self._catalogue = catalogue
         self._cors_origins = cors_origins
         self._turns = turns
         self._store = store
@@ -127,14 +137,14 @@ class _Api(FastAPI):
 
     @asynccontextmanager
     async def _lifespan(self, _: FastAPI) -> AsyncIterator[None]:
-        sending = None
+        sending: list[BackgroundSending] = []
         if self._store is not None:
             self._store.start()
-            sending = _score_sending(self._store, self._access)
+            sending += _sending(self._store, self._access, self._catalogue)
         _freeze_gc()
         yield
-        if sending is not None:
-            sending.close()
+        for each in sending:
+            each.close()
         if self._pages is not None:
             self._pages.close()
         self._access.close()
@@ -201,7 +211,7 @@ def application(
     one. ``monitor`` counts requests and reports.
     """
     access = access or Access()
-    app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
+    app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)
     permitted = [Depends(access.permit)]
     problems.install(app, None if pages is None else pages.of_problem)
     # What is recorded, and every other list, has no drafts and no generated robots.

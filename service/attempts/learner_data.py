@@ -38,7 +38,7 @@ from service.translations import ENGLISH
 # Columns that are about the database and not about the learner, and columns of JSON. A learner does
 # not see the seed of a variant.
 _INNER: Final = {"number", "attempt", "assignment", "outcome", "digest", "variant"}
-_JSON: Final = {"submission", "exercises"}
+_JSON: Final = {"submission", "exercises", "content"}
 
 # The learner's id at learning platforms, and the points that these got or wait for.
 _AT_PLATFORMS: Final = (
@@ -98,6 +98,7 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
         "attempts": [attempt(row) for row in recorded],
         "platforms": [_known(row) for row in connection.execute(_AT_PLATFORMS, which)],
         "scores": [_known(row) for row in connection.execute(_SCORES, which)],
+        "handed_files": rows(lti.handed_files, lti.handed_files.c.learner == learner),
     }
 
 

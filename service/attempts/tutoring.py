@@ -97,6 +97,14 @@ def _forget(connection: Connection, learner: str) -> LearnerData:
     for table in (regrade_queue, earlier_reports, overrides, hints):
         connection.execute(delete(table).where(table.c.attempt.in_(mine)))
     forget_scores(connection, learner)
-    for table in (attempts, extensions, deals, course_learners, keys, lti_tables.learners):
+    for table in (
+        attempts,
+        extensions,
+        deals,
+        course_learners,
+        keys,
+        lti_tables.learners,
+        lti_tables.handed_files,
+    ):
         connection.execute(delete(table).where(table.c.learner == learner))
     return data

@@ -34,6 +34,10 @@ class FetchError(Exception):
     """An address was not fetched. The message says why, without the content of the answer."""
 
 
+class TooLargeError(FetchError):
+    """The answer is larger than allowed."""
+
+
 def fetch_json(url: str, *, local: bool = False) -> Any:
     """Return the JSON document at an address. Raises FetchError.
 
@@ -94,7 +98,7 @@ def content(response: httpx.Response, until: float, largest: int = LARGEST) -> b
     for piece in response.iter_raw():
         found += piece
         if len(found) > largest:
-            raise FetchError(f"the answer is larger than {largest // 1024} KiB")
+            raise TooLargeError(f"the answer is larger than {largest // 1024} KiB")
         if monotonic() > until:
             raise FetchError("the answer takes too long")
     return bytes(found)

@@ -313,7 +313,7 @@ def _assign_by_parameters(
     wanted = message.custom.get("assignment") or new_assignment_id(link.number)
     mine = (assignments.c.course == course) & (assignments.c.id == wanted)
     if connection.scalar(select(assignments.c.id).where(mine)) is None:
-        new = parameters_assignment(message, wanted, link.title, catalogue)
+        new = parameters_assignment(message.custom, wanted, link.title, catalogue)
         if new is None:
             return
         try:
@@ -328,7 +328,7 @@ def _assign_by_parameters(
 
 
 def parameters_assignment(
-    message: LaunchMessage, wanted: str, title: str, catalogue: Mapping[str, Exercise]
+    custom: Mapping[str, str], wanted: str, title: str, catalogue: Mapping[str, Exercise]
 ) -> NewAssignment | None:
     """Return the assignment that custom parameters ask for, or None.
 
@@ -336,15 +336,15 @@ def parameters_assignment(
     ``opens`` and ``due`` are dates, in the time zone of the course if they name none. With
     ``variants=true``, each learner gets variants of their own.
     """
-    named = [each.strip() for each in message.custom.get("exercise", "").split(",")]
+    named = [each.strip() for each in custom.get("exercise", "").split(",")]
     exercises = []
     for name, _, points in (each.partition("=") for each in named if each):
         if name not in catalogue:
             return None
         exercises.append({"exercise": name, "points": points or _points(catalogue[name])})
     try:
-        dates = {name: message.custom[name] for name in DATES if message.custom.get(name)}
-        varied = message.custom.get("variants", "").lower() == "true"
+        dates = {name: custom[name] for name in DATES if custom.get(name)}
+        varied = custom.get("variants", "").lower() == "true"
         fields = {"id": wanted, "title": title, "exercises": exercises, "variants": varied, **dates}
         return NewAssignment.model_validate(fields)
     except ValidationError:

@@ -18,8 +18,17 @@ LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
 RESOURCE_LINK: Final = "LtiResourceLinkRequest"
 DEEP_LINKING: Final = "LtiDeepLinkingRequest"
 REVIEW: Final = "LtiSubmissionReviewRequest"
+# The report on a file that a student has handed in at the platform, and the settings of reports.
+REPORT: Final = "LtiReportReviewRequest"
+SETTINGS: Final = "LtiAssetProcessorSettingsRequest"
 # The types of messages that are accepted, and for each whether it has a resource link.
-KINDS: Final[dict[str, bool]] = {RESOURCE_LINK: True, DEEP_LINKING: False, REVIEW: True}
+KINDS: Final[dict[str, bool]] = {
+    RESOURCE_LINK: True,
+    DEEP_LINKING: False,
+    REVIEW: True,
+    REPORT: False,
+    SETTINGS: False,
+}
 _AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
 _NRPS: Final = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice"
 _ALGORITHM: Final = "RS256"
@@ -84,16 +93,9 @@ def message_in(
     token: str, key: RSAPublicKey, registration: Registration, login: Login, now: datetime
 ) -> LaunchMessage:
     """Return the message in a token that answers a login. Raises LtiError."""
-    try:
-        claims = json.loads(_JWS.decode(token, key, [_ALGORITHM]))
-    except jwt.InvalidSignatureError as error:
-        raise LtiError("wrong-signature") from error
-    except (jwt.InvalidTokenError, ValueError, RecursionError) as error:
-        raise LtiError("token-malformed") from error
-    if not isinstance(claims, dict):
-        raise LtiError("token-malformed")
-    _check_parties(claims, registration)
-    _check_times(claims, now.timestamp())
+    claims = signed_claims(token, key)
+    check_parties(claims, registration)
+    check_times(claims, now.timestamp())
     _check_nonce(claims, login)
     _check_kind(claims)
     deployment = _deployment(claims, login)
@@ -105,7 +107,21 @@ def message_in(
     return _content(claims, registration, deployment)
 
 
-def _check_parties(claims: Mapping[str, Any], registration: Registration) -> None:
+def signed_claims(token: str, key: RSAPublicKey) -> dict[str, Any]:
+    """Return the claims of a token that is signed with this key. Raises LtiError."""
+    try:
+        claims = json.loads(_JWS.decode(token, key, [_ALGORITHM]))
+    except jwt.InvalidSignatureError as error:
+        raise LtiError("wrong-signature") from error
+    except (jwt.InvalidTokenError, ValueError, RecursionError) as error:
+        raise LtiError("token-malformed") from error
+    if not isinstance(claims, dict):
+        raise LtiError("token-malformed")
+    return claims
+
+
+def check_parties(claims: Mapping[str, Any], registration: Registration) -> None:
+    """Check that claims are from this platform, and for us. Raises LtiError."""
     if claims.get("iss") != registration.issuer:
         raise LtiError("wrong-issuer")
     audience = claims.get("aud")
@@ -117,7 +133,8 @@ def _check_parties(claims: Mapping[str, Any], registration: Registration) -> Non
         raise LtiError("wrong-party")
 
 
-def _check_times(claims: Mapping[str, Any], now: float) -> None:
+def check_times(claims: Mapping[str, Any], now: float) -> None:
+    """Check that claims are neither old nor from the future. Raises LtiError."""
     expires, issued, begins = (_number(claims.get(name)) for name in ("exp", "iat", "nbf"))
     if expires is None:
         raise LtiError("no-expiry")

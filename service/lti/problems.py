@@ -83,6 +83,13 @@ LTI_PROBLEMS: Final[Mapping[str, LtiProblem]] = {
         "The return address {address} does not belong to the registered platform."
     ),
     "no-links-accepted": LtiProblem("The platform does not accept links at this place."),
+    "no-notices": LtiProblem("The platform does not say how to be told of handed-in files."),
+    "wrong-notice": LtiProblem("Notices of the type {kind} are not known here."),
+    "no-files": LtiProblem("The notice does not say which files were handed in, and where."),
+    "bad-address": LtiProblem("The address {address} in the notice {reason}."),
+    "unknown-report": LtiProblem("No such file was handed in, or its report is too old."),
+    "foreign-report": LtiProblem("The report is on the file of another student."),
+    "file-unreadable": LtiProblem("The platform does not give the file: {reason}", _AGAIN),
     "bad-claim": LtiProblem("The claim {claim} does not have the right shape."),
     "no-longer-registered": LtiProblem("The registration was removed after the login."),
     "ticket-expired": LtiProblem("The page was open for too long.", _AGAIN),

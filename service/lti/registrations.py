@@ -19,6 +19,7 @@ from service.lti.problems import LtiError
 LAUNCH_PATH: Final = "/lti/launch"
 LOGIN_PATH: Final = "/lti/login"
 KEYS_PATH: Final = "/lti/jwks.json"
+NOTICES_PATH: Final = "/lti/notices"
 LOCAL_HOSTS: Final = ("localhost", "127.0.0.1", "::1")
 # An address without characters that separate directives of a Content-Security-Policy.
 _ADDRESS: Final = re.compile(r"https?://[^\s;,'\"<>\\@]+", re.ASCII)
@@ -254,6 +255,7 @@ def remove_registration(connection: Connection, registration_id: str) -> None:
         tables.contexts,
         tables.learners,
         tables.launches,
+        tables.handed_files,
         tables.deployments,
         tables.invitations,
     )

@@ -45,6 +45,7 @@ class LinkingTicket(FormTicket):
     """What the platform has asked for in a message of deep linking.
 
     ``course`` is "" as long as nobody has launched the course; ``data`` goes back unchanged.
+    ``notices_url`` is "" unless the exercises are for files that students hand in at the platform.
     """
 
     iss: Literal["dh-grader lti deep linking"] = "dh-grader lti deep linking"
@@ -54,6 +55,7 @@ class LinkingTicket(FormTicket):
     data: str | None
     takes_several: bool
     takes_line_items: bool
+    notices_url: str = ""
 
 
 _T = TypeVar("_T", bound=FormTicket)

@@ -67,6 +67,7 @@ def installed_app(
         store is not None,
         store,
         drafts=Drafts(drafts),
+        feedback=settings.feedback,
     )
     app = application(
         catalogue,

@@ -10,7 +10,8 @@ import pytest
 # be a link.
 ALLOWED: Mapping[str, AbstractSet[str]] = {
     "html": {"lang"}, "head": set(), "body": set(), "style": set(), "title": set(),
-    "meta": {"charset", "http-equiv", "content", "name"}, "article": set(), "section": {"class"},
+    "meta": {"charset", "http-equiv", "content", "name"}, "main": set(),
+    "article": set(), "section": {"class"},
     "header": {"class"}, "footer": set(), "h1": set(), "h2": set(), "h3": set(), "p": {"class"},
     "div": {"class"}, "span": {"class", "title"}, "strong": set(), "code": set(), "ul": {"class"},
     "li": set(), "table": set(), "thead": set(), "tbody": set(), "tr": set(), "td": {"class"},

@@ -63,6 +63,7 @@ def platform(one_platform: Platform) -> Iterator[Platform]:
     one_platform.members, one_platform.page_size, one_platform.next_page = [], 50, ""
     one_platform.keys[:] = keys
     one_platform.gradebook.reset()
+    one_platform.files.reset()
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from jwt.algorithms import RSAAlgorithm
 
 from tests.guards import ANSWER
 from tests.lti.gradebook import Gradebook
+from tests.lti.handed_files.file_store import FileStore
 
 LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
 AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/"
@@ -101,6 +102,7 @@ class Platform:
     def __post_init__(self) -> None:
         self.keys = self.keys or [public_jwk(self.key, "key-1")]
         self.gradebook = Gradebook(lambda: self.address, self._roster_token)
+        self.files = FileStore(self)
 
     @property
     def address(self) -> str:
@@ -195,6 +197,7 @@ class Platform:
         app = FastAPI()
 
         app.include_router(self.gradebook.routes())
+        app.include_router(self.files.routes())
 
         @app.get("/jwks.json")
         async def jwks() -> Any:

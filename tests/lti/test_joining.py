@@ -21,6 +21,7 @@ from tests.lti.platform import running
 
 PLATFORM = "https://purl.imsglobal.org/spec/lti-platform-configuration"
 TOOL = "https://purl.imsglobal.org/spec/lti-tool-configuration"
+FILE_SCOPES = ["noticehandlers", "asset.readonly", "report"]
 SCORE = "https://purl.imsglobal.org/spec/lti-ags/scope/score"
 
 
@@ -155,6 +156,26 @@ def test_a_platform_registers_itself_once(tool: Tool, registrar: Registrar) -> N
     assert "was used already" in again.text
 
 
+def test_handed_in_files_are_asked_for_where_the_platform_offers_them(
+    tool: Tool, registrar: Registrar
+) -> None:
+    scopes = [f"https://purl.imsglobal.org/spec/lti/scope/{name}" for name in FILE_SCOPES]
+    offered = {"type": "LtiDeepLinkingRequest", "placements": ["ActivityAssetProcessor"]}
+    registrar.changes["scopes_supported"] = ["openid", SCORE, *scopes]
+    registrar.changes[PLATFORM] = {"messages_supported": [offered]}
+    assert opened(tool, registrar, invited(tool)).status_code == 200
+    [asked] = registrar.requests
+    assert asked["scope"].split() == [SCORE, *scopes]
+    assert asked[TOOL]["messages"][0]["placements"] == ["ActivityAssetProcessor"]
+    # A platform that names no scopes may not know them.
+    registrar.requests.clear()
+    registrar.changes["scopes_supported"] = None
+    page = opened(tool, registrar, invited(tool))
+    assert "client-9" not in page.text
+    [asked] = registrar.requests
+    assert "asset.readonly" not in asked["scope"]
+
+
 def test_a_held_registration_waits_for_its_admin(tool: Tool, registrar: Registrar) -> None:
     # Brightspace sends no token.
     registrar.token = ""
@@ -243,3 +264,9 @@ def test_canvas_gets_a_file() -> None:
     assert extension["privacy_level"] == "anonymous"
     kinds = {each["message_type"] for each in extension["settings"]["placements"]}
     assert kinds == {"LtiDeepLinkingRequest"}
+    with_files = canvas_configuration("https://grader.example.edu", files=True)
+    more = [each for each in with_files["scopes"] if each not in found["scopes"]]
+    assert [each.rpartition("/")[2] for each in more] == FILE_SCOPES
+    [extension] = with_files["extensions"]
+    places = [each["placement"] for each in extension["settings"]["placements"]]
+    assert places == ["assignment_selection", "link_selection", "ActivityAssetProcessor"]

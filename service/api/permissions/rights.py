@@ -84,6 +84,7 @@ RIGHTS: Final[Mapping[str, Right]] = {
     "POST /lti/assignment": _EVERYBODY,
     "POST /lti/session": _EVERYBODY,
     "POST /lti/links": _EVERYBODY,
+    "POST /lti/notices": _EVERYBODY,
     "GET /lti/register": _EVERYBODY,
     "POST /lti/register": _EVERYBODY,
     "GET /embed.js": _EVERYBODY,

@@ -172,3 +172,26 @@ invitations = Table(
     Column("used_at", UtcTime),
     Column("registration", String(64), ForeignKey(_REGISTRATION)),
 )
+
+# Files that a student has handed in at a platform: one row for each notice about them. The files
+# and their reports are not stored; ``content`` has their addresses, and what they are graded with.
+# ``state`` is ``waiting``, ``sent`` or ``refused``.
+handed_files = Table(
+    "lti_handed_files",
+    metadata,
+    Column("number", RowNumber, primary_key=True),
+    Column("registration", String(64), ForeignKey(_REGISTRATION), nullable=False),
+    Column("notice", NAME, nullable=False),
+    Column("submission", NAME, nullable=False),
+    Column("learner", String(200), nullable=False, index=True),
+    Column("content", Text, nullable=False),
+    Column("received_at", UtcTime, nullable=False, index=True),
+    Column("state", String(10), nullable=False),
+    Column("tries", Integer, nullable=False),
+    Column("next_try_at", UtcTime, nullable=False),
+    Column("leased_until", UtcTime),
+    Column("refusal", Text),
+    Unique("registration", "notice"),
+    Index(None, "state", "next_try_at"),
+    Index(None, "registration", "submission"),
+)

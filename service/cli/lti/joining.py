@@ -52,9 +52,14 @@ def allow_platform(
     typer.echo("Allowed.")
 
 
-def canvas(address: Address) -> None:
+def canvas(
+    address: Address,
+    files: Annotated[
+        bool, typer.Option("--files", help="Also grade files that students hand in at Canvas.")
+    ] = False,
+) -> None:
     """Print the JSON configuration for a developer key of Canvas."""
     address = address.rstrip("/")
     if reason := unusable(address, local=True):
         give_up(f"address: {reason}")
-    typer.echo(json.dumps(canvas_configuration(address), indent=2))
+    typer.echo(json.dumps(canvas_configuration(address, files=files), indent=2))

@@ -14,24 +14,38 @@ from service.formats.shared.part_results import part_results
 from service.formats.shared.plain_text import points, points_in_words
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import RowReport
+from service.translations import Language
 
 STYLE: Final = style_sheet(Path(__file__).with_suffix(".css"))
+
+
+def page_of(submission: GradedSubmission, language: Language) -> bytes:
+    """Return the page of one submission."""
+    titles = [file.exercise.title for file in submission.files]
+    return b"".join(_page(" · ".join(titles), [submission], language))
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     rest = iter(submissions)
     first = tuple(islice(rest, 2))
     names = [first[0].learner] if len(first) == 1 else []
+    title = " · ".join([*names, *(each.title for each in setting.exercises)])
+    yield from _page(title, chain(first, rest), setting.language)
+
+
+def _page(
+    title: str, submissions: Iterable[GradedSubmission], language: Language
+) -> Iterator[bytes]:
     yield from html_pieces(
         "formats/documents/templates/submissions.html",
-        language=setting.language,
-        title=" · ".join([*names, *(each.title for each in setting.exercises)]),
+        language=language,
+        title=title,
         style=STYLE,
-        submissions=chain(first, rest),
+        submissions=submissions,
         columns_of=_columns_of,
-        part_results=partial(part_results, language=setting.language),
+        part_results=partial(part_results, language=language),
         points=points,
-        points_in_words=partial(points_in_words, translation=setting.language.translation),
+        points_in_words=partial(points_in_words, translation=language.translation),
         verdict_names=VERDICT_NAMES,
         signs=SIGNS,
     )

@@ -10,7 +10,7 @@ from service.access.key_table import settle
 from service.access.keys import Secret
 from service.attempts.storage import lti_tables as tables
 from service.lti.linking import check_deployment, known_context
-from service.lti.messages import LaunchMessage
+from service.lti.messages import LTI, LaunchMessage
 from service.lti.problems import LtiError
 from service.lti.registrations import unusable
 from service.lti.roles import LtiRole
@@ -18,6 +18,9 @@ from service.lti.tickets import LinkingTicket
 
 LINKING: Final = "https://purl.imsglobal.org/spec/lti-dl/claim/"
 LINK: Final = "ltiResourceLink"
+# The platform grades files of students with what the tutor chooses, instead of opening a link.
+FILES: Final = "ltiAssetProcessor"
+_NOTICES: Final = f"{LTI}platformnotificationservice"
 # The longest text that is sent back to the platform.
 _LONGEST_DATA: Final = 16_000
 _LONGEST_ADDRESS: Final = 2000
@@ -64,8 +67,9 @@ def _asked(message: LaunchMessage) -> Mapping[str, Any]:
     if not known.is_own(address):
         raise LtiError("foreign-return-address", address=address)
     kinds = settings.get("accept_types")
-    if not isinstance(kinds, list) or LINK not in kinds:
+    if not isinstance(kinds, list) or not {LINK, FILES} & {str(each) for each in kinds}:
         raise LtiError("no-links-accepted")
+    for_files = LINK not in kinds
     data = settings.get("data")
     if data is not None and not (isinstance(data, str) and len(data) <= _LONGEST_DATA):
         raise LtiError("bad-claim", claim=f"{name}.data")
@@ -75,4 +79,16 @@ def _asked(message: LaunchMessage) -> Mapping[str, Any]:
         # Without a word of the platform, one link is sure to be accepted, and so are its points.
         "takes_several": settings.get("accept_multiple") is True,
         "takes_line_items": settings.get("accept_lineitem") is not False,
+        "notices_url": _notices_url(message) if for_files else "",
     }
+
+
+def _notices_url(message: LaunchMessage) -> str:
+    """Return where we ask for notices of handed-in files. Raises LtiError."""
+    service = message.claims.get(_NOTICES)
+    url = service.get("platform_notification_service_url") if isinstance(service, dict) else None
+    if not isinstance(url, str) or not 0 < len(url) <= _LONGEST_ADDRESS:
+        raise LtiError("no-notices")
+    if reason := unusable(url, local=message.registration.is_development):
+        raise LtiError("bad-address", address=url, reason=reason)
+    return url

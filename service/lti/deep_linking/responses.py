@@ -10,7 +10,8 @@ import jwt
 from sqlalchemy import Connection
 
 from service.access.keys import Secret
-from service.lti.deep_linking.requests import LINK, LINKING
+from service.lti.deep_linking.requests import FILES, LINK, LINKING
+from service.lti.handed_files.grading import KIND
 from service.lti.messages import LTI
 from service.lti.own_keys import ensure_key, signing_key
 from service.lti.registrations import Registration
@@ -50,8 +51,16 @@ def signed_response(
     links: Iterable[NewLink],
     secret: Secret,
     now: datetime,
+    locale: str = "",
 ) -> str:
-    """Return the signed answer with these links, or with none. Raises LtiError."""
+    """Return the signed answer with these links, or with none. Raises LtiError.
+
+    Reports on files are in the language ``locale``.
+    """
+    made = [
+        _for_files(each, known, locale) if ticket.notices_url else _item(each, ticket, known)
+        for each in links
+    ]
     ensure_key(connection, secret, now)
     key = signing_key(connection, secret, now)
     claims: dict[str, Any] = {
@@ -63,7 +72,7 @@ def signed_response(
         f"{LTI}deployment_id": ticket.deployment,
         f"{LTI}message_type": "LtiDeepLinkingResponse",
         f"{LTI}version": "1.3.0",
-        f"{LINKING}content_items": [_item(each, ticket, known) for each in links],
+        f"{LINKING}content_items": made,
     }
     if ticket.data is not None:
         claims[f"{LINKING}data"] = ticket.data
@@ -84,6 +93,21 @@ def _item(link: NewLink, ticket: LinkingTicket, known: Registration) -> dict[str
     if link.due is not None:
         item["submission"] = {"endDateTime": _moment(link.due)}
     return item
+
+
+def _for_files(link: NewLink, known: Registration, locale: str) -> dict[str, Any]:
+    return {
+        "type": FILES,
+        "title": link.title,
+        "url": known.launch_url,
+        "custom": {**link.parameters, "locale": locale},
+        "report": {
+            "url": known.launch_url,
+            "supportedTypes": [KIND],
+            "released": True,
+            "indicator": True,
+        },
+    }
 
 
 def _moment(when: datetime) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Collection
 from typing import Any, Final
 from urllib.parse import urlsplit
 
+from service.lti.handed_files.platform_files import NOTICES, READ, REPORT
 from service.lti.messages import DEEP_LINKING
 from service.lti.registrations import KEYS_PATH, LAUNCH_PATH, LOGIN_PATH
 
@@ -18,9 +19,13 @@ SCOPES: Final = (
     f"{_AGS}score",
     "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly",
 )
+# For files that students hand in at the platform: notices, the files, and reports on them.
+# Platforms that do not know these scopes may refuse a tool that wants them.
+FILE_SCOPES: Final = (NOTICES, READ, REPORT)
+FILE_PLACEMENT: Final = "ActivityAssetProcessor"
 # The places of a platform in which tutors choose exercises. Those of Canvas have names of its own.
 CANVAS_PLACEMENTS: Final = ("assignment_selection", "link_selection")
-PLACEMENTS: Final = ("ContentArea", *CANVAS_PLACEMENTS)
+PLACEMENTS: Final = ("ContentArea", *CANVAS_PLACEMENTS, FILE_PLACEMENT)
 
 
 def registration_request(
@@ -46,7 +51,9 @@ def registration_request(
         "client_name": NAME,
         "jwks_uri": address + KEYS_PATH,
         "token_endpoint_auth_method": "private_key_jwt",
-        "scope": " ".join(each for each in SCOPES if scopes is None or each in scopes),
+        "scope": " ".join(
+            SCOPES if scopes is None else (x for x in (*SCOPES, *FILE_SCOPES) if x in scopes)
+        ),
         TOOL: {
             "domain": urlsplit(address).netloc,
             "description": DESCRIPTION,
@@ -57,8 +64,11 @@ def registration_request(
     }
 
 
-def canvas_configuration(address: str) -> dict[str, Any]:
-    """Return the JSON that an admin of Canvas pastes as the configuration of an LTI key."""
+def canvas_configuration(address: str, *, files: bool = False) -> dict[str, Any]:
+    """Return the JSON that an admin of Canvas pastes as the configuration of an LTI key.
+
+    With ``files``, the service also grades files that students hand in at Canvas.
+    """
     launch = address + LAUNCH_PATH
     placements = [
         {
@@ -68,7 +78,7 @@ def canvas_configuration(address: str) -> dict[str, Any]:
             "text": NAME,
             "enabled": True,
         }
-        for each in CANVAS_PLACEMENTS
+        for each in (*CANVAS_PLACEMENTS, *([FILE_PLACEMENT] if files else []))
     ]
     return {
         "title": NAME,
@@ -76,7 +86,7 @@ def canvas_configuration(address: str) -> dict[str, Any]:
         "target_link_uri": launch,
         "oidc_initiation_url": address + LOGIN_PATH,
         "public_jwk_url": address + KEYS_PATH,
-        "scopes": list(SCOPES),
+        "scopes": [*SCOPES, *(FILE_SCOPES if files else [])],
         "custom_fields": {},
         "extensions": [
             {

@@ -10,9 +10,13 @@ from time import monotonic
 from typing import Final
 
 import jwt
+from sqlalchemy import Engine
 
+from service.access.keys import Secret
+from service.attempts.storage.database import in_transaction
 from service.lti.fetching import TIMEOUT, FetchError, answer, content
-from service.lti.own_keys import SigningKey
+from service.lti.own_keys import SigningKey, ensure_key, signing_key
+from service.lti.problems import LtiError
 from service.lti.registrations import Registration
 from service.lti.scores.score_problems import LaterError, RefusedError
 
@@ -89,6 +93,23 @@ def fetched_token(
     seconds = found.get("expires_in", _USUAL)
     is_number = isinstance(seconds, int | float) and not isinstance(seconds, bool)
     return token, float(seconds) if is_number and 0 < seconds < 1e9 else _USUAL
+
+
+def available_key(engine: Engine, secret: Secret, now: datetime) -> SigningKey:
+    """Return the key that signs our assertions; make the first one. Raises LaterError."""
+
+    def found() -> SigningKey:
+        with engine.connect() as connection:
+            return signing_key(connection, secret, now)
+
+    try:
+        return found()
+    except LtiError:
+        in_transaction(engine, lambda it: ensure_key(it, secret, now))
+    try:
+        return found()
+    except LtiError as error:
+        raise LaterError("no-secret") from error
 
 
 def seconds_to_wait(headers: Mapping[str, str]) -> float | None:

@@ -11,7 +11,7 @@ from urllib.parse import urlencode, urljoin, urlsplit, urlunsplit
 
 import httpx
 
-from service.lti.fetching import TIMEOUT, FetchError, answer, content
+from service.lti.fetching import TIMEOUT, FetchError, TooLargeError, answer, content
 from service.lti.registrations import Registration, origin_of, unusable
 from service.lti.scores.access_tokens import AccessTokens, seconds_to_wait
 from service.lti.scores.line_items import CHANGE, READ, SEND
@@ -60,7 +60,7 @@ class GradeServices:
     def send_score(self, registration: Registration, url: str, message: Any) -> None:
         """Send a score. Raises RefusedError, LaterError, ThisLaterError."""
         sent = {"content": json.dumps(message).encode(), "headers": {"Content-Type": _SCORE}}
-        with self._asked(registration, scores_address(url), "POST", SEND, sent):
+        with self.asked(registration, scores_address(url), "POST", SEND, sent):
             return
 
     def line_item(self, registration: Registration, column: Column) -> tuple[str, bool]:
@@ -78,7 +78,7 @@ class GradeServices:
         }
         sent = {"content": json.dumps(item).encode(), "headers": {"Content-Type": _ITEM}}
         until = monotonic() + TIMEOUT
-        with self._asked(registration, column.lineitems_url, "POST", CHANGE, sent) as response:
+        with self.asked(registration, column.lineitems_url, "POST", CHANGE, sent) as response:
             made = _json(response, until)
         return _item_address(made, column.lineitems_url), True
 
@@ -92,7 +92,7 @@ class GradeServices:
             assert url is not None
             until = monotonic() + TIMEOUT
             asked = {"headers": {"Accept": _ITEMS}}
-            with self._asked(registration, url, "GET", scopes, asked) as response:
+            with self.asked(registration, url, "GET", scopes, asked) as response:
                 items, following = _json(response, until), response.links.get("next", {}).get("url")
             for each in items if isinstance(items, list) else ():
                 if isinstance(each, dict) and each.get("resourceLinkId") == column.link:
@@ -103,17 +103,20 @@ class GradeServices:
         return None
 
     @contextmanager
-    def _asked(
+    def asked(
         self,
         registration: Registration,
         url: str,
         method: str,
         scopes: str,
         more: Mapping[str, Any],
+        *,
+        redirects: bool = False,
     ) -> Iterator[httpx.Response]:
         """Send a request with an access token, and with a new one if it is refused.
 
-        The context has the answer of success. Raises ScoreError.
+        The context has the answer of success. With ``redirects``, it may be a redirect, and
+        TooLargeError is raised, too. Raises ScoreError.
         """
         for is_last in (False, True):
             token = self._tokens.token(registration, scopes)
@@ -125,10 +128,13 @@ class GradeServices:
                         self._tokens.forget(registration, scopes)
                         if not is_last:
                             continue
-                    _check(response)
+                    if not (redirects and response.is_redirect):
+                        _check(response)
                     yield response
                     return
             except FetchError as error:
+                if redirects and isinstance(error, TooLargeError):
+                    raise
                 raise LaterError("unreachable", reason=error) from error
 
 

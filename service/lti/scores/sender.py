@@ -12,10 +12,8 @@ from sqlalchemy import Engine
 
 from service.access.keys import Secret
 from service.attempts.storage.database import in_transaction
-from service.lti.own_keys import SigningKey, ensure_key, signing_key
-from service.lti.problems import LtiError
 from service.lti.scores import outbox
-from service.lti.scores.access_tokens import AccessTokens
+from service.lti.scores.access_tokens import AccessTokens, available_key
 from service.lti.scores.grade_services import GradeServices, NotThereError
 from service.lti.scores.learner_score import score_message
 from service.lti.scores.outbox import TakenScore
@@ -60,11 +58,13 @@ class ScoreSender:
         chance: Callable[[], float] = random.random,
     ) -> None:
         """``now`` tells the time; ``chance`` returns a number from 0 to 1 for each pause."""
-        self._engine, self._secret = engine, secret
+        self._engine = engine
         self.now, self._chance = now, chance
         self._name = secrets.token_hex(8)
         self._pauses: dict[str, _Pause] = {}
-        self._services = GradeServices(AccessTokens(now, self._key))
+        self._services = GradeServices(
+            AccessTokens(now, lambda: available_key(engine, secret, now()))
+        )
 
     def send_next(self) -> bool:
         """Send the next score that is due; False if there is none."""
@@ -165,19 +165,3 @@ class ScoreSender:
         pause = min(_FIRST * 2 ** min(failures, 20), _LONGEST)
         end: datetime = self.now() + pause * (0.5 + 0.5 * self._chance())
         return end
-
-    def _key(self) -> SigningKey:
-        now = self.now()
-
-        def found() -> SigningKey:
-            with self._engine.connect() as connection:
-                return signing_key(connection, self._secret, now)
-
-        try:
-            return found()
-        except LtiError:
-            in_transaction(self._engine, lambda it: ensure_key(it, self._secret, now))
-        try:
-            return found()
-        except LtiError as error:
-            raise LaterError("no-secret") from error

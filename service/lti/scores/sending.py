@@ -1,46 +1,54 @@
-"""The thread of a service that sends scores. It sleeps while nothing waits."""
+"""Threads of a service that send what its database has queued. They sleep while nothing waits."""
 
 import logging
 import threading
-from datetime import timedelta
-from typing import Final
+from collections.abc import Callable
+from datetime import datetime, timedelta
+from typing import Final, Protocol
 
 from sqlalchemy import Connection, Engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.access.keys import Secret
-from service.attempts.storage.score_queue import QUEUED
-from service.lti.scores.sender import ScoreSender
-
 _log = logging.getLogger(__name__)
 
-# How often the thread looks for scores that other processes have queued (seconds).
+# How often a thread looks for work that other processes have queued (seconds).
 _LOOK: Final = 20.0
 _LEAST: Final = 0.05
 
 
-class ScoreSending:
-    """A thread that sends scores as soon as this process has committed them."""
+class Sender(Protocol):
+    """What a thread does: send one after the other."""
 
-    def __init__(self, engine: Engine, secret: Secret) -> None:
-        """Start the thread."""
-        self._engine = engine
-        self._sender = ScoreSender(engine, secret)
+    now: Callable[[], datetime]
+
+    def send_next(self) -> bool:
+        """Send what is due next; False if nothing is."""
+
+    def next_due(self) -> datetime | None:
+        """Return when there may be something to send; None if nothing waits."""
+
+
+class BackgroundSending:
+    """A thread that sends what is queued as soon as this process has committed it."""
+
+    def __init__(self, engine: Engine, sender: Sender, queued: str) -> None:
+        """Start the thread. A transaction that queues something sets ``queued`` in its info."""
+        self._engine, self._sender, self._queued = engine, sender, queued
         self._wake = threading.Event()
         self._closed = threading.Event()
         event.listen(engine, "commit", self._committed)
-        self._thread = threading.Thread(target=self._run, name="scores", daemon=True)
+        self._thread = threading.Thread(target=self._run, name=queued, daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the thread after the score that it is sending."""
+        """Stop the thread after what it is sending."""
         self._closed.set()
         self._wake.set()
         self._thread.join()
         event.remove(self._engine, "commit", self._committed)
 
     def _committed(self, connection: Connection) -> None:
-        if connection.info.pop(QUEUED, False):
+        if connection.info.pop(self._queued, False):
             self._wake.set()
 
     def _run(self) -> None:
@@ -55,7 +63,7 @@ class ScoreSending:
                     wait = (due - self._sender.now()) / timedelta(seconds=1)
                     seconds = min(_LOOK, max(_LEAST, wait))
             except SQLAlchemyError:
-                _log.warning("LTI: the database of the scores does not answer")
-            except Exception:  # noqa: BLE001 - the next score may be sent
-                _log.exception("LTI: scores cannot be sent")
+                _log.warning("LTI: the database does not answer")
+            except Exception:  # noqa: BLE001 - the next one may be sent
+                _log.exception("LTI: nothing can be sent (%s)", self._queued)
             self._wake.wait(seconds)

@@ -10,16 +10,21 @@ from service.access.keys import Keys, Secret
 from service.api.courses.asking import write
 from service.api.http.lookup import Catalogue
 from service.attempts.store import AttemptStore
+from service.catalogue import FeedbackLevel
 from service.lti.deep_linking.requests import begin_linking
+from service.lti.handed_files.platform_files import PlatformFiles
 from service.lti.linking import Landing, enter, pseudonym
 from service.lti.logins import Login, use_login
-from service.lti.messages import DEEP_LINKING, LaunchMessage
+from service.lti.messages import DEEP_LINKING, REPORT, SETTINGS, LaunchMessage
 from service.lti.roles import LtiRole
+from service.lti.scores.access_tokens import AccessTokens, available_key
+from service.lti.scores.sender import utc_now
 from service.lti.tickets import LtiTicket, signed_ticket
 from service.translations import Language
 from service.web.assets import Assets
 from service.web.lti.deep_linking.offers import Offer, Picked, offer_of
 from service.web.lti.deep_linking.picker_pages import picker_page
+from service.web.lti.handed_files.report_pages import ReportPages
 from service.web.lti.lti_pages import Choice, choosing_page, landing_page, tutor_page
 
 # The lifetime of the token in a page. The page keeps it in memory; a reload needs a new launch.
@@ -36,15 +41,23 @@ class Landings:
         store: AttemptStore,
         keys: Keys,
         secret: Secret,
+        feedback: FeedbackLevel = FeedbackLevel.FULL,
     ) -> None:
+        """``feedback`` is the most that students get."""
         self.catalogue, self.assets, self.store = catalogue, assets, store
         self.keys, self.secret = keys, secret
+        self.platform_files = PlatformFiles(
+            AccessTokens(utc_now, lambda: available_key(store.engine, secret, utc_now()))
+        )
+        self._reports = ReportPages(assets, store, secret, catalogue, feedback, self.platform_files)
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
         """Record a launch; return the page that it opens. Raises LtiError."""
         now = datetime.now(UTC)
         if message.kind == DEEP_LINKING:
             return await self._picker(message, login, now, language)
+        if message.kind in (REPORT, SETTINGS):
+            return await self._reports.page(message, login, language)
 
         def entered(connection: Connection) -> Landing:
             use_login(connection, login, now)

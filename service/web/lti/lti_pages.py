@@ -20,14 +20,17 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 _FOLDER = "web/lti/templates"
 
 
-def frame_headers(origins: Iterable[str], *targets: str) -> dict[str, str]:
+def frame_headers(origins: Iterable[str], *targets: str, style: str = "") -> dict[str, str]:
     """Return the headers of a page that only pages of these origins may show in a frame.
 
     Its forms may only be sent to us, or, if there are ``targets``, to these origins. The platform's
-    window must stay the opener: it may have the platform's storage.
+    window must stay the opener: it may have the platform's storage. ``style`` is the hash of the
+    only style of a page that needs no other file.
     """
     ancestors = " ".join(dict.fromkeys(["'self'", *origins]))
     more = {"form_action": " ".join(dict.fromkeys(targets))} if targets else {}
+    if style:
+        more["style_src"] = f"'{style}'"
     content = policy(frame_ancestors=ancestors, **more)
     headers = {**FORM_HEADERS, "Content-Security-Policy": content}
     del headers["Cross-Origin-Opener-Policy"]

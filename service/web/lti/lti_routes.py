@@ -52,15 +52,19 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     if tutoring.store is None or keys is None or keys.secret is None:
         return router
     # Imported only here, because they import the database drivers.
+    from service.formats.documents.html import STYLE
+    from service.lti.messages import REPORT
     from service.lti.platform_keys import PlatformKeys
     from service.web.lti.deep_linking.picker_forms import picker_forms
+    from service.web.lti.handed_files.notice_routes import notice_routes
     from service.web.lti.joining.joining_forms import joining_forms
     from service.web.lti.landing import Landings
     from service.web.lti.platforms import platform_routes
     from service.web.lti.tutor_forms import tutor_forms
 
-    landings = Landings(catalogue, assets, tutoring.store, keys, keys.secret)
-    launching = _Launching(assets, tutoring, PlatformKeys())
+    landings = Landings(catalogue, assets, tutoring.store, keys, keys.secret, tutoring.feedback)
+    platform_keys = PlatformKeys()
+    launching = _Launching(assets, tutoring, platform_keys)
 
     async def login(fields: Mapping[str, str], language: Language) -> Response:
         begun = await launching.begin(fields)
@@ -102,7 +106,8 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
             message = await launching.message(fields.get("id_token", ""), known, begun)
             language = language_of(request, message.locale)
             content = await landings.page(message, begun, language)
-            return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+            style = STYLE.hash if message.kind == REPORT else ""
+            return HTMLResponse(content, headers=frame_headers(known.frame_origins, style=style))
 
         return await launching.answered(launched, language_of(request))
 
@@ -120,6 +125,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     both.include_router(picker_forms(landings, launching.answered))
     both.include_router(joining_forms(landings))
     both.include_router(platform_routes(landings))
+    both.include_router(notice_routes(tutoring.store, keys.secret, platform_keys))
     return both
 
 

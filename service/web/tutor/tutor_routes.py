@@ -17,7 +17,7 @@ from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exerci
 from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
-from service.catalogue import Exercise, Robot
+from service.catalogue import Exercise, FeedbackLevel, Robot
 from service.catalogue.drafts import Drafts
 from service.web.assets import Assets
 from service.web.page_answer import page_answer
@@ -39,6 +39,7 @@ class Tutoring:
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
     in ``editor_dir``. ``records`` is true if the service records attempts, in ``store``.
     ``checking`` checks the text in the editor, and ``drafts`` has the exercises in its preview.
+    ``feedback`` is the most that students get.
     """
 
     access: Access
@@ -48,6 +49,7 @@ class Tutoring:
     store: "AttemptStore | None" = None
     checking: Checking = field(default_factory=Checking)
     drafts: Drafts = field(default_factory=Drafts)
+    feedback: FeedbackLevel = FeedbackLevel.FULL
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:

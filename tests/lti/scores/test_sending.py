@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from service.lti.scores.sending import ScoreSending
+from service.attempts.storage.score_queue import QUEUED
+from service.lti.scores.sending import BackgroundSending
 from tests.guards import ANSWER
-from tests.lti.conftest import SECRET, SECRET_TEXT
+from tests.lti.conftest import SECRET_TEXT
 from tests.lti.scores.conftest import Journey
 
 USERS = ("ada", "grace", "edsger", "barbara")
@@ -130,7 +131,7 @@ def _wait(until: Callable[[], bool]) -> None:
 
 def test_the_service_sends_what_it_has_committed(journey: Journey) -> None:
     """The thread wakes up after the commit, long before it would look by itself."""
-    sending = ScoreSending(journey.tool.store.engine, SECRET)
+    sending = BackgroundSending(journey.tool.store.engine, journey.sender, QUEUED)
     try:
         attempt = journey.hand_in()
         _wait(lambda: len(journey.gradebook.received) == 1)

@@ -90,7 +90,7 @@ def picked_in(fields: Mapping[str, list[str]]) -> Picked:
 
 def links_of(picked: Picked, offer: Offer, catalogue: Mapping[str, Exercise]) -> Sequence[NewLink]:
     """Return the links that a tutor has asked for. Raises NotYetError."""
-    known = {each.id: each for each in offer.assignments}
+    known = {} if offer.ticket.notices_url else {each.id: each for each in offer.assignments}
     there = [known[name] for name in dict.fromkeys(picked.assignments) if name in known]
     links = [
         NewLink(each.title, {it.exercise: it.points for it in each.exercises}, each.id)

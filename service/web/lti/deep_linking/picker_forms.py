@@ -1,5 +1,7 @@
 """The route of the picker's form: search, send links to the platform, or give up."""
 
+import asyncio
+import logging
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Final
@@ -15,8 +17,9 @@ from service.api.permissions.access import is_same_origin
 from service.lti.deep_linking.responses import NewLink, signed_response
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration, RegistrationError, origin_of, registration
+from service.lti.scores.score_problems import ScoreError
 from service.lti.tickets import LinkingTicket, ticket_in
-from service.translations import Language
+from service.translations import Language, say
 from service.web.lti.deep_linking.offers import (
     NotYetError,
     Offer,
@@ -28,6 +31,8 @@ from service.web.lti.deep_linking.picker_pages import picker_page, return_page
 from service.web.lti.landing import Landings
 from service.web.lti.lti_pages import frame_headers
 from service.web.lti.tutor_forms import Answered, form_lists
+
+_log = logging.getLogger(__name__)
 
 # Platforms may want to see who sends the answer: our origin, and nothing more.
 _REFERRER: Final = {"Referrer-Policy": "strict-origin"}
@@ -44,8 +49,12 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
         links: Sequence[NewLink],
         language: Language,
     ) -> Response:
-        now = datetime.now(UTC)
-        text = await write(store, lambda it: signed_response(it, ticket, known, links, secret, now))
+        now, locale = datetime.now(UTC), language.tag
+        if ticket.notices_url and links:
+            await asyncio.to_thread(_ask_for_notices, landings, known, ticket.notices_url)
+        text = await write(
+            store, lambda it: signed_response(it, ticket, known, links, secret, now, locale)
+        )
         content = return_page(ticket.return_url, text, landings.assets, language)
         targets = (origin_of(ticket.return_url), *known.frame_origins)
         headers = {**frame_headers(known.frame_origins, *targets), **_REFERRER}
@@ -81,6 +90,20 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
         return await answered(picked, language)
 
     return router
+
+
+def _ask_for_notices(landings: Landings, known: Registration, url: str) -> None:
+    """Have the platform tell us of handed-in files. Raises NotYetError."""
+    try:
+        landings.platform_files.ask_for_notices(known, url)
+    except ScoreError as error:
+        _log.warning("LTI: no notices of handed-in files (%s): %s", known.id, error)
+        raise NotYetError(
+            say(
+                "Your platform does not let this service read files of students. Ask the "
+                "administrator of the platform to allow that."
+            )
+        ) from error
 
 
 def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:

@@ -1,0 +1,116 @@
+"""The services of platforms for handed-in files: notices, files (assets), and reports on them."""
+
+import base64
+import hashlib
+import json
+from collections.abc import Mapping
+from time import monotonic
+from typing import Any, Final
+from urllib.parse import urljoin
+
+from service.lti.fetching import TIMEOUT, FetchError, TooLargeError, answer, content
+from service.lti.handed_files.notices import HANDED_IN, FileAtPlatform, HandedFiles
+from service.lti.registrations import NOTICES_PATH, Registration
+from service.lti.scores.access_tokens import AccessTokens
+from service.lti.scores.grade_services import GradeServices, NotThereError
+from service.lti.scores.score_problems import RefusedError, ThisLaterError
+from service.submissions.strict_json import MAX_BODY_SIZE
+
+_SCOPE: Final = "https://purl.imsglobal.org/spec/lti/scope/"
+NOTICES: Final = f"{_SCOPE}noticehandlers"
+READ: Final = f"{_SCOPE}asset.readonly"
+REPORT: Final = f"{_SCOPE}report"
+_JSON: Final = {"Content-Type": "application/json"}
+_MOST_REDIRECTS: Final = 3
+
+
+class NoFileError(Exception):
+    """The platform does not give a file. ``code`` is one of the standard's codes of errors."""
+
+    def __init__(self, code: str, reason: str) -> None:
+        self.code = code
+        super().__init__(reason)
+
+
+class PlatformFiles:
+    """Handed-in files of platforms, with the access tokens of this process."""
+
+    def __init__(self, tokens: AccessTokens) -> None:
+        self._services = GradeServices(tokens)
+
+    def ask_for_notices(self, registration: Registration, service: str) -> None:
+        """Have the platform tell us when files are handed in. Raises ScoreError."""
+        asked = {"notice_type": HANDED_IN, "handler": registration.address + NOTICES_PATH}
+        self._send(registration, service, "PUT", NOTICES, asked)
+
+    def send_report(self, registration: Registration, url: str, report: Mapping[str, Any]) -> None:
+        """Send a report; one that the platform has already may be newer. Raises ScoreError."""
+        try:
+            self._send(registration, url, "POST", REPORT, report)
+        except ThisLaterError as error:
+            if error.name != "stamp":
+                raise
+
+    def content_of(self, registration: Registration, file: FileAtPlatform) -> bytes:
+        """Return the content of a file. Raises NoFileError; ScoreError if it may be there later.
+
+        Platforms redirect to the host that has their files. The token goes to the first host only.
+        """
+        local, until = registration.is_development, monotonic() + TIMEOUT
+        try:
+            asked = self._services.asked(
+                registration, file.url, "GET", READ, {"headers": {}}, redirects=True
+            )
+            url = file.url
+            with asked as response:
+                if not response.is_redirect:
+                    return _checked(content(response, until, MAX_BODY_SIZE), file)
+                url = urljoin(url, response.headers.get("location", ""))
+            for _ in range(_MOST_REDIRECTS):
+                with answer(url, local=local) as response:
+                    if response.is_success:
+                        return _checked(content(response, until, MAX_BODY_SIZE), file)
+                    if not response.is_redirect:
+                        raise FetchError(f"the status is {response.status_code}")
+                    url = urljoin(url, response.headers.get("location", ""))
+            raise FetchError("the answers are too many redirects")
+        except TooLargeError as error:
+            raise NoFileError("ASSET_TOO_LARGE", str(error)) from error
+        except FetchError as error:
+            raise NoFileError("DOWNLOAD_FAILED", str(error)) from error
+        except NotThereError as error:
+            raise NoFileError("DOWNLOAD_FAILED", "it is not there any more") from error
+        except RefusedError as error:
+            raise NoFileError("DOWNLOAD_FAILED", str(error)) from error
+
+    def contents_of(
+        self, registration: Registration, files: HandedFiles
+    ) -> dict[str, bytes | NoFileError]:
+        """Return the contents of files by their ids, or why there is none. Raises ScoreError."""
+        found: dict[str, bytes | NoFileError] = {}
+        for each in files.assets:
+            try:
+                found[each.asset_id] = self.content_of(registration, each)
+            except NoFileError as error:
+                found[each.asset_id] = error
+        return found
+
+    def _send(
+        self, registration: Registration, url: str, method: str, scope: str, body: Any
+    ) -> None:
+        sent = {"content": json.dumps(body).encode(), "headers": _JSON}
+        with self._services.asked(registration, url, method, scope, sent):
+            return
+
+
+def _checked(data: bytes, file: FileAtPlatform) -> bytes:
+    """Return a content that has the checksum of the notice. Raises NoFileError.
+
+    Platforms write the checksum in hexadecimal digits or in base 64.
+    """
+    digest = hashlib.sha256(data).digest()
+    known = (digest.hex(), base64.b64encode(digest).decode())
+    expected = file.sha256_checksum
+    if expected and expected.lower() != known[0] and expected != known[1]:
+        raise NoFileError("DOWNLOAD_FAILED", "its checksum is another one")
+    return data

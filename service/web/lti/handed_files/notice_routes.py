@@ -1,0 +1,75 @@
+"""The route for notices of platforms. They are signed, and need neither a login nor a browser."""
+
+import logging
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import Annotated, Final
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, Field
+from starlette.responses import JSONResponse, Response
+
+from service.access.keys import Secret
+from service.api.courses.asking import read, write
+from service.api.http.bodies import read_body
+from service.attempts.store import AttemptStore
+from service.lti.handed_files.notices import notice_in, parties_of
+from service.lti.handed_files.queue import queue_files
+from service.lti.linking import pseudonym
+from service.lti.messages import key_id_of
+from service.lti.platform_keys import PlatformKeys
+from service.lti.problems import LtiError
+from service.lti.registrations import find_registration, note_refusal
+
+_log = logging.getLogger(__name__)
+
+_MOST: Final = 50
+
+
+class SignedNotice(BaseModel):
+    """A notice, as platforms send it."""
+
+    jwt: str
+
+
+class Notices(BaseModel):
+    """The body of the request; platforms send several notices at once."""
+
+    notices: Annotated[list[SignedNotice], Field(min_length=1, max_length=_MOST)]
+
+
+def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> APIRouter:
+    """Return the route."""
+    router = APIRouter(prefix="/lti")
+
+    async def accept(token: str) -> None:
+        """Queue the files of a notice. Raises LtiError, after the registration has noted it."""
+        key_id, now = key_id_of(token), datetime.now(UTC)
+        parties = parties_of(token)
+        known = await read(store, lambda it: find_registration(it, *parties))
+        try:
+            notice = notice_in(token, await keys.key(known, key_id), known, now)
+            if notice is not None:
+                learner = pseudonym(known.id, notice.user, secret)
+                await write(store, lambda it: queue_files(it, known, notice, learner, now))
+        except LtiError as error:
+            name = error.name
+            await write(store, lambda it: note_refusal(it, known.id, name, now))
+            raise
+
+    @router.post("/notices")
+    async def notices(request: Request) -> Response:
+        """Take notices of a platform; one that is refused does not keep out the others."""
+        body = await read_body(Notices, request)
+        refused = []
+        for each in body.notices:
+            try:
+                await accept(each.jwt)
+            except LtiError as error:
+                _log.warning("LTI: a notice was refused (%s): %s", error.name, error)
+                refused.append({"error": error.name})
+        if refused:
+            return JSONResponse({"errors": refused}, HTTPStatus.FORBIDDEN)
+        return JSONResponse({})
+
+    return router

@@ -1,0 +1,107 @@
+"""The page with the report on files that a student has handed in at the platform.
+
+The files are not stored here: the page reads them at the platform, and grades them once more.
+"""
+
+import asyncio
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection
+
+from service.access.keys import Secret
+from service.api.courses.asking import write
+from service.api.http.lookup import Catalogue
+from service.attempts.store import AttemptStore
+from service.catalogue import FeedbackLevel
+from service.formats.documents.html import page_of
+from service.lti.handed_files.grading import GradedFiles, graded_files
+from service.lti.handed_files.notices import HandedFiles
+from service.lti.handed_files.platform_files import PlatformFiles
+from service.lti.handed_files.queue import files_of
+from service.lti.linking import check_deployment, pseudonym
+from service.lti.logins import Login, use_login
+from service.lti.messages import LTI, SETTINGS, LaunchMessage
+from service.lti.problems import LtiError
+from service.lti.roles import LtiRole
+from service.lti.scores.score_problems import ScoreError
+from service.translations import Language
+from service.web.assets import Assets
+from service.web.lti.lti_pages import lti_page
+
+
+class ReportPages:
+    """Makes the pages of messages about handed-in files."""
+
+    def __init__(
+        self,
+        assets: Assets,
+        store: AttemptStore,
+        secret: Secret,
+        catalogue: Catalogue,
+        feedback: FeedbackLevel,
+        platform: PlatformFiles,
+    ) -> None:
+        """``feedback`` is the most that students get."""
+        self._assets, self._store, self._secret = assets, store, secret
+        self._catalogue, self._feedback, self._platform = catalogue, feedback, platform
+
+    async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
+        """Return the report, or what the settings are. Raises LtiError."""
+        now = datetime.now(UTC)
+
+        def found(connection: Connection) -> HandedFiles | None:
+            use_login(connection, login, now)
+            check_deployment(connection, message, now)
+            return None if message.kind == SETTINGS else self._files(connection, message)
+
+        files = await write(self._store, found)
+        if files is None:
+            return lti_page("file_settings.html", self._assets, [], language=language)
+        graded = await asyncio.to_thread(self._graded, message, files, language)
+        if graded.submission is None:
+            reasons = [str(each) for each in graded.failures.values()]
+            raise LtiError("file-unreadable", reason="; ".join(reasons))
+        return page_of(graded.submission, language)
+
+    def _files(self, connection: Connection, message: LaunchMessage) -> HandedFiles:
+        submission = _id_in(message.claims, "submission")
+        known = files_of(
+            connection, message.registration.id, submission, _id_in(message.claims, "asset")
+        )
+        if known is None:
+            raise LtiError("unknown-report")
+        files, learner = known
+        is_own = message.sub is not None and learner == pseudonym(
+            message.registration.id, message.sub, self._secret
+        )
+        if not (message.role is LtiRole.TUTOR or (message.role is LtiRole.LEARNER and is_own)):
+            raise LtiError("foreign-report")
+        return files
+
+    def _graded(
+        self, message: LaunchMessage, files: HandedFiles, language: Language
+    ) -> GradedFiles:
+        known = message.registration
+        try:
+            contents = self._platform.contents_of(known, files)
+        except ScoreError as error:
+            raise LtiError("file-unreadable", reason=error) from error
+        return graded_files(
+            files,
+            contents,
+            self._catalogue,
+            ceiling=self._feedback,
+            for_students=message.role is not LtiRole.TUTOR,
+            language=language,
+        )
+
+
+def _id_in(claims: Mapping[str, Any], name: str) -> str:
+    """Return the id in a claim. Raises LtiError."""
+    claim = claims.get(f"{LTI}{name}")
+    found = claim.get("id") if isinstance(claim, dict) else None
+    if not isinstance(found, str) or not 0 < len(found) <= 255:
+        raise LtiError("bad-claim", claim=f"{LTI}{name}")
+    return found
