@@ -88,6 +88,29 @@ def test_the_pages_are_accessible(visit: Opening, service: str, axe: str) -> Non
     assert violations(page, "") == []
 
 
+OTHER_PAGES = (
+    "/nothing", "/exercises/nothing", "/tutor/attempts", "/tutor/class",
+    "/tutor/misconceptions/planar-rr", "/tutor/sign-in",
+)  # fmt: skip
+
+
+@pytest.mark.long
+def test_pages_for_tutors_and_of_problems_are_accessible(
+    visit: Opening, service: str, axe: str
+) -> None:
+    opened = visit(bypass_csp=True, viewport={"width": 390, "height": 844})
+    page = opened.page
+    page.add_init_script(axe)
+    for path in OTHER_PAGES:
+        page.goto(service + path)
+        expect(page.get_by_role("heading", level=1)).to_be_visible()
+        assert violations(page, "") == [], path
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, path
+    # The console tells the answers 404 to the wrong addresses.
+    assert all("status of 404" in each for each in opened.complaints)
+    opened.complaints.clear()
+
+
 @pytest.mark.long
 def test_students_read_help_in_their_language(visit: Opening, service: str, axe: str) -> None:
     page = visit(bypass_csp=True, viewport={"width": 390, "height": 844}).page

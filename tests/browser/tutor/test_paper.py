@@ -21,6 +21,10 @@ def shown(page: Page, selector: str) -> int:
 def test_an_exercise_is_printed_with_its_report(visit: Callable[..., Visit], service: str) -> None:
     page = visit(color_scheme="dark").page
     open_exercise(page, service, "planar-rr")
+    # An empty form has no points to print.
+    page.emulate_media(media="print")
+    expect(page.locator(".bar")).to_be_hidden()
+    page.emulate_media(media="screen")
     for i, text in enumerate(["a1", "0", "0", "theta1", "a2", "0", "sin(", "theta2"]):
         cells(page).nth(i).fill(text)
     page.get_by_role("button", name="Check").click()
@@ -30,7 +34,9 @@ def test_an_exercise_is_printed_with_its_report(visit: Callable[..., Visit], ser
 
     page.set_viewport_size({"width": PAPER["width"], "height": PAPER["height"]})
     page.emulate_media(media="print")
-    assert shown(page, "button:not(.fold), .bar, .tools, .robot-view, nav, footer") == 0
+    assert shown(page, "button:not(.fold), meter, .rail, .tools, .robot-view, nav, footer") == 0
+    expect(page.locator(".total")).to_be_visible()
+    expect(page.locator(".total")).to_contain_text("/ 17 points")
     # The drawing replaces the 3D view.
     expect(page.get_by_role("img", name="Drawing of the robot")).to_be_visible()
     expect(cells(page).nth(6)).to_be_visible()
