@@ -35,7 +35,8 @@ _EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND, _EXTRA_OF_NUMBER =
 _WORTH_IT: Final = 40
 
 # Text that is counted as a unit. Only the last pattern above may match across such words.
-_WORD: Final = re.compile(r"\\?[A-Za-z0-9_.]+|[^ ]")
+_NAME: Final = re.compile(r"\\?[A-Za-z0-9_.]+")
+_WORD: Final = re.compile(rf"{_NAME.pattern}|[^ ]")
 # A formula has few distinct words, which are memoized. Other texts are counted as a whole.
 _MOST_WORDS: Final = 100
 # More symbols than any text has.
@@ -72,14 +73,27 @@ def _of_text(text: str) -> _Count:
 
 def _by_words(text: str) -> _Count:
     characters = len(text) // _CHARACTERS_PER_SYMBOL
+    if len(text) <= _MOST_WORDS and text.isascii():
+        # A fast path for most formulas: signs are counted, not looked up one by one.
+        words = _NAME.findall(text)
+        signs = len(text) - text.count(" ") - sum(map(len, words))
+        extra, symbols = divmod(sum(map(_of_word, words)), _PACKED)
+        return _Count(
+            symbols + signs + characters, extra + _EXTRA["/"] * text.count("/") + _of_numbers(text)
+        )
     words = _WORD.findall(text)
     if len(words) > _MOST_WORDS and len(set(words)) > _MOST_WORDS:
         symbols, extra = _scanned(text)
         return _Count(symbols + characters, extra)
     extra, symbols = divmod(sum(map(_of_word, words)), _PACKED)
+    return _Count(symbols + characters, extra + _of_numbers(text))
+
+
+def _of_numbers(text: str) -> int:
+    """Return the extra cost of functions of numbers, whose names and numbers are separate words."""
     if "n(" in text or "s(" in text:
-        extra += _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
-    return _Count(symbols + characters, extra)
+        return _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
+    return 0
 
 
 def _packed(word: str) -> int:

@@ -34,6 +34,10 @@ class Symbol:
     latex: str | None = None
 
 
+# The function of a shorthand and its symbols, whose sum is the argument; a symbol has no function.
+Operand = tuple[str, tuple[Symbol, ...]]
+
+
 def normal_form(name: str) -> str:
     """Return ``name`` with subscripts as plain digits: θ_1, θ₁ and θ_{1} -> θ1.
 
@@ -67,8 +71,8 @@ class Vocabulary:
     """
 
     __slots__ = (
-        "_hash", "_shared", "by_name", "decimal_comma", "joints", "longest", "of_books", "sliding",
-        "symbols", "turning",
+        "_hash", "_shared", "by_name", "decimal_comma", "joints", "longest", "of_books", "operands",
+        "sliding", "symbols", "turning",
     )  # fmt: skip
 
     def __init__(
@@ -80,6 +84,8 @@ class Vocabulary:
         self.by_name: Final[dict[str, Symbol]] = {}
         self.turning: Final[dict[int, Symbol]] = {}
         self.sliding: Final[dict[int, Symbol]] = {}
+        # The results of ``sole_operand``: a dictionary of short keys is the fastest cache.
+        self.operands: Final[dict[str, Operand]] = {}
         for symbol in self.symbols:
             self._declare(symbol)
         self.joints: Final = sorted(self.turning | self.sliding)

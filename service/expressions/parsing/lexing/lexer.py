@@ -11,7 +11,7 @@ from service.expressions.parsing.lexing.indices import INDEX
 from service.expressions.parsing.lexing.joint_markers import read_star
 from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS, Token
 from service.expressions.parsing.lexing.word_lexer import WordLexer
-from service.expressions.parsing.lexing.words import RUN, sole_operand
+from service.expressions.parsing.lexing.words import RUN
 from service.expressions.tree import Number
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -19,6 +19,8 @@ _TOKEN: Final = re.compile(
     rf"\s*(?:({RUN})|({NUMBER})|(\*\*|\.[*/^]|[-+*/^(),°√\[\]{{}}|{OPEN}{CLOSE}{MARKER}])|(.))",
     re.DOTALL,
 )
+_STRING: Final = re.compile(rf"{RUN}|{NUMBER}|\*\*|\.[*/^]|\s+|.", re.DOTALL)
+_DIGITS: Final = frozenset("0123456789")
 _TERMINALS: Final = {
     "+": "PLUS", "-": "MINUS", "*": "STAR", "/": "SLASH", "^": "POWER", "**": "POWER",
     ".*": "STAR", "./": "SLASH", ".^": "POWER", ",": "COMMA",
@@ -42,7 +44,8 @@ class Lexer(WordLexer):
 
     def run(self) -> list[Token]:
         """Return the tokens, with END last. May raise UnreadableError."""
-        text, position, length = self.text, 0, len(self.text)
+        text, length = self.text, len(self.text)
+        position = self._plain_run(text) if self.starts is None else 0
         while position < length:
             position = self._run_from(position, text)
         end = len(self.source)
@@ -51,19 +54,42 @@ class Lexer(WordLexer):
             self._check_indices()
         return self.tokens
 
+    def _plain_run(self, text: str) -> int:
+        """Read an unchanged text as ``_run_from`` does, but from a list of strings: a fast path.
+
+        Return the place after the first token that takes more than its string.
+        """
+        tokens, operands, end = self.tokens, self.vocabulary.operands, 0
+        for string in _STRING.findall(text):
+            start, end = end, end + len(string)
+            operand = operands.get(string)
+            if operand is not None:
+                self._sole_operand(operand, start, end)
+            elif string in _TERMINALS:
+                if string == "*" and self.last == "NAME" and self._is_joint():
+                    return start
+                terminal = self.last = _TERMINALS[string]
+                tokens.append((terminal, None, start, end))
+            elif string == "(" or string == ")":
+                self._operator(string, start, end)
+            elif string[0] in _DIGITS:
+                self._number(string, start, end)
+            elif string[0].isalpha():
+                after = self._word(string, start, end)
+                if after != end:
+                    return after
+            elif string != " ":
+                return start
+        return end
+
     def _run_from(self, position: int, text: str) -> int:
         """Read tokens until one of them takes more than its match; return the place after it."""
-        tokens, vocabulary, in_place = self.tokens, self.vocabulary, self.starts is None
+        tokens, in_place = self.tokens, self.starts is None
         # The last alternative takes any character, so no character is skipped.
         for found in _TOKEN.finditer(text, position):
             group = found.lastindex or 0
             start, position = found.span(group)
             if group == 1:
-                # A fast path for most names.
-                piece = sole_operand(found[1], vocabulary) if in_place else None
-                if piece is not None:
-                    self._sole_operand(piece, start, position)
-                    continue
                 position = self._word(found[1], start, position)
             elif group == 3:
                 operator = found[3]

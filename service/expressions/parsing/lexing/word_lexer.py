@@ -16,9 +16,10 @@ from service.expressions.parsing.lexing.programs import (
     subscripted,
 )
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS, TokenWriter
-from service.expressions.parsing.lexing.words import LONGEST_RUN, Piece, split
+from service.expressions.parsing.lexing.words import LONGEST_RUN, Piece, sole_operand, split
 from service.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
 from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
+from service.expressions.vocabulary.symbols import Operand
 
 _FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
 _EXPONENT: Final = re.compile(
@@ -33,6 +34,14 @@ class WordLexer(TokenWriter):
 
     def _word(self, run: str, start: int, end: int) -> int:
         """Read a run of letters and digits; return the place after it."""
+        operand = sole_operand(run, self.vocabulary) if self.starts is None else None
+        if operand is None:
+            return self._split_word(run, start, end)
+        self._sole_operand(operand, start, end)
+        return end
+
+    def _split_word(self, run: str, start: int, end: int) -> int:
+        """Read a run of any number of pieces; return the place after it."""
         if run in MODULES and (member := MEMBER.match(self.text, end)):
             return self._after_module(member.end())
         pieces = split(run, self.vocabulary)
@@ -40,10 +49,9 @@ class WordLexer(TokenWriter):
             if self._is_float_suffix(run, start):
                 return end
             pieces, end = self._unsplit(run, start, end)
-        in_place = self.starts is None
         for piece in pieces:
-            kind, a, stop = piece.kind, start + piece.start, start + piece.end
-            a, b = (a, stop) if in_place else self._span(a, stop)
+            kind, stop = piece.kind, start + piece.end
+            a, b = self._span(start + piece.start, stop)
             if kind == "symbol":
                 symbol = piece.symbols[0]
                 self.symbols.add(symbol.name)
@@ -161,11 +169,11 @@ class WordLexer(TokenWriter):
                     "ambiguous_shorthand", (a, b), function=piece.word, names=names
                 )
         self.notes.shorthand(piece, a, b)
-        self._sole_operand(piece, a, b)
+        self._sole_operand((piece.word, piece.symbols), a, b)
 
-    def _sole_operand(self, piece: Piece, a: int, b: int) -> None:
+    def _sole_operand(self, operand: Operand, a: int, b: int) -> None:
         """Emit a symbol or a shorthand."""
-        symbols = piece.symbols
+        function, symbols = operand
         first = symbols[0]
         node: Node = SymbolNode(first, a, b)
         self.symbols.add(first.name)
@@ -173,8 +181,8 @@ class WordLexer(TokenWriter):
             for symbol in symbols[1:]:
                 self.symbols.add(symbol.name)
                 node = Binary("+", node, SymbolNode(symbol, a, b), a, b)
-        if piece.kind == "shorthand":
-            node = Call(piece.word, (node,), a, b)
+        if function:
+            node = Call(function, (node,), a, b)
         if self.last in OPERAND_ENDS:
             self._operand("NAME", node, a, b)
         else:

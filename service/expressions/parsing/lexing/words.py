@@ -14,7 +14,7 @@ from typing import Final
 from service.expressions.characters import greek
 from service.expressions.vocabulary import functions
 from service.expressions.vocabulary.functions import PieceKind
-from service.expressions.vocabulary.symbols import Symbol, Vocabulary
+from service.expressions.vocabulary.symbols import Operand, Symbol, Vocabulary
 
 RUN: Final = rf"[A-Za-z{greek.CLASS}](?:_?[A-Za-z0-9{greek.CLASS}])*"
 
@@ -33,6 +33,8 @@ _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
 _WHOLE: Final = functions.ALONE | _WORDS
 # An underscore after one of these does not begin a new factor: a_b is not a product.
 _NAMES: Final = frozenset({"symbol", "pi", "shorthand", "invalid_shorthand", "number", "unit"})
+# The memoized operands of one vocabulary; they are its names and shorthands in all spellings.
+_MOST_OPERANDS: Final = 512
 # A longer run is not a formula.
 LONGEST_RUN: Final = 80
 # sind30 might mean sin(d30), so these functions need a bracket or a space before a number.
@@ -83,20 +85,23 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
     return tuple(_with_underscores(piece, kept, run) for piece in pieces)
 
 
-@lru_cache(maxsize=8192)
-def sole_operand(run: str, vocabulary: Vocabulary) -> Piece | None:
-    """Return the piece of a run that is one symbol or one shorthand, or None.
+def sole_operand(run: str, vocabulary: Vocabulary) -> Operand | None:
+    """Return the meaning of a run that is one symbol or one shorthand, or None.
 
-    None also if the run is the name of a module, or if its shorthand may get a note.
+    None also if the run is the name of a module, or if its shorthand may get a note. The vocabulary
+    keeps the result.
     """
     pieces = None if run in functions.MODULES else split(run, vocabulary)
     if pieces is None or len(pieces) > 1:
         return None
     piece = pieces[0]
     is_noted = piece.ambiguous or run[0] in "CS"
-    if piece.kind == "symbol" or (piece.kind == "shorthand" and not is_noted):
-        return piece
-    return None
+    if piece.kind != "symbol" and (piece.kind != "shorthand" or is_noted):
+        return None
+    if len(vocabulary.operands) >= _MOST_OPERANDS:
+        vocabulary.operands.clear()
+    operand = vocabulary.operands[run] = (piece.word, piece.symbols)
+    return operand
 
 
 def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
