@@ -69,7 +69,8 @@ class Judgement:
     ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``roles``
     are those of the submitted rows if the student chose the frames. ``departures`` is the cost of
     these frames, infinite if the intended ones are unknown. ``extra`` are the rows without a
-    counterpart; ``reached`` is true if the rows lead to the given tool frame. ``lost`` are the
+    counterpart; ``in_place`` is true if each row was compared with the reference's row of the same
+    place, ``reached`` if the rows lead to the given tool frame. ``lost`` are the
     units that the wrong cells lose, in the frames in which they lose the fewest.
     """
 
@@ -79,6 +80,7 @@ class Judgement:
     departures: float = 0.0
     extra: tuple[int, ...] = ()
     findings: tuple[Finding, ...] = ()
+    in_place: bool = False
     reached: bool = True
     lost: float = np.inf
 
@@ -166,7 +168,9 @@ def _judged_by_reference(
 ) -> Judgement:
     """Judge the table by the reference's rows."""
     expected = reference_values(reference, grading.samples)
-    rows = without_idle_rows(rows, len(expected))
+    is_in_place = len(rows) == len(expected)
+    if not is_in_place:
+        rows = without_idle_rows(rows, len(expected))
     judged, extra = [], []
     for i, j in _paired(rows, expected, grading):
         if j is None:
@@ -175,7 +179,8 @@ def _judged_by_reference(
         joint = reference.joints[j] if j < len(reference.joints) else None
         row = None if i is None else rows[i]
         judged.append(JudgedRow(reference.labels[j], joint, row, expected[j]))
-    return Judgement(tuple(judged), _matches_of(judged, grading), extra=tuple(extra))
+    found = _matches_of(judged, grading)
+    return Judgement(tuple(judged), found, extra=tuple(extra), in_place=is_in_place)
 
 
 def _paired(

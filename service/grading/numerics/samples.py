@@ -84,9 +84,14 @@ class Samples:
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
 
+    def absent_names(self, expressions: Iterable[Expression | None]) -> set[str]:
+        """Return the names in the expressions that have no values here (``absent_variables``)."""
+        names = (each.symbols for each in expressions if each is not None)
+        return set[str]().union(*names).difference(self.values)
+
     def values_for(self, expression: Expression) -> Mapping[str, Numbers]:
         """Return the values of all symbols, including absent variables of the expression."""
-        absent = expression.symbols.difference(self.values)
+        absent = self.absent_names([expression])
         return self.with_names(absent).values if absent else self.values
 
     def renamed(self, meanings: Mapping[str, str]) -> "Samples":

@@ -4,12 +4,11 @@ Students write them if they count the joints from 0, or revolute and prismatic j
 A cell with such a name is wrong, but not unreadable.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Final
 
-from service.expressions import Expression, Symbol, Vocabulary
-from service.grading.numerics.samples import Samples
+from service.expressions import Symbol, Vocabulary
 
 _LETTERS: Final = "thetad"
 # Larger than every joint number, so that no shorthand (such as c1) means an absent variable.
@@ -42,9 +41,3 @@ def _absent(index: int, vocabulary: Vocabulary) -> Iterator[Symbol]:
 def joint_counted(name: str) -> int:
     """Return the joint number in the canonical name of an absent variable: 3 for theta3."""
     return int(name.lstrip(_LETTERS))
-
-
-def absent_names(expressions: Iterable[Expression | None], samples: Samples) -> set[str]:
-    """Return the canonical names of all absent variables in the expressions."""
-    used: set[str] = set().union(*(each.symbols for each in expressions if each is not None))
-    return used.difference(samples.values)

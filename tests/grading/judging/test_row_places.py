@@ -35,6 +35,15 @@ def test_rows_after_an_extra_one_are_named(scara: Exercise) -> None:
     assert "row 5 with joint 4" in message
 
 
+def test_equal_rows_are_told_apart(catalogue: Mapping[str, Exercise]) -> None:
+    exercise = catalogue["rrrp-drawn"]
+    reference = exercise.robot.tables[exercise.robot.convention]
+    rows = [[formula.source for formula in row] for row in reference.rows]
+    report = graded_table(exercise, [*rows[:3], rows[2], rows[3]])
+    [message] = [each.message for each in report.feedback if each.code == "rows_matched"]
+    assert message == "Your rows were compared in this way: row 5 with joint 4."
+
+
 @pytest.mark.parametrize("rows", [ROWS, [*ROWS, ZERO], ROWS[:3], [ROWS[0], ROWS[2], *ROWS[2:]]])
 def test_rows_in_their_places_get_no_message(rows: list[Row], scara: Exercise) -> None:
     assert told(scara, rows) == ""

@@ -10,7 +10,7 @@ from service.grading.diagnosis.formulas.quantity import quantity_of
 from service.grading.diagnosis.wrong_value import WrongCell, finding_on
 from service.grading.feedback import Finding
 from service.grading.misconception import check
-from service.grading.reading.absent_variables import absent_names, joint_counted
+from service.grading.reading.absent_variables import joint_counted
 from service.kinematics.transforms import Numbers
 from service.translations import listed, say, template
 
@@ -87,7 +87,7 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
 
     The name is "" if the robot has all names; the joint is None if no joint has the number.
     """
-    absent = sorted(absent_names([case.expression], case.samples))
+    absent = sorted(case.samples.absent_names([case.expression]))
     if not absent:
         return "", None
     index = joint_counted(absent[0])

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.expressions import Symbol
-from service.grading.diagnosis.tables.table_freedom import lost_freedom
 from service.grading.diagnosis.tables.whole_table import WrongTable, explaining
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.nearest.few_cells import frames_from_reference
@@ -163,16 +162,3 @@ def _intended(
     frames = frames_from_reference(table, roles, written.convention, grading)
     departures = departures_of(frames, grading)
     return _Intended(repaired.findings, table, error > INTENDED_CELL, departures)
-
-
-def freedom_lost(
-    roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> tuple[Finding, ...]:
-    """Return the findings on joints that share an axis or depend on each other."""
-    present = [role for role in roles if role.row is not None]
-    joints = grading.exercise.robot.joints
-    where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
-    if None in where:
-        return ()
-    values = values_of([role.row for role in present if role.row])
-    return lost_freedom(values, where, convention, grading.exercise, grading.samples)

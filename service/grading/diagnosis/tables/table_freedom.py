@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from service.catalogue import Exercise, Joint
 from service.grading.feedback import Finding
+from service.grading.judging.own_frames.row_roles import Role
 from service.grading.misconception import register
 from service.grading.numerics.joint_motion import changes
 from service.grading.numerics.samples import Samples
-from service.grading.reading.tables.table import StudentTable
+from service.grading.part import Grading
+from service.grading.reading.tables.table import StudentTable, values_of
 from service.kinematics.chain import THETA, D, Table
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
@@ -48,6 +50,19 @@ class _Arm:
     def directions(self, i: int) -> NDArray[np.float64]:
         """Return the axis of joint ``i``, ``(samples, 3)``."""
         return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
+
+
+def freedom_lost(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> tuple[Finding, ...]:
+    """Return the findings on joints that share an axis or depend on each other."""
+    present = [role for role in roles if role.row is not None]
+    joints = grading.exercise.robot.joints
+    where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
+    if None in where:
+        return ()
+    values = values_of([role.row for role in present if role.row])
+    return lost_freedom(values, where, convention, grading.exercise, grading.samples)
 
 
 def lost_freedom(

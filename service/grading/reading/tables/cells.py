@@ -20,6 +20,7 @@ from service.grading.reading.tables.column_headers import (
     read_header,
 )
 from service.grading.reading.tables.row_labels import LAST, label_place
+from service.grading.reading.written_names import name_of
 from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
 from service.kinematics.chain import COLUMNS
 
@@ -312,23 +313,23 @@ def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tup
     return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
 
 
-def memoized_row(
-    cells: Sequence[object], number: int | None, reader: Reader
-) -> tuple[Entry, ...] | None:
+def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] | None:
     """Return the memoized entries of a row of short, readable texts; None for any other row.
 
-    Most students of a class write the same rows, and a lookup takes a tenth of reading one.
+    Most students of a class write the same rows, and a lookup takes a tenth of reading one. Rows
+    with names, such as ``theta_1 = q1``, are not memoized: they depend on the row's number.
     """
     a, alpha, d, theta = cells
     if not (type(a) is type(alpha) is type(d) is type(theta) is str):
         return None
     if len(a) + len(alpha) + len(d) + len(theta) > _LONGEST_MEMOIZED:
         return None
-    found = _read_texts(a, alpha, d, theta, number, reader.vocabulary, reader.angle_unit)
+    found = _read_texts((a, alpha, d, theta), reader.vocabulary, reader.angle_unit)
     if found is None or found.symbols > reader.budget.symbols:
         return None
     reader.budget.symbols -= found.symbols
-    return found.entries
+    # Equal rows of a table are different objects, by which the report tells them apart.
+    return (*found.entries,)
 
 
 class _MemoizedRow(NamedTuple):
@@ -340,17 +341,13 @@ class _MemoizedRow(NamedTuple):
 
 @lru_cache(maxsize=_MEMOIZED)
 def _read_texts(
-    a: str,
-    alpha: str,
-    d: str,
-    theta: str,
-    number: int | None,
-    vocabulary: Vocabulary,
-    angle_unit: AngleUnit,
+    texts: tuple[str, str, str, str], vocabulary: Vocabulary, angle_unit: AngleUnit
 ) -> _MemoizedRow | None:
+    if any(name_of(text, vocabulary) for text in texts):
+        return None
     budget = WorkBudget(repairs=0)
     reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
-    entries = read_row((a, alpha, d, theta), number, reader)
+    entries = read_row(texts, None, reader)
     # Rows that need repairs are not memoized: each submission must pay for its own repairs.
     is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
     return _MemoizedRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None

@@ -10,7 +10,6 @@ from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.numerics.samples import Samples
-from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.entry import Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, pasted_grid, pasted_robot
 from service.grading.reading.tables.cell_names import first_number
@@ -294,7 +293,7 @@ _NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
 
 def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
     cells = [entry for entries in rows for entry in entries]
-    if absent := absent_names((entry.expression for entry in cells), samples):
+    if absent := samples.absent_names(entry.expression for entry in cells):
         samples = samples.with_names(absent)
     numbers = entry_values(cells, (*QUANTITIES.values(),) * len(rows), samples)
     return numbers.reshape(len(rows), len(COLUMNS), -1)
@@ -323,11 +322,15 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
 def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
     """Return the entries of each row."""
     cells = [_cells(row) for row in rows]
-    first = first_number(cells, reader.vocabulary)
     return [
-        _row_entries(row, None if first is None else first + i, reader)
+        memoized_row(row, reader) or read_row(row, _number_of_row(i, cells, reader), reader)
         for i, row in enumerate(cells)
     ]
+
+
+def _number_of_row(i: int, cells: Sequence[Sequence[object]], reader: Reader) -> int | None:
+    first = first_number(cells, reader.vocabulary)
+    return None if first is None else first + i
 
 
 def _cells(row: object) -> list[object]:
@@ -339,11 +342,6 @@ def _cells(row: object) -> list[object]:
     # A row with an unknown name has values that were not read: its other cells are not missing.
     absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
     return [row.get(column, absent) for column in COLUMNS]
-
-
-def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
-    known = memoized_row(cells, number, reader)
-    return read_row(cells, number, reader) if known is None else known
 
 
 # The message for a JSON object shows the expected object; the one for a list or a value uses words.

@@ -1,0 +1,264 @@
+"""The readings of a wrong table, of which the best counts.
+
+The first reading is the table as written. The others are the table with other joint numbers, with
+its columns in another order, or with a and d of one row exchanged. Each is judged alike; one that
+explains enough wrong cells counts, with the finding on its slip.
+
+Three more readings only limit the points: the table without its extra rows, with lazy entries in
+its unread cells, and with one row given up (``fair_points``).
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.diagnosis.tables.column_order import in_other_orders
+from service.grading.diagnosis.tables.intended_table import IntendedTable, with_exchanged_row
+from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
+from service.grading.judging.marking.fair_points import with_fair_points
+from service.grading.judging.own_frames.best_roles import rows_of_mechanism, usual_rows
+from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
+from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
+from service.grading.judging.row_places import EXTRA_ROW, row_too_many
+from service.grading.judging.table_filled import with_lazy_cells
+from service.grading.part import Grading, Judged
+from service.grading.reading.tables.table import StudentTable
+from service.grading.report import CellReport, Place, RowReport, Verdict, row_report
+from service.kinematics.chain import COLUMNS
+from service.kinematics.dh import Convention
+
+# The share of the points that a slip of the whole table costs, regardless of the number of cells.
+COST = 0.25
+# The work of judging a wrong table once: with given frames, with free ones (more for each row), and
+# with a free base or tool or free directions too.
+GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 18.0, 20.0, 4.0, 60.0
+
+
+class JudgedTable(NamedTuple):
+    """The judgement of one reading, and the convention in which it was judged."""
+
+    judged: Judged
+    convention: Convention
+
+
+# A function that judges one reading of a table.
+Judge: TypeAlias = Callable[[DhTableSpec, StudentTable, Grading], JudgedTable]
+
+
+class _Reading(NamedTuple):
+    """Another reading of a table.
+
+    It counts if at most ``most_wrong`` of its cells are wrong, or in any case if that is None. A
+    later part follows from the table as written, or from this reading if it ``has_links``.
+    """
+
+    intended: IntendedTable
+    most_wrong: int | None
+    has_links: bool = False
+
+
+def best_reading(
+    part: DhTableSpec, table: StudentTable, first: JudgedTable, judge: Judge, grading: Grading
+) -> Judged:
+    """Return the judgement of the best reading of a wrong table, with the limits of its points.
+
+    ``first`` is the judgement of the table as written.
+    """
+    work = search_work(part, table, grading)
+    readings = _Readings(part, judge, work, grading)
+    written = readings.limited(table, first)
+    # A table with unread cells has already been charged.
+    if not np.isnan(table.values).any():
+        grading.reader.budget.charge_search(work)
+    best = readings.best(table, written)
+
+    def judged_again(other: StudentTable) -> Judged:
+        """Judge a table with numbers that are wrong in any frames; only its points count."""
+        silent = readings.in_silence()
+        return silent.best(other, silent.as_written(other))
+
+    return with_fair_points(part, table, best, judged_again, work, grading)
+
+
+def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> float:
+    """Return the work of judging a wrong table once."""
+    rows = len(table.rows)
+    once = FREE_WORK + FREE_ROW_WORK * rows
+    if part.frames == "given":
+        once = GIVEN_WORK
+    elif freedom_of(part) != FrameFreedom():
+        once = ALL_FREE_WORK
+    convention = table.convention if part.convention == "either" else part.convention
+    ways = 2 if convention is None else 1
+    has_rows_too_many = rows > usual_rows(convention or grading.exercise.robot.convention, grading)
+    has_unread_cells = np.isnan(table.values).any()
+    return once * (ways + int(has_rows_too_many) + int(has_unread_cells))
+
+
+@dataclass(frozen=True, slots=True)
+class _Readings:
+    """Judges the readings of tables; ``work`` is that of judging one."""
+
+    part: DhTableSpec
+    judge: Judge
+    work: float
+    grading: Grading
+
+    def in_silence(self) -> "_Readings":
+        """Return the same without explanations."""
+        return replace(self, grading=replace(self.grading, explains=False))
+
+    def as_written(self, table: StudentTable) -> Judged:
+        """Judge a table as written."""
+        return self.limited(table, self.judge(self.part, table, self.grading))
+
+    def best(self, table: StudentTable, judged: Judged) -> Judged:
+        """Judge the other readings of a wrong table; ``judged`` is it as written."""
+        for reading in self._others(table, judged):
+            is_certain = reading.most_wrong is None
+            if not is_certain and not self.grading.reader.budget.affords_search(self.work):
+                break
+            without = self.as_written(reading.intended.table)
+            if reading.most_wrong is None or _count_wrong(without) <= reading.most_wrong:
+                found = _with_slip(reading.intended, without, judged, self.grading)
+                return replace(found, chain=without.chain) if reading.has_links else found
+        return judged
+
+    def _others(self, table: StudentTable, judged: Judged) -> Iterator[_Reading]:
+        """Yield the other readings of a wrong table, those that explain most first."""
+        if (renumbered := by_other_numbering(table, self.grading)) is not None:
+            yield _Reading(renumbered, None)
+            return
+        if judged.whole_cost is not None:
+            return
+        wrong = _count_wrong(judged)
+        # An unread cell is not read in any order.
+        if 3 * np.count_nonzero(np.isnan(table.values).any(axis=-1)) <= wrong:
+            for reordered in in_other_orders(table, self.grading):
+                # A student with columns in another order still multiplies out the intended links.
+                yield _Reading(reordered, wrong // 3, has_links=True)
+        if wrong > 1:
+            convention = self.part.convention
+            named = table.convention if convention == "either" else convention
+            if (exchanged := with_exchanged_row(table, named, self.grading)) is not None:
+                yield _Reading(exchanged, wrong - 1)
+
+    def limited(self, table: StudentTable, first: JudgedTable) -> Judged:
+        """Return the judgement of a table as written, with an upper limit of its points.
+
+        A wrong table earns no more than it would without its extra rows, because the points belong
+        to the rows of the mechanism. It earns no more than with lazy entries in its unread cells,
+        whose right values are unknown.
+        """
+        judged, convention = first
+        if judged.is_right:
+            return judged
+        fixed = replace(table, convention=convention)
+        kept = rows_of_mechanism(table.rows, convention, self.grading)
+        if len(kept) < len(table.rows):
+            rows = tuple(table.rows[i] for i in kept)
+            without = self.as_written(replace(fixed, rows=rows, values=table.values[kept]))
+            return _with_extra_rows(fixed, kept, judged, without, self.grading)
+        unread = np.isnan(table.values).any(axis=-1)
+        # A table without any readable cell earns nothing anyway.
+        if unread.any() and not unread.all():
+            filled = with_lazy_cells(fixed, convention, self.grading)
+            return replace(judged, at_most=self.in_silence().as_written(filled))
+        return judged
+
+
+def _count_wrong(judged: Judged) -> int:
+    return sum(cell.verdict is not Verdict.CORRECT for row in judged.rows for cell in row.cells)
+
+
+def _with_slip(
+    intended: IntendedTable, without: Judged, judged: Judged, grading: Grading
+) -> Judged:
+    """Return the judgement of a table with a systematic slip.
+
+    ``without`` judges the table without the slip, ``judged`` as written. The cells of the slip are
+    wrong, and together cost as much as a slip of the whole table.
+    """
+    rows = tuple(
+        row_report(
+            row.label,
+            tuple(
+                replace(cell, verdict=Verdict.INCORRECT)
+                if (i, j) in intended.cells and cell.verdict is Verdict.CORRECT
+                else cell
+                for j, cell in enumerate(row.cells)
+            ),
+            row.feedback,
+        )
+        for i, row in enumerate(without.rows)
+    )
+    places = tuple(
+        Place(rows[i].label, COLUMNS[column])
+        for i, column in sorted(intended.cells)
+        if i < len(rows)
+    )
+    return replace(
+        without,
+        rows=rows,
+        feedback=(*grading.messages((intended.finding,), places), *without.feedback),
+        whole_cost=COST,
+        beside=without,
+        lost=judged.lost,
+        chain=judged.chain,
+    )
+
+
+def _with_extra_rows(
+    table: StudentTable, kept: list[int], judged: Judged, without: Judged, grading: Grading
+) -> Judged:
+    """Return the judgement of a wrong table with extra rows.
+
+    ``kept`` are the indices of the mechanism's rows; ``without`` judges only these.
+    """
+    extra = [i for i, row in enumerate(table.rows) if i not in kept and not row.is_zero]
+    is_told = any(message.code in EXTRA_ROW.codes for message in judged.feedback)
+    # If nothing that was read is wrong, the table may be right.
+    tells = judged.is_wrong and not is_told
+    messages = grading.messages(tuple(map(row_too_many, extra))) if tells else ()
+    of_mechanism = {row.label for row in without.rows}
+    beside = [row for row in judged.rows if row.label not in of_mechanism]
+    wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
+    return replace(
+        judged,
+        rows=_explained_without(judged.rows, without.rows),
+        feedback=(*(m for m in judged.feedback if m.code != OWN_FRAME_CHOICE), *messages),
+        slips=judged.slips + len(wrong),
+        at_most=without,
+    )
+
+
+def _explained_without(
+    rows: tuple[RowReport, ...], without: tuple[RowReport, ...]
+) -> tuple[RowReport, ...]:
+    """Return the rows without messages on cells that are wrong only because of an extra row.
+
+    ``without`` are the rows of the report on the table without its extra rows.
+    """
+    right = {
+        (row.label, cell.label): cell
+        for row in without
+        for cell in row.cells
+        if cell.verdict is Verdict.CORRECT
+    }
+    labels = {row.label for row in without}
+
+    def silent(row: RowReport, cell: CellReport) -> CellReport:
+        if cell.verdict is not Verdict.INCORRECT:
+            return cell
+        if row.label not in labels:
+            return replace(cell, feedback=())
+        found = right.get((row.label, cell.label))
+        return cell if found is None else replace(cell, feedback=found.feedback)
+
+    return tuple(
+        row_report(row.label, tuple(silent(row, cell) for cell in row.cells), row.feedback)
+        for row in rows
+    )
