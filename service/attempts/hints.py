@@ -76,10 +76,11 @@ def take(
     prices: Sequence[float],
     now: datetime,
 ) -> HintRefusedError | None:
-    """Record that the learner took a step of a hint; a step that was taken costs nothing again.
+    """Record that the learner took a step of a hint. A step that was taken before costs nothing.
 
-    The steps at a place go on if another wrong answer gets another message there. Return why it is
-    refused, or None. The error is not raised: other jobs of the transaction would run again.
+    The steps belong to a place: another message at the same place does not start them again. Return
+    the reason if the step is refused, else None. It is not raised, because that would repeat the
+    other jobs of the transaction.
     """
     # Two requests for the same step wait for each other.
     attempt = connection.execute(

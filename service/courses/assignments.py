@@ -48,10 +48,10 @@ def change_assignment(
     change: AssignmentChange,
     known: Collection[str],
 ) -> CourseAssignment:
-    """Change an assignment; return it as it is then.
+    """Change an assignment and return it.
 
-    A later due date also counts for attempts that were late before; an earlier one makes no attempt
-    late. Raises CourseError.
+    A later due date also applies to recorded attempts that were late. An earlier due date makes no
+    recorded attempt late. Raises CourseError.
     """
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)
@@ -73,9 +73,9 @@ def change_assignment(
 def extend(
     connection: Connection, course: str, assignment: str, extension: Extension
 ) -> CourseAssignment:
-    """Give a learner other dates or another limit, or, without any, the usual ones again.
+    """Give a learner other dates or another limit. Without any, end the extension.
 
-    Attempts that were late before and are not with the new due date get their points back. Raises
+    Attempts that are no longer late get their points back. Raises
     CourseError.
     """
     zone = _zone(connection, course)

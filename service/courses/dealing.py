@@ -1,4 +1,4 @@
-"""Which variant of an exercise a learner has in an assignment. Learners never see the seed.
+"""The variant of an exercise that a learner has in an assignment. Learners never see the seed.
 
 The service computes the seed from a secret of the assignment: a learner has the same variant each
 time, and cannot find out which.
@@ -66,9 +66,10 @@ def own_variant(
 
 
 def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
-    """True if an assignment has variants of the exercise, but does not keep its choices yet.
+    """True if an assignment has variants of the exercise, but its choices are not stored yet.
 
-    An earlier version made it, or the exercise has become one with variants.
+    That is so if an earlier version of the program made the assignment, or if the exercise got
+    variants later.
     """
     if terms.variants is None or exercise.vary is None:
         return False
@@ -83,9 +84,9 @@ def pin_choices(
     *,
     renew: bool = False,
 ) -> None:
-    """Keep what the exercises of an assignment may vary, so that a new file changes no variant.
+    """Store the choices of an assignment's exercises, so that a changed file changes no variant.
 
-    Choices that are kept already stay, unless ``renew``. Raises CourseError.
+    Stored choices stay. With ``renew``, they are replaced. Raises CourseError.
     """
     row = assignment_row(connection, course, assignment)
     if row.variants is None:

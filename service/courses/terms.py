@@ -44,9 +44,9 @@ _OF_ASSIGNMENT: Final = _OF_COURSE.where(assignments.c.id == bindparam("assignme
 class LearnerTerms:
     """The terms of an assignment for one learner, with an extension if there is one.
 
-    ``number`` is that of the row of the assignment; ``exercises`` are the points of each exercise.
-    ``variants`` is the secret of the learners' variants, or None if there are none; ``choices`` are
-    what their exercises may vary, as JSON, or None if the files say so.
+    ``number`` is the row number of the assignment, ``exercises`` has the points of each exercise.
+    ``variants`` is the secret of the learners' variants, None if there are none. ``choices`` is
+    what their exercises may vary, as JSON; None if the exercise files define it.
     """
 
     number: int
@@ -182,9 +182,9 @@ def extended(
 def own_dates(
     assignment: Any, due: datetime | None, closes: datetime | None
 ) -> tuple[datetime | None, datetime | None]:
-    """Return until when a learner with this extension hands in, in time and late.
+    """Return the last moments of a learner with this extension: to hand in in time, and late.
 
-    Late attempts are accepted until the latest of the dates.
+    Late attempts are accepted until the latest of all dates.
     """
     new_due = due or assignment.due
     if new_due is not None and assignment.opens is not None:

@@ -59,7 +59,7 @@ def home_axes(arm: Arm) -> tuple[list[HomeAxis], Matrices]:
 
 
 def _sliding_axes_moved(axes: list[HomeAxis], tip: Numbers) -> list[HomeAxis]:
-    """Let each sliding axis meet the next axis: only its direction matters, so fewer lengths."""
+    """Move each sliding axis to the next axis, which saves lengths: only its direction matters."""
     moved = list(axes)
     for i in reversed(range(len(axes))):
         if not axes[i].prismatic:

@@ -1,4 +1,4 @@
-"""SlipDraws that are the same on every Python: integers from SHA-256 of a text."""
+"""Random draws that are the same on every Python: integers from SHA-256 of a text."""
 
 from collections.abc import Sequence
 from hashlib import sha256

@@ -64,7 +64,7 @@ def fetch_json(url: str, *, local: bool = False) -> Any:
 def answer(
     url: str, method: str = "GET", *, local: bool = False, **more: Any
 ) -> Iterator[httpx.Response]:
-    """Send a request; the context has the answer, whose content ``content`` reads.
+    """Send a request, and yield the answer. Read its body with ``content``.
 
     ``more`` are further arguments of ``httpx.Client.stream``. Raises FetchError.
     """

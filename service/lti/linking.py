@@ -1,4 +1,4 @@
-"""What a launch leads to: a context is a course, a resource link an assignment, a user a learner.
+"""Link launches to courses: a context is a course, a resource link an assignment, a user a learner.
 
 Everything is done on one connection, in the transaction that uses up the login.
 """

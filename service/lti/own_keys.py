@@ -71,9 +71,9 @@ def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
 
 
 def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
-    """Add a key and remove those that sign no more; return when the new one begins to sign.
+    """Add a key and remove those that no longer sign; return when the new one begins to sign.
 
-    At most two keys are there. If one waits for its day already, none is added.
+    There are at most two keys. If one does not sign yet, none is added.
     """
     ensure_key(connection, secret, now)
     waiting: datetime | None = connection.scalar(

@@ -1,4 +1,4 @@
-"""What the roles of a launch mean here. Roles are compared by their full URIs."""
+"""The meaning of the roles of a launch. Roles are compared by their full URIs."""
 
 from collections.abc import Collection
 from enum import Enum
@@ -34,9 +34,9 @@ class LtiRole(Enum):
 
 
 def role_of(roles: Collection[str], *, has_id: bool) -> LtiRole:
-    """Return what somebody with these roles is; ``has_id`` is True if the platform names a user.
+    """Return the role here of a user with these roles; ``has_id`` is True if the user has an id.
 
-    A test user is a preview, also with the role of a learner. Mentors and observers are guests.
+    A test user is a preview, even with the role of a learner. Mentors and observers are guests.
     """
     if not has_id:
         return LtiRole.GUEST

@@ -20,7 +20,7 @@ _JWS: Final = jwt.PyJWS()
 
 
 class FormTicket(BaseModel):
-    """What all tickets have. ``iss`` differs, so that none is taken for one of another kind."""
+    """The fields of all tickets. Each kind has its own ``iss``, so kinds cannot be confused."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -42,9 +42,9 @@ class LtiTicket(FormTicket):
 
 
 class LinkingTicket(FormTicket):
-    """What the platform has asked for in a message of deep linking.
+    """The request of the platform in a message of deep linking.
 
-    ``course`` is "" as long as nobody has launched the course; ``data`` goes back unchanged.
+    ``course`` is "" until somebody launches the course. ``data`` goes back unchanged.
     ``notices_url`` is "" unless the exercises are for files that students hand in at the platform.
     """
 

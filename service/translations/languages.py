@@ -31,7 +31,7 @@ class Language:
 
     @cached_property
     def translation_of_scripts(self) -> NullTranslations | None:
-        """The same catalogue, but of a text that reports have, too, the words of the pages."""
+        """The catalogue for scripts: of a text that reports also have, the words of pages."""
         return self._catalogue(DOMAINS[::-1])
 
     def _catalogue(self, domains: Sequence[str]) -> NullTranslations | None:

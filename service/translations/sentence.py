@@ -91,9 +91,9 @@ def paragraph(*sentences: str) -> str:
 
 
 def joined(separator: str, sentences: Sequence[str]) -> Sentence:
-    """Return complete sentences with a separator between them that all languages have.
+    """Return complete sentences, joined by a separator that every language uses.
 
-    Such a separator is a line break; ``paragraph`` has the blank, which Chinese has not.
+    A line break is one. A blank is not, because Chinese has none: see ``paragraph``.
     """
     values = {f"sentence{i}": sentence for i, sentence in enumerate(sentences)}
     return Sentence(separator.join(f"{{{name}}}" for name in values), values)

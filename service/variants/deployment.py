@@ -64,9 +64,9 @@ def deploy(
     without: Iterable[str] = (),
     seeds: Iterator[str] | None = None,
 ) -> list[str]:
-    """Return ``count`` seeds of different variants with the same difficulty, none ``without``.
+    """Return ``count`` seeds of different variants with the same difficulty, except ``without``.
 
-    The deployed seeds of the file stay, as far as they are usable. Raises TooFewVariantsError,
+    The usable deployed seeds of the file stay. Raises TooFewVariantsError,
     NoVariantError.
     """
     struck = set(without)

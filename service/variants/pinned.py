@@ -25,8 +25,7 @@ def choices_of(exercises: Mapping[str, Exercise]) -> Mapping[str, Any]:
 def pinned(exercise: Exercise, choices: str | None) -> Exercise:
     """Return the exercise with the choices of an assignment, which are JSON by exercise.
 
-    If there are none, or if they do not fit the texts of the file any more, the choices of the file
-    count.
+    Without any, or if they no longer fit the texts of the file, those of the file apply.
     """
     if exercise.vary is None or choices is None:
         return exercise

@@ -1,7 +1,7 @@
-"""Which seed a learner gets. It follows from a secret, so that nobody can compute or choose it.
+"""The seed of a learner. It follows from a secret, so that nobody can compute or choose it.
 
-If seeds are deployed, it is one of them: the one with the largest keyed hash, so that another
-deployed seed changes the variant of few learners.
+If seeds are deployed, it is the deployed seed with the largest keyed hash. So one more deployed
+seed changes the variants of only a few learners.
 """
 
 import hashlib

@@ -25,7 +25,7 @@ from service.translations import say
 
 
 class _Facts(NamedTuple):
-    """Facts about a node: it has no symbol, it is an angle in radians, it is an angle by its π."""
+    """Facts on a node: it has no symbol, is an angle in radians, and is one because of its π."""
 
     constant: bool
     angle: bool

@@ -187,11 +187,11 @@ def ways_to_judge(
 def _axis_by_others(
     i: int, robot: FramesAtHome, placed: Sequence[PlacedFrame], place: RightPlace
 ) -> AxisLine | None:
-    """Return the axis of a sliding joint where the frames beside it need it.
+    """Return the axis of a sliding joint, moved to where the student's x axes meet it.
 
-    Return None if nothing needs it elsewhere, or if the frame is on the axis as drawn. The x axes
-    of the frames whose neighbour it is must cross it. So must its own x axis cross its neighbour,
-    which determines more if both are parallel.
+    A sliding joint determines only the direction of its axis. The x axis of each frame that has
+    this axis as its neighbour must cross it. The x axis of its own frame must cross both this axis
+    and its neighbour. Return None if the frame is on the axis as drawn, or if no x axis is written.
     """
     asked, own = robot.asked[i], placed[i]
     if not asked.slides or own.point is None:

@@ -67,7 +67,7 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
 
 
 def _known_to_first(joints: int) -> NDArray[np.bool_]:
-    """For the first m axes: True for known directions and known points, and for an arbitrary x."""
+    """Return, for the first m axes, a mask of the known directions, points, and the arbitrary x."""
     first = np.tri(joints, dtype=np.bool_)
     return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)
 

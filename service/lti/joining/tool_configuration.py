@@ -1,4 +1,4 @@
-"""What this service is for a platform: the request of a registration, and a file for Canvas."""
+"""The description of this service for a platform: a registration request, and a file for Canvas."""
 
 from collections.abc import Collection
 from typing import Any, Final

@@ -113,9 +113,9 @@ class GradeServices:
         *,
         redirects: bool = False,
     ) -> Iterator[httpx.Response]:
-        """Send a request with an access token, and with a new one if it is refused.
+        """Send a request with an access token, and with a new one if that is refused.
 
-        The context has the answer of success. With ``redirects``, it may be a redirect, and
+        Yield the answer if it is a success. With ``redirects``, it may be a redirect, and
         TooLargeError is raised, too. Raises ScoreError.
         """
         for is_last in (False, True):

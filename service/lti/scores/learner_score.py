@@ -55,7 +55,7 @@ def learner_score(connection: Connection, assignment: int, learner: str) -> Lear
 def score_message(score: LearnerScore, sub: str, stamp: datetime, address: str) -> dict[str, Any]:
     """Return the message with a score; without points, it clears the score at the platform.
 
-    ``address`` is the one that launches the assignment. Other platforms ignore what is for Canvas.
+    ``address`` launches the assignment. Only Canvas reads some of the fields.
     """
     message: dict[str, Any] = {"userId": sub, "timestamp": _written(stamp)}
     if score.points is None:

@@ -20,8 +20,8 @@ READ: Final = f"{AGS}lineitem.readonly"
 def ensure_line_item(connection: Connection, link: int) -> None:
     """Note the line item of a resource link, if the platform takes scores for it.
 
-    Its address may be unknown: then the first score looks it up, or makes it. Scores of attempts
-    that are there already are queued.
+    If its address is unknown, the first score looks it up, or makes it. The scores of earlier
+    attempts are queued.
     """
     row = connection.execute(
         select(resource_links).where(resource_links.c.number == link)
@@ -49,7 +49,7 @@ def ensure_line_item(connection: Connection, link: int) -> None:
 
 
 def try_refused_again(connection: Connection, learner: str, now: datetime) -> None:
-    """Queue the refused scores of a learner: somebody who launches is enrolled at the platform."""
+    """Queue the refused scores of a learner, who is enrolled at the platform after a launch."""
     mine = (scores.c.learner == learner) & (scores.c.state == "refused")
     values = {"state": "waiting", "next_try_at": now, "version": scores.c.version + 1}
     connection.execute(update(scores).where(mine).values(values))

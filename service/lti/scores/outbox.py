@@ -55,10 +55,10 @@ class TakenScore:
 def take(
     connection: Connection, sender: str, now: datetime, without: Collection[str]
 ) -> TakenScore | None:
-    """Take the next score for the sender; None if none is found.
+    """Take the next score for the sender; None if there is none.
 
-    ``without`` are registrations that are not to be asked now. Scores that the platform has already
-    are noted as sent on the way.
+    ``without`` are registrations that get no score now. Scores that the platform already has are
+    noted as sent.
     """
     for _ in range(_MOST_PASSED):
         row = connection.execute(_next(now, without)).one_or_none()

@@ -41,14 +41,14 @@ def utc_now() -> datetime:
 
 @dataclass(slots=True)
 class _Pause:
-    """Until when a platform is left in peace, and after how many failures."""
+    """The end of the pause of a platform, and the number of failures before it."""
 
     until: datetime
     failures: int
 
 
 class ScoreSender:
-    """Sends scores. After a failure of a platform, it leaves this platform in peace for a while."""
+    """Sends scores. After a failure of a platform, it sends this platform nothing for a while."""
 
     def __init__(
         self,

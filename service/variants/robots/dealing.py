@@ -27,9 +27,9 @@ def first_robot(level: int, convention: Convention) -> PracticeId:
 def candidates(
     level: int, convention: Convention, after: PracticeId | None
 ) -> Iterator[PracticeId]:
-    """Yield robots, of which the first that suits is the next one, or else the last one.
+    """Yield robots. The next one is the first that suits, else the last.
 
-    Among the robots after one another, no two are alike for a long time.
+    Consecutive robots are all different for a long time.
     """
     start = first_robot(level, convention) if after is None else after.following()
     start = replace(start, level=level, convention=convention)

@@ -134,7 +134,7 @@ def _about(z: AxisDirection, x: AxisDirection, degrees: int) -> AxisDirection:
 
 
 def _has_offset(level: Grammar, draws: Draws, *, sliding: bool) -> bool:
-    """True if the row gets a length along its axis; a sliding joint seldom needs one."""
+    """Draw whether the row gets a length along its axis. A sliding joint seldom needs one."""
     return draws.chance(level.offset // (4 if sliding else 1))
 
 

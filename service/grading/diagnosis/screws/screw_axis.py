@@ -16,7 +16,7 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class WrongScrew(WrongNumbers):
-    """A screw axis that is not the expected one, ``(6, SAMPLES)`` each.
+    """A wrong screw axis and the expected one, each ``(6, SAMPLES)``.
 
     ``frame`` is the frame that is asked for, "space" or "body". ``elsewhere`` is the right axis in
     the other frame, or None if it is unknown.

@@ -74,7 +74,11 @@ class Requirements:
 
     @cached_property
     def _dependences(self) -> tuple[Mask, Mask]:
-        """Masks of what entries depend on ``(symbols, ...)`` and how they grow ``(2, ...)``."""
+        """Masks of the entries that depend on each symbol, and of those that follow all lengths.
+
+        The first is ``(symbols, ...)``. The second is ``(2, ...)``: if all lengths are doubled, an
+        entry stays, or it doubles.
+        """
         probes = [
             Change(symbols=(SymbolChange(name, name, 1.0, PROBE),)) for name in self.samples.values
         ]

@@ -1,7 +1,7 @@
 """The directions of a small robot's axes at home, by number, so that no two numbers are alike.
 
-Simple robots are few: among 500 that are drawn at random, 100 are like an earlier one. So the
-seed of a simple level counts the directions off, and only the rest is drawn.
+There are few simple robots: of 500 random ones, 100 are like an earlier one. So the seed of a
+simple level numbers the directions, and only the rest is random.
 """
 
 from dataclasses import dataclass
