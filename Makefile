@@ -26,7 +26,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format bench fuzz attack probe load sizing worst campaign rows sums policies prints slips robots durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips robots durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -73,6 +73,19 @@ format: $(dev) ## rewrite the code in the house style
 	$(python) -m ruff check --fix .
 	$(python) -m ruff format .
 	$(python) -m tests.front.deno --fix
+
+# A page is replaced only after it was written as a whole.
+written = $(python) -m $(1) >"$(2).new" && mv "$(2).new" "$(2)"
+
+pages: $(dev) ## write all that is made from the code: pages of docs, types of scripts, catalogues
+	$(python) -m tests.docs.misconceptions.records
+	$(python) -m tests.api.permissions.rights_table
+	$(call written,tests.docs.sentences,docs/sentences.md)
+	$(call written,tests.docs.exercise_fields,docs/exercise-fields.md)
+	$(call written,tests.docs.settings,docs/settings.md)
+	$(call written,tests.docs.notice,NOTICE)
+	$(call written,tests.front.api_types,service/web/types/api.d.ts)
+	$(python) -m tests.translations.catalogues
 
 bench: $(dev) ## measure against the budgets
 	$(python) -m tests.benchmarks

@@ -2,16 +2,18 @@
 
 ``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes those
 that no source has any more, and compiles the ``.mo`` files that the program reads. Sentences
-without a translation stay empty; nothing is guessed. ``--missing de sentences`` prints the
-sentences that German lacks, as JSON; ``--fill de sentences FILE`` writes translations into the
-catalogue from such a JSON file.
+without a translation stay empty; nothing is guessed. It writes them to ``untranslated.json``, with
+a place for the translation to each language; run it again after filling that file in.
+
+For one language, ``--missing de sentences`` prints the sentences that German lacks, as JSON;
+``--fill de sentences FILE`` writes translations into the catalogue from such a JSON file.
 """
 
 import argparse
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
 from io import BytesIO
 from pathlib import Path
@@ -33,6 +35,8 @@ _KEYWORDS: Final[dict[str, dict[str, Any]]] = {
     "javascript": {"worded": None, "wordedFor": (1, 2)},
 }
 DOMAINS: Final = ("sentences", "pages")
+# The sentences without a translation. Git ignores this file.
+UNTRANSLATED: Final = ROOT / "untranslated.json"
 _NO_DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)
 # What a text quotes: a name or a piece of a formula.
 _IN_PAGES: Final = re.compile(r"%\(\w+\)s")
@@ -180,18 +184,50 @@ def _texts(text: Any) -> tuple[str, ...]:
     return tuple(text) if isinstance(text, tuple | list) else (text or "",)
 
 
-def _fill(code: str, domain: str, file: Path) -> None:
-    found = updated(code, domain)
-    for each in json.loads(file.read_text("utf-8")):
-        name = tuple(each["id"]) if isinstance(each["id"], list) else each["id"]
-        message = found.get(name)
+def untranslated() -> list[dict[str, Any]]:
+    """Return the sentences that some language lacks, with an empty text for each such language."""
+    found: dict[object, dict[str, Any]] = {}
+    for domain in DOMAINS:
+        for code in CODES:
+            for each in _missing(code, domain):
+                entry = {"domain": domain, "file": each["file"], "id": each["id"]}
+                found.setdefault((domain, each["id"]), entry)[code] = each["text"]
+    return list(found.values())
+
+
+def filled(found: Catalog, translations: Iterable[tuple[Any, Any]]) -> Catalog:
+    """Return the catalogue with these translations, each a sentence and its text."""
+    for sentence, text in translations:
+        message = found.get(tuple(sentence) if isinstance(sentence, list) else sentence)
         if message is None:
-            sys.stderr.write(f"no such sentence: {name!r}\n")
-        elif any(_texts(each["text"])):
-            text = each["text"]
+            sys.stderr.write(f"no such sentence: {sentence!r}\n")
+        elif any(_texts(text)):
             message.string = tuple(text) if isinstance(text, list) else text
-    write(code, domain, found)
     sys.stderr.writelines(f"{fault}\n" for fault in faults(found))
+    return found
+
+
+def _fill(code: str, domain: str, file: Path) -> None:
+    translations = [(each["id"], each["text"]) for each in json.loads(file.read_text("utf-8"))]
+    write(code, domain, filled(updated(code, domain), translations))
+
+
+def _update_all() -> None:
+    """Update all catalogues, with the translations in ``untranslated.json``."""
+    known = json.loads(UNTRANSLATED.read_text("utf-8")) if UNTRANSLATED.is_file() else []
+    for domain in DOMAINS:
+        for code in CODES:
+            entries = [each for each in known if each["domain"] == domain and code in each]
+            found = filled(updated(code, domain), ((each["id"], each[code]) for each in entries))
+            write(code, domain, found)
+    if missing := untranslated():
+        UNTRANSLATED.write_text(json.dumps(missing, ensure_ascii=False, indent=1) + "\n", "utf-8")
+        sys.stderr.write(
+            f"{len(missing)} sentences lack a translation: write it in {UNTRANSLATED.name}, "
+            "then run this again\n"
+        )
+    else:
+        UNTRANSLATED.unlink(missing_ok=True)
 
 
 def _main() -> None:
@@ -204,9 +240,7 @@ def _main() -> None:
     elif given.fill:
         _fill(given.fill[0], given.fill[1], Path(given.fill[2]))
     else:
-        for code in CODES:
-            for domain in DOMAINS:
-                write(code, domain, updated(code, domain))
+        _update_all()
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from tests.translations.catalogues import (
     as_po,
     catalogue,
     faults,
+    filled,
     updated,
 )
 
@@ -62,6 +63,25 @@ def test_a_translation_without_a_place_is_a_fault() -> None:
     found.add("Check the sign.", "Prüfen Sie das Vorzeichen.")
     assert [fault.split()[0] for fault in faults(found)] == ["places", "quotations"]
     assert b"Vorzeichen" in as_po(found)
+
+
+def test_translations_are_filled_in_by_sentence() -> None:
+    found = Catalog(locale="de")
+    found.add("Check the sign.")
+    found.add(("{count} row", "{count} rows"))
+    found.add("Write 0.", "Schreiben Sie 0.")
+    plural = ["{count} Zeile", "{count} Zeilen"]
+    filled(
+        found,
+        [
+            ("Check the sign.", "Prüfen Sie das Vorzeichen."),
+            (["{count} row", "{count} rows"], plural),
+            ("Write 0.", ""),
+        ],
+    )
+    assert found["Check the sign."].string == "Prüfen Sie das Vorzeichen."
+    assert found[("{count} row", "{count} rows")].string == tuple(plural)
+    assert found["Write 0."].string == "Schreiben Sie 0."
 
 
 def _texts(string: object) -> tuple[str, ...]:
