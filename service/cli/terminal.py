@@ -61,6 +61,14 @@ def installed_exercise(exercise_id: str) -> Exercise:
     return find_exercise({plain_id: plain}, exercise_id)
 
 
+def named_exercise(name: str) -> Exercise:
+    """Return the exercise in a file ``….toml``, or the installed exercise or variant with an id.
+
+    Raises SettingsError, CatalogueError or UnknownExerciseError.
+    """
+    return load_exercise(Path(name)) if name.endswith(".toml") else installed_exercise(name)
+
+
 def installed_file(exercise_id: str) -> Path:
     """Return the file of the exercise of this installation with this id.
 

@@ -69,7 +69,7 @@ def robots() -> Iterator[SpoiltRobot]:
     for file in sorted(shipped_folder().glob("*.toml")):
         text = file.read_text(encoding="utf-8")
         if "table = [\n" in text and "[robot]" in text and "[vary]" not in text:
-            yield robot_of(file.stem, text.split("[[parts]]")[0])
+            yield robot_of(file.stem, text.split("\n[[parts]]")[0])
     for name, (structure, convention, table) in UNSEEN.items():
         yield robot_of(name, HEAD + _setting(structure, convention, table))
 

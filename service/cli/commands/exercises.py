@@ -16,7 +16,7 @@ from service.catalogue import Exercise, by_level
 from service.catalogue.robots.robot import Robot
 from service.cli.exercises import check, export_robot, import_robot, variants
 from service.cli.exercises.new_file import write_new
-from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
+from service.cli.terminal import give_up, installed, installed_file, named_exercise, stdout
 from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, reference_figure
 from service.grading.kinds.find_slip import shown_shape
@@ -39,7 +39,7 @@ def list_exercises() -> None:
 
 @commands.command("show")
 def show_exercise(
-    exercise_id: Annotated[str, typer.Argument(metavar="ID", show_default=False)],
+    exercise_id: Annotated[str, typer.Argument(metavar="ID|FILE", show_default=False)],
     solution: Annotated[
         bool, typer.Option("--solution", help="Show the model solution instead.")
     ] = False,
@@ -58,7 +58,7 @@ def show_exercise(
     ] = False,
 ) -> None:
     """Show an exercise: its statement, symbols and parts, or its solution."""
-    exercise = installed_exercise(exercise_id)
+    exercise = named_exercise(exercise_id)
     console = stdout()
     if figure is not None:
         _write_figure(exercise, figure, theme, frames=frames)

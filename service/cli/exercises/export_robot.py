@@ -7,7 +7,7 @@ import numpy as np
 import typer
 
 from service.catalogue.robots.robot import Robot
-from service.cli.terminal import give_up, installed_exercise, stdout
+from service.cli.terminal import give_up, named_exercise, stdout
 from service.figures.geometry.symbol_numbers import drawing_numbers
 from service.importing.export import toolbox_text, urdf_text
 from service.importing.home_statement import HomeRobot
@@ -22,7 +22,7 @@ class ExportFormat(StrEnum):
 
 
 def command(
-    exercise_id: Annotated[str, typer.Argument(metavar="ID", show_default=False)],
+    exercise_id: Annotated[str, typer.Argument(metavar="ID|FILE", show_default=False)],
     target: Annotated[
         ExportFormat,
         typer.Option("--format", help="A URDF file, or a script for the Robotics Toolbox."),
@@ -32,7 +32,7 @@ def command(
 
     Letters get the lengths with which the robot is drawn.
     """
-    exercise = installed_exercise(exercise_id)
+    exercise = named_exercise(exercise_id)
     robot = exercise.reference
     if not isinstance(robot, Robot):
         give_up(f"the exercise {exercise.id} has no robot with a DH table")

@@ -67,6 +67,15 @@ def test_show_prints_the_task_without_answers(run: Run) -> None:
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
+def test_show_takes_a_path(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "arm.toml"
+    file.write_text(template("arm"), encoding="utf-8")
+    assert run("exercises", "show", str(file), "--solution").stdout == SOLUTION
+    absent = run("exercises", "show", str(tmp_path / "absent.toml"))
+    assert absent.exit_code == 2
+    assert "absent.toml" in absent.stderr
+
+
 def test_show_solution_prints_answers_and_link_transforms(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
