@@ -15,6 +15,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from string import Formatter
@@ -43,6 +44,7 @@ _IN_PAGES: Final = re.compile(r"%\(\w+\)s")
 _QUOTED: Final = re.compile(r"`[^`]+`")
 
 
+@cache
 def extracted(domain: str) -> Catalog:
     """Return the sentences of a domain in the source, with their files.
 
@@ -223,8 +225,8 @@ def _update_all() -> None:
     if missing := untranslated():
         UNTRANSLATED.write_text(json.dumps(missing, ensure_ascii=False, indent=1) + "\n", "utf-8")
         sys.stderr.write(
-            f"{len(missing)} sentences lack a translation: write it in {UNTRANSLATED.name}, "
-            "then run this again\n"
+            f"Sentences without a translation: {len(missing)}. "
+            f"Write it in {UNTRANSLATED.name}, then run this again.\n"
         )
     else:
         UNTRANSLATED.unlink(missing_ok=True)
