@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import lru_cache
 from typing import Any, Final
 from zoneinfo import ZoneInfo
 
@@ -140,6 +141,8 @@ def learner_terms(
         yield row.course, _terms(row)
 
 
+# The learners of a class have the same terms, but for their extensions.
+@lru_cache(maxsize=256)
 def _terms(row: Row[Any]) -> LearnerTerms:
     zone = ZoneInfo(row.zone)
     return LearnerTerms(
