@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Final
 
 from service.translations import LANGUAGES, Language
-from service.web.script_words import dictionary, with_dictionaries
+from service.web.script_words import dictionary, sentences_in, with_dictionaries
 
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
@@ -88,9 +88,10 @@ def load_assets(folder: Path = FOLDER) -> Assets:
     assets: dict[str, Asset] = {}
     if _WORDS in texts:
         languages = [each for each in LANGUAGES.values() if each.translation]
+        sentences = sentences_in(texts.values())
         for each in languages:
             name = _dictionary_name(each)
-            assets[name] = _asset(name, dictionary(each, texts.values()).encode())
+            assets[name] = _asset(name, dictionary(each, sentences).encode())
         addresses = {each.code: f"./{_dictionary_name(each)}" for each in languages}
         texts[_WORDS] = with_dictionaries(texts[_WORDS], addresses)
     # The named files come first: a name is part of the content that is hashed.

@@ -3,7 +3,7 @@
 import json
 import re
 from collections.abc import Iterable
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from service.translations import Language
 
@@ -15,22 +15,39 @@ _COUNTED: Final = re.compile(rf"\bwordedFor\({_TEXT},{_TEXT}")
 _PLACE: Final = "const FILES = {};"
 
 
-def dictionary(language: Language, scripts: Iterable[str]) -> str:
-    """Return the module with the sentences of all scripts that the language has."""
+class ScriptSentences(NamedTuple):
+    """The English sentences of scripts; of ``counted`` ones, the singular and the plural."""
+
+    plain: tuple[str, ...]
+    counted: tuple[tuple[str, str], ...]
+
+
+def sentences_in(scripts: Iterable[str]) -> ScriptSentences:
+    """Return the sentences of all scripts."""
+    # A vendored library is larger than all own scripts and has none.
+    own = [script for script in scripts if "worded" in script]
+    plain = (_unquoted(match[1]) for script in own for match in _WORDED.finditer(script))
+    counted = (
+        (_unquoted(match[1]), _unquoted(match[2]))
+        for script in own
+        for match in _COUNTED.finditer(script)
+    )
+    return ScriptSentences(tuple(plain), tuple(counted))
+
+
+def dictionary(language: Language, sentences: ScriptSentences) -> str:
+    """Return the module with the sentences that the language has."""
     words: dict[str, str] = {}
     counts: dict[str, tuple[str, str]] = {}
     translation = language.translation_of_scripts
     if translation is not None:
-        for script in scripts:
-            for match in _WORDED.finditer(script):
-                text = _unquoted(match[1])
-                if (told := translation.gettext(text)) != text:
-                    words[text] = told
-            for match in _COUNTED.finditer(script):
-                one, many = _unquoted(match[1]), _unquoted(match[2])
-                forms = (translation.ngettext(one, many, 1), translation.ngettext(one, many, 2))
-                if forms != (one, many):
-                    counts[one] = forms
+        for text in sentences.plain:
+            if (told := translation.gettext(text)) != text:
+                words[text] = told
+        for one, many in sentences.counted:
+            forms = (translation.ngettext(one, many, 1), translation.ngettext(one, many, 2))
+            if forms != (one, many):
+                counts[one] = forms
     found: dict[str, Any] = {"tag": language.tag, "words": words, "counts": counts}
     return f"export default {json.dumps(found, ensure_ascii=False, sort_keys=True)};\n"
 

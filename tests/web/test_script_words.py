@@ -8,7 +8,7 @@ import pytest
 
 from service.translations import LANGUAGES
 from service.web.assets import FOLDER, load_assets
-from service.web.script_words import dictionary
+from service.web.script_words import dictionary, sentences_in
 from tests.translations.catalogues import extracted
 from tests.translations.pseudo import PSEUDO, without_others
 
@@ -23,7 +23,7 @@ def words_in(module: str) -> tuple[dict[str, str], dict[str, list[str]]]:
 
 
 def test_a_dictionary_has_all_sentences_of_the_scripts_and_no_others() -> None:
-    words, counts = words_in(dictionary(PSEUDO, SCRIPTS))
+    words, counts = words_in(dictionary(PSEUDO, sentences_in(SCRIPTS)))
     marked = [
         each.id
         for each in extracted("pages")
@@ -38,7 +38,7 @@ def test_strings_of_either_quotes_are_found() -> None:
     script = (
         """worded("A “b” \\"c\\"", { d }); wordedFor('one "x"', "it\\u2019s", 2); other("no")"""
     )
-    words, counts = words_in(dictionary(PSEUDO, [script]))
+    words, counts = words_in(dictionary(PSEUDO, sentences_in([script])))
     assert set(words) == {'A “b” "c"'}
     assert set(counts) == {'one "x"'}
 
