@@ -19,7 +19,7 @@ from service.courses.terms import LearnerTerms, terms_of
 from service.translations import say
 from service.variants.pinned import choices_of, pinned
 from service.variants.seeds import seed_of
-from service.variants.variant import hidden_variant
+from service.variants.variant import NoVariantError, hidden_variant
 
 # The most deals that are tried until the seed is another one.
 _TRIES: Final = 1000
@@ -33,7 +33,25 @@ def assigned(
     Raises CourseError.
     """
     terms, own, seed = assigned_seed(connection, course, assignment, learner, exercise)
-    return terms, own if seed is None else hidden_variant(own, seed)
+    return terms, variant_for(own, seed)
+
+
+def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
+    """Return the learner's variant under the plain id, or the exercise if it has no variants.
+
+    Raises CourseError if the file has a fault in this variant; the message does not have the seed.
+    """
+    if seed is None:
+        return exercise
+    try:
+        return hidden_variant(exercise, seed)
+    except NoVariantError:
+        message = say(
+            "Your variant of the exercise {exercise} cannot be made, because its file has a fault. "
+            "Ask your tutor for another one.",
+            exercise=exercise.plain_id,
+        )
+        raise CourseError("unusable", message) from None
 
 
 def assigned_seed(
@@ -59,10 +77,16 @@ def assigned_seed(
 def own_variant(
     connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
 ) -> Exercise:
-    """Return the learner's variant of an exercise under its plain id, or the exercise itself."""
+    """Return the learner's variant of an exercise under its plain id, or the exercise itself.
+
+    It is the exercise, too, if the variant cannot be made.
+    """
     own = pinned(exercise, terms.choices)
     seed = _dealt_seed(connection, terms, learner, own)
-    return exercise if seed is None else hidden_variant(own, seed)
+    try:
+        return exercise if seed is None else variant_for(own, seed)
+    except CourseError:
+        return exercise
 
 
 def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:

@@ -178,6 +178,38 @@ def test_no_learner_sees_a_seed_that_counts(
     assert terms.variants not in repr(terms)
 
 
+class TestAVariantThatCannotBeMade:
+    """A fault of the file that shows in nearly every variant, but not in that of the check."""
+
+    @pytest.fixture
+    def catalogue(self, catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
+        unreadable = ", ".join(['{ sign = "*", says = "down" }'] * 500)
+        vary = VARY.replace('{ sign = "-", says = "down" }', unreadable)
+        return {"scara": catalogue["scara"], "arm": varied(vary)}
+
+    def test_the_learner_is_told_but_not_the_seed(
+        self, class_: Class, catalogue: Mapping[str, Exercise], caplog: pytest.LogCaptureFixture
+    ) -> None:
+        caplog.set_level(logging.DEBUG)
+        assign(class_, practice="open")
+        [mine] = variants_of(class_, "ada", catalogue)
+        replies = [
+            class_.ask("GET", f"/v1/exercises/arm?{PLACE}"),
+            class_.ask("GET", f"/v1/exercises/arm/figure.svg?{PLACE}"),
+            class_.ask("POST", f"/v1/exercises/arm/grade?{PLACE}", answers={"table": "1"}),
+            class_.ask("POST", HAND_IN, "ada", "k", exercise="arm", answers={"table": "1"}),
+        ]
+        for reply in replies:
+            assert reply.status_code == 422
+            assert "cannot be made" in reply.json()["detail"]
+        # The other exercise of the assignment is there as ever.
+        replies.append(class_.ask("GET", "/v1/me"))
+        assert replies[-1].status_code == 200
+        assert all(mine.seed not in reply.text for reply in replies)
+        logged = [each.getMessage() + str(each.exc_info) for each in caplog.records]
+        assert all(mine.seed not in each for each in logged)
+
+
 def test_a_seed_of_the_learner_s_choice_is_refused_where_it_counts(class_: Class) -> None:
     assign(class_)
     body = {"exercise": "arm~mine", "answers": {"table": "1"}}

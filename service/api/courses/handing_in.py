@@ -37,7 +37,6 @@ from service.courses.errors import CourseError
 from service.solutions import ModelSolution
 from service.submissions.body import GradeRequest
 from service.translations import say
-from service.variants.variant import hidden_variant
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Connection
@@ -119,7 +118,7 @@ def routes(
         if isinstance(found, CourseError):
             raise course_problem(found)
         terms, own, seed, before = found
-        exercise = own if seed is None else hidden_variant(own, seed)
+        exercise = _variant(own, seed)
         # Its fields have been validated.
         attempt = AttemptRequest.model_construct(
             (body.model_fields_set - {"exercise"}) | {"learner"},
@@ -199,6 +198,16 @@ def _begun(
     number = terms.number
     counted = standing(connection, exercise.id, learner, owner, idempotency_key, number)
     return terms, own, seed, counted
+
+
+def _variant(exercise: Exercise, seed: str | None) -> Exercise:
+    """Return the learner's variant, or the exercise if it has no variants. Raises ProblemError."""
+    from service.courses.dealing import variant_for
+
+    try:
+        return variant_for(exercise, seed)
+    except CourseError as error:
+        raise course_problem(error) from None
 
 
 def _learner(caller: Caller, named: str | None) -> str:
