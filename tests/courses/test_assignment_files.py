@@ -86,7 +86,7 @@ def test_a_mistyped_assignment_is_refused_with_advice(
     assert said in " ".join(told.output.split())
 
 
-def test_an_assignment_says_what_it_does_not_have(
+def test_the_command_says_which_rules_have_no_effect(
     class_: Class, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))

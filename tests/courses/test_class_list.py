@@ -51,7 +51,7 @@ SEMICOLONS = "id;Name\r\n\r\n4711;Ada  Lovelace\r\n4712;Grace Hopper\r\n"
         ('name,email\n"Ada\nL",a@b.c\n', [(None, "Ada L", "a@b.c")]),
     ],
 )
-def test_a_class_list_of_a_platform_or_by_hand(
+def test_class_lists_of_platforms_and_by_hand_are_read(
     text: str, expected: list[tuple[str | None, str, str | None]]
 ) -> None:
     found = [(each.learner, each.name, each.email) for each in read_class_list(text)]
@@ -78,7 +78,7 @@ def test_an_unusable_class_list_is_refused_with_the_line(text: str, reason: str)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-be", "cp1252"])
-def test_a_file_in_an_encoding_of_spreadsheets(encoding: str) -> None:
+def test_encodings_of_spreadsheets_are_read(encoding: str) -> None:
     mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
     data = mark + "id;name\n1;Zoë Müller\n".encode(encoding)
     [found] = read_class_list(decoded(data))

@@ -256,7 +256,7 @@ def test_a_public_service_asks_no_local_platform(tool: Tool, registrar: Registra
     assert registrar.requests == []
 
 
-def test_canvas_gets_a_file() -> None:
+def test_the_file_for_canvas_has_our_addresses_and_placements() -> None:
     found = canvas_configuration("https://grader.example.edu")
     assert found["oidc_initiation_url"] == "https://grader.example.edu/lti/login"
     assert found["public_jwk_url"] == "https://grader.example.edu/lti/jwks.json"

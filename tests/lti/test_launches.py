@@ -142,7 +142,7 @@ def test_previews_and_guests_record_nothing(tool: Tool) -> None:
     assert tool.counts() == before
 
 
-def test_who_is_a_tutor() -> None:
+def test_roles_of_platforms_have_a_role_here() -> None:
     from service.lti.roles import LtiRole, role_of
 
     lis = "http://purl.imsglobal.org/vocab/lis/v2"

@@ -128,7 +128,7 @@ def test_another_language_keeps_the_values_and_no_english_words() -> None:
         assert not re.search(r"[a-z]{2}", text), sentence
 
 
-def test_a_value_is_no_prose() -> None:
+def test_values_of_sentences_contain_no_prose() -> None:
     found = {
         (sentence.template, value)
         for sentence in sentences()

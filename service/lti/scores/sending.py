@@ -63,7 +63,7 @@ class BackgroundSending:
                     wait = (due - self._sender.now()) / timedelta(seconds=1)
                     seconds = min(_LOOK, max(_LEAST, wait))
             except SQLAlchemyError:
-                _log.warning("LTI: the database does not answer")
+                _log.warning("LTI: the database does not respond")
             except Exception:  # noqa: BLE001 - the next one may be sent
-                _log.exception("LTI: nothing can be sent (%s)", self._queued)
+                _log.exception("LTI: sending failed (%s)", self._queued)
             self._wake.wait(seconds)

@@ -164,7 +164,7 @@ def test_students_see_their_own_report_and_teachers_all(course: Course) -> None:
     assert "file-unreadable" in course.review("turing").text
 
 
-def test_the_settings_say_how_to_choose_others(course: Course) -> None:
+def test_the_settings_page_says_how_to_choose_other_exercises(course: Course) -> None:
     def asked(claims: dict[str, Any]) -> None:
         claims[f"{LTI}message_type"] = "LtiAssetProcessorSettingsRequest"
         del claims[f"{LTI}resource_link"]
@@ -229,7 +229,7 @@ def test_hostile_names_and_contents_do_no_harm(course: Course) -> None:
     assert [each.state for each in course.rows()] == ["sent"]
 
 
-def test_an_exercise_that_is_not_there_is_said(course: Course) -> None:
+def test_the_report_says_that_the_exercise_is_unknown(course: Course) -> None:
     course.store.files["table.csv"] = RIGHT
     custom = {"exercise": "no-such-robot=10"}
     course.notify(course.store.notice("table.csv") | {f"{LTI}custom": custom})
@@ -420,7 +420,7 @@ def test_forged_notices_are_refused(course: Course) -> None:
     assert course.tool.post(begun.asked["state"], token, begun.cookies).status_code == 403
 
 
-def test_a_greeting_is_answered(course: Course) -> None:
+def test_a_hello_notice_is_accepted(course: Course) -> None:
     hello = {f"{LTI}notice": {"id": "n", "type": "LtiHelloWorldNotice"}}
     assert course.notify(course.store.notice() | hello).status_code == 200
     assert course.rows() == []

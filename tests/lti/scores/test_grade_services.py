@@ -37,7 +37,9 @@ def test_scores_is_a_part_of_the_path() -> None:
         (403, {"x-rate-limit-remaining": "0.0"}),
     ],
 )
-def test_an_hour_of_trouble(journey: Journey, trouble: tuple[int, dict[str, str]]) -> None:
+def test_a_failing_platform_is_asked_ever_more_rarely(
+    journey: Journey, trouble: tuple[int, dict[str, str]]
+) -> None:
     """The platform is asked ever more rarely; then all scores arrive, hand-ins first."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
@@ -67,7 +69,7 @@ def test_the_platform_says_how_long_to_wait(journey: Journey) -> None:
     assert journey.states() == {"ada": "sent"}
 
 
-def test_a_platform_that_is_not_there(journey: Journey) -> None:
+def test_a_score_waits_for_an_unreachable_platform(journey: Journey) -> None:
     """Nobody listens at the line item's address."""
     journey.hand_in()
     gone = update(tables.line_items).values(url="http://127.0.0.1:1/items/1")
@@ -101,7 +103,7 @@ def test_a_token_is_used_until_shortly_before_its_end(journey: Journey) -> None:
     assert journey.states() == {"ada": "sent"}
 
 
-def test_a_platform_that_accepts_no_token(journey: Journey) -> None:
+def test_a_refused_token_is_renewed_once(journey: Journey) -> None:
     """It is asked twice, and then left in peace."""
     journey.gradebook.lifetime = -1
     journey.hand_in()
@@ -127,7 +129,7 @@ def test_the_audience_of_the_token(journey: Journey) -> None:
 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("status", [400, 403, 404, 422])
-def test_a_learner_who_is_not_enrolled(journey: Journey, status: int) -> None:
+def test_the_score_of_a_learner_waits_for_the_enrolment(journey: Journey, status: int) -> None:
     """The refusal is final until the learner launches again."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
@@ -144,7 +146,7 @@ def test_a_learner_who_is_not_enrolled(journey: Journey, status: int) -> None:
     assert set(journey.states().values()) == {"sent"}
 
 
-def test_a_line_item_with_a_new_address(journey: Journey) -> None:
+def test_a_line_item_is_found_at_its_new_address(journey: Journey) -> None:
     journey.hand_in()
     journey.gradebook.items = {"77": Item("link-1"), "78": Item("link-2")}
     assert journey.send() == 1
@@ -158,7 +160,7 @@ def test_a_line_item_with_a_new_address(journey: Journey) -> None:
     assert journey.gradebook.asked.count("items") >= asked
 
 
-def test_a_line_item_that_was_deleted(journey: Journey) -> None:
+def test_a_deleted_line_item_is_not_made_again(journey: Journey) -> None:
     """The teacher has deleted the column: it is not made again."""
     journey.hand_in()
     journey.gradebook.items.clear()
@@ -200,7 +202,7 @@ UNUSABLE: list[object] = [
 ]
 
 
-def test_answers_that_cannot_be_used(journey: Journey) -> None:
+def test_unusable_lists_of_line_items_cost_one_try(journey: Journey) -> None:
     """Hostile lists of line items cost a try, and no more; the token goes to its host only."""
 
     def habit(claims: dict[str, dict[str, object]]) -> None:

@@ -65,7 +65,7 @@ def test_only_the_best_attempt_is_sent(journey: Journey) -> None:
     assert journey.gradebook.asked.count("score") == 2
 
 
-def test_a_late_attempt_and_more_time_afterwards(journey: Journey) -> None:
+def test_more_time_gives_a_late_score_its_points_back(journey: Journey) -> None:
     """A late attempt counts half. With a later due date, its points come back."""
     journey.launch()
     course, assignment = journey.place()
@@ -199,7 +199,9 @@ def test_two_replicas_do_not_make_two_line_items(journey: Journey) -> None:
 
 
 @pytest.mark.parametrize("scopes", [["score"], ["score", "lineitem.readonly"]])
-def test_a_line_item_that_may_not_be_made(journey: Journey, scopes: list[str]) -> None:
+def test_a_score_is_refused_if_its_line_item_may_not_be_made(
+    journey: Journey, scopes: list[str]
+) -> None:
     def habit(claims: dict[str, dict[str, object]]) -> None:
         claims[ENDPOINT].pop("lineitem")
         claims[ENDPOINT]["scope"] = [f"{AGS}{each}" for each in scopes]
@@ -212,7 +214,7 @@ def test_a_line_item_that_may_not_be_made(journey: Journey, scopes: list[str]) -
     assert json.loads(journey.rows()[0].refusal)[0] == "no-scope"
 
 
-def test_a_platform_that_takes_no_scores(journey: Journey) -> None:
+def test_earlier_scores_are_sent_once_the_platform_takes_scores(journey: Journey) -> None:
     """Later it does: then the attempts that are there are sent."""
     journey.tool.platform.habits.append(lambda claims: claims.pop(ENDPOINT))
     journey.hand_in()

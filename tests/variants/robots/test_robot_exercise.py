@@ -136,7 +136,7 @@ def test_all_texts_are_told_in_other_languages(level: int, convention: Conventio
         assert in_language(exercise, ENGLISH) is exercise
 
 
-def test_a_german_robot() -> None:
+def test_a_robot_is_described_in_german() -> None:
     exercise = in_language(drawn(4, 3, Convention.MODIFIED), LANGUAGES["de"])
     assert exercise.title == "Übungsroboter 3, Stufe 4"
     assert exercise.summary == "Sieben Gelenke (RPPRRRR), Längen in Metern."
