@@ -13,14 +13,14 @@ from tests.api.serving import served
 from tests.browser.fixtures import Visit
 from tests.browser.test_pages import violations
 from tests.browser.test_tutor import NARROW, wide
-from tests.importing.test_arms import ARMS
+from tests.importing.test_arms import file_of
 
 
 @pytest.mark.long
 def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
     visit: Callable[..., Visit], axe: str, tmp_path: Path, figure: Callable[[str], None]
 ) -> None:
-    [arm] = ARMS.glob("ur5e-*.urdf")
+    arm = file_of("ur5e")
     upload = tmp_path / "Our UR5e.urdf"
     camera = '<link name="camera"/></robot>'
     upload.write_text(arm.read_text("utf-8").replace("</robot>", camera), "utf-8")

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from service.catalogue import Exercise
 from service.cli.commands.exercises import commands
-from tests.importing.test_arms import ARMS
+from tests.importing.test_arms import file_of
 from tests.importing.test_exercise_text import PASTED
 from tests.importing.test_urdf import REFUSED
 from tests.web.tutor.test_tutor_routes import Tutor
@@ -21,7 +21,7 @@ def tutor(catalogue: Mapping[str, Exercise]) -> Tutor:
 
 @pytest.mark.long
 def test_a_robot_is_imported_as_by_the_command(tutor: Tutor, tmp_path: Path) -> None:
-    [arm] = ARMS.glob("panda-*.urdf")
+    arm = file_of("panda")
     table = tmp_path / "pasted.txt"
     table.write_text(PASTED, encoding="utf-8")
     for file, kind, option in ((arm, "urdf", "--letters"), (table, "table", "--table")):
