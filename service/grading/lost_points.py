@@ -27,10 +27,10 @@ _SENTENCES: Final = {
 }
 # Rows that are a single thing of their own and no row of a table, by their labels.
 _SINGLE: Final = {
-    # Translators: the marked place of a mistake, after "−0.5: ".
-    "marked": template("marked"),
-    # Translators: the table that was handed in, after "−0.5: ".
-    "table": template("table"),
+    # Translators: what the student has marked as the mistake, after "−0.5: ".
+    "marked": template("the mark"),
+    # Translators: the table without the mistake, after "−0.5: ".
+    "table": template("the mended table"),
 }
 _NAMES: Final = {"alpha": "α", "theta": "θ", "axis": say("axis")}
 # A row of zeros is worth at most this share of the part.

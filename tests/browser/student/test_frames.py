@@ -69,6 +69,7 @@ def test_a_phone_shows_all_cells_of_a_frame_without_sideways_scrolling(
     for box, text in zip(cells(page).all(), [*RIGHT, "0"], strict=False):
         box.fill(text)
     form = part(page, 0)
+    expect(form.locator(".reading")).to_contain_text("the number of a joint")
     expect(form.locator(".cell-head").first).to_be_visible()
     [inner, outer] = form.locator(".scroll").evaluate("it => [it.scrollWidth, it.clientWidth]")
     assert inner == outer

@@ -83,7 +83,10 @@ def test_each_half_is_right_or_not(
 
 def test_lost_points_name_the_mark_and_the_table(scara: Exercise) -> None:
     lost = found(scara, {"marked": "3.alpha", "table": table(GIVEN)}).lost
-    assert [(each.message, each.points) for each in lost] == [("marked", 4), ("table", 4)]
+    assert [(each.message, each.points) for each in lost] == [
+        ("the mark", 4),
+        ("the mended table", 4),
+    ]
 
 
 @pytest.mark.parametrize("level", FeedbackLevel)

@@ -45,7 +45,7 @@ export class PartView {
     this.badge = h("span", { class: "badge", hidden: true });
     this.worth = h("span", { class: "points" }, mostInWords(part.points));
     this.list = h("ul", { class: "messages", hidden: true });
-    this.line = new ReadingLine(part.title, this.symbols, (text, pause) => host.announce(text, pause));
+    this.line = new ReadingLine(part, this.symbols, (text, pause) => host.announce(text, pause));
     this.reading = this.line.element;
     const id = `part-${part.id}-title`;
     this.body = h(

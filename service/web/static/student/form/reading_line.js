@@ -7,7 +7,15 @@ import { worded } from "../../shared/words/words.js";
 
 // The reading of a longer text may be cut off in its cell.
 const LONG = 40;
-const help = () => [
+/** What the columns of a kind of part ask for. @type {Record<string, string>} */
+const GUIDES = {
+  frames: worded(
+    "Axis: the number of a joint. z and x: a direction, such as +y or [0, 1, 0]. o: the origin in the base frame. All joint variables are 0.",
+  ),
+};
+/** @param {Pick<Api.Part, "kind">} part */
+const help = ({ kind }) => [
+  GUIDES[kind] ? `${GUIDES[kind]} ` : "",
   h("span", { class: "with-keyboard" }, worded("Arrow keys and Enter move between cells."), " "),
   worded("A table, a matrix or a block of cells can be pasted into one."),
 ];
@@ -15,15 +23,15 @@ const help = () => [
 export class ReadingLine {
   /** @type {Front.PartCell | null} */
   #current = null;
-  element = h("p", { class: "reading" }, ...help());
 
   /**
-   * @param {string} title of the part
+   * @param {Api.Part} part
    * @param {Set<string>} symbols that the exercise declares
    * @param {Front.PartHost["announce"]} announce
    */
-  constructor(title, symbols, announce) {
-    this.title = title;
+  constructor(part, symbols, announce) {
+    this.part = part;
+    this.element = h("p", { class: "reading" }, ...help(part));
     this.symbols = symbols;
     this.announce = announce;
   }
@@ -45,8 +53,8 @@ export class ReadingLine {
     const isTold = cell.messages.length > 0;
     this.element.classList.toggle("unread", Boolean(reading?.error) && !isTold);
     // The report below the row says why the cell is not read.
-    if (!reading || (reading.error && isTold)) return this.element.replaceChildren(...help());
-    const name = h("strong", {}, ...typeset(visible(`${cell.place.spoken || this.title}: `)));
+    if (!reading || (reading.error && isTold)) return this.element.replaceChildren(...help(this.part));
+    const name = h("strong", {}, ...typeset(visible(`${cell.place.spoken || this.part.title}: `)));
     if (reading.error) {
       const { suggestion, message: why } = reading.error;
       this.element.replaceChildren(
@@ -64,7 +72,7 @@ export class ReadingLine {
       [];
     // The cell itself shows how it is read.
     const isLong = cell.text.length > LONG;
-    if (!isLong && !notes.length) return this.element.replaceChildren(...help());
+    if (!isLong && !notes.length) return this.element.replaceChildren(...help(this.part));
     const whole = isLong ? mathml(reading.mathml) ?? visible(reading.text) : "";
     return this.element.replaceChildren(name, whole, ...notes);
   }
