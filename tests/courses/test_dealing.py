@@ -29,6 +29,7 @@ from service.courses.assignments import add_assignment, change_assignment
 from service.courses.dealing import assigned, deal_again, learner_variants, pin_choices
 from service.courses.errors import CourseError
 from service.courses.terms import terms_of
+from service.kinematics.chain import COLUMNS
 from service.variants.seeds import seed_of
 from service.variants.variant import built
 from tests.courses.conftest import Class
@@ -157,6 +158,21 @@ def test_no_learner_sees_a_seed_that_counts(
         class_.ask("POST", f"{BASE}/variants", learner="ada", exercise="arm"),
         class_.ask("GET", f"/v1/exercises/arm~{mine.seed}/statistics"),
     ]
+    first, second = [dict(zip(COLUMNS, row, strict=True)) for row in right["table"]["rows"]]
+    wrong = {"table": {"rows": [{**first, "alpha": "0"}, second]}}
+    replies += [
+        class_.ask("POST", f"/v1/exercises/arm/solution?{PLACE}", answers=right),
+        class_.ask(
+            "POST", f"/v1/exercises/arm/choices?{PLACE}", part="table", rows=[first, second]
+        ),
+        class_.ask("POST", f"/v1/exercises/arm/grade?{PLACE}", answers=wrong),
+    ]
+    [found] = replies[-1].json()["parts"]
+    [cell] = [cell for cell in found["rows"][0]["cells"] if cell["feedback"]]
+    slip = {"part": "table", "row": "1", "cell": cell["label"], "code": cell["feedback"][0]["code"]}
+    path = f"/v1/exercises/arm/hints?{PLACE}"
+    replies += [class_.ask("POST", path, answers=wrong, step=i, **slip) for i in (1, 2, 3)]
+    assert {each.status_code for each in replies[-6:]} == {200}
     recorded = replies[5].json()["attempts"]
     replies += [class_.ask("GET", f"/v1/attempts/{each['id']}") for each in recorded]
     statuses = [each.status_code for each in replies]
