@@ -9,9 +9,9 @@ from typing import Any
 
 import jwt
 import pytest
-from sqlalchemy import update
+from sqlalchemy import select, update
 
-from service.attempts.storage.lti_tables import launches, registrations
+from service.attempts.storage.lti_tables import launches, learners, registrations
 from service.lti.logins import digest
 from service.lti.problems import LTI_PROBLEMS
 from service.lti.registrations import NewRegistration, add_registration, remove_registration
@@ -361,7 +361,30 @@ def test_every_reason_says_what_to_do() -> None:
         )
 
 
-def test_two_platforms_with_the_same_user_are_two_learners() -> None:
+def test_two_platforms_and_two_courses_with_the_same_user(tool: Tool, platform: Platform) -> None:
+    """Each platform has learners of its own; two courses of one platform have the same one."""
+    other = platform.registration | {"id": "second", "client_id": "client-2"}
+    new = NewRegistration.model_validate(other)
+    tool.do(lambda it: add_registration(it, new, datetime.now(UTC)))
+    for client, course in (("client-1", "a"), ("client-1", "b"), ("client-2", "a")):
+        begun = tool.login(client_id=client)
+        claims = platform.claims("ada", "link-1", begun.asked["nonce"])
+        claims |= {"aud": client, f"{LTI}context": {"id": course, "title": course}}
+        page = tool.post(begun.asked["state"], platform.signed(claims), begun.cookies)
+        assert page.status_code == 200
+    counts = tool.counts()
+    assert (counts["lti_learners"], counts["courses"], counts["course_learners"]) == (2, 3, 3)
+    rows = tool.do(lambda it: it.execute(select(learners)).all())
+    assert {row.sub for row in rows} == {"user ada"}
+    assert len({row.learner for row in rows}) == 2
+    # A message of one platform is not accepted for a login at the other.
+    begun = tool.login(client_id="client-2")
+    mixed = platform.signed(platform.claims("ada", "link-1", begun.asked["nonce"]))
+    assert reason(tool.post(begun.asked["state"], mixed, begun.cookies)) == "wrong-audience"
+    assert tool.counts() == counts
+
+
+def test_a_learner_is_a_platform_and_its_user() -> None:
     from service.lti.linking import pseudonym
     from tests.lti.conftest import SECRET
 

@@ -411,6 +411,7 @@ def test_forged_notices_are_refused(course: Course) -> None:
     copy = course.store.notice("table.csv")
     answer = course.notify(copy, course.store.notice("table.csv") | {"azp": "client-2"}, copy)
     assert answer.json()["errors"] == [{"error": "unknown-platform"}]
+    assert course.tool.do(lambda it: registration(it, "moodle")).refusal == "wrong-notice"
     assert len(course.grade()) == 1
     assert course.notify(copy).status_code == 200
     assert len(course.grade()) == 1

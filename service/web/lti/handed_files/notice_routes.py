@@ -1,12 +1,14 @@
 """The route for notices of platforms. They are signed, and need neither a login nor a browser."""
 
 import logging
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated, Final
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
+from sqlalchemy import Connection
 from starlette.responses import JSONResponse, Response
 
 from service.access.keys import Secret
@@ -42,8 +44,8 @@ def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> AP
     """Return the route."""
     router = APIRouter(prefix="/lti")
 
-    async def accept(token: str) -> None:
-        """Queue the files of a notice. Raises LtiError, after the registration has noted it."""
+    async def accept(token: str, refusals: dict[str, str]) -> None:
+        """Queue the files of a notice. Raises LtiError, and adds it to those of the platform."""
         key_id, now = key_id_of(token), datetime.now(UTC)
         parties = parties_of(token)
         known = await read(store, lambda it: find_registration(it, *parties))
@@ -53,23 +55,32 @@ def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> AP
                 learner = pseudonym(known.id, notice.user, secret)
                 await write(store, lambda it: queue_files(it, known, notice, learner, now))
         except LtiError as error:
-            name = error.name
-            await write(store, lambda it: note_refusal(it, known.id, name, now))
+            refusals[known.id] = error.name
             raise
 
     @router.post("/notices")
     async def notices(request: Request) -> Response:
         """Take notices of a platform; one that is refused does not keep out the others."""
         body = await read_body(Notices, request)
-        refused = []
+        refused: list[dict[str, str]] = []
+        refusals: dict[str, str] = {}
         for each in body.notices:
             try:
-                await accept(each.jwt)
+                await accept(each.jwt, refusals)
             except LtiError as error:
                 _log.warning("LTI: a notice was refused (%s): %s", error.name, error)
                 refused.append({"error": error.name})
+        # Anybody may send what is refused: one transaction for all of it.
+        if refusals:
+            await write(store, lambda it: _note(it, refusals))
         if refused:
             return JSONResponse({"errors": refused}, HTTPStatus.FORBIDDEN)
         return JSONResponse({})
 
     return router
+
+
+def _note(connection: Connection, refusals: Mapping[str, str]) -> None:
+    now = datetime.now(UTC)
+    for registration_id, name in refusals.items():
+        note_refusal(connection, registration_id, name, now)
