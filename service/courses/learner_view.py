@@ -168,14 +168,20 @@ def _assigned(
 
 
 def has_priced_hints(
-    connection: Connection, learner: str, only: str | None, exercise: Exercise, now: datetime
+    connection: Connection,
+    learner: str,
+    only: str | None,
+    exercise: Exercise,
+    alike: Collection[str],
+    now: datetime,
 ) -> bool:
-    """True if the learner can hand the exercise in, and hints have a price then."""
+    """True if the learner can hand the exercise in, and hints have a price then.
+
+    If no assignment has the exercise itself, those with one of ``alike`` decide.
+    """
     return any(
-        exercise.plain_id in terms.exercises
-        and terms.hint_prices(exercise) is not None
-        and terms.state(now) in ("open", "late")
-        for _, terms in learner_terms(connection, learner, only)
+        terms.hint_prices(exercise) is not None and terms.state(now) in ("open", "late")
+        for terms, _ in _assigned(connection, learner, only, exercise.plain_id, alike)
     )
 
 

@@ -154,6 +154,9 @@ def test_practice_gives_no_free_hints_at_an_exercise_whose_hints_cost(class_: Cl
     body = {"answers": NO_TWIST, "step": 1, **TWIST}
     path = "/v1/exercises/scara/hints"
     assert kind(class_.ask("POST", path, **body)) == (403, "hints-have-a-price")
+    # Nor at an exercise with the same robot; the answers do not matter.
+    path = "/v1/exercises/scara-faded/hints"
+    assert kind(class_.ask("POST", path, **body)) == (403, "hints-have-a-price")
 
     def change(**fields: Any) -> None:
         changed = AssignmentChange.model_validate(fields)

@@ -37,11 +37,11 @@ class PracticeGate:
             return
         from service.courses.learner_view import has_priced_hints
 
-        now = datetime.now(UTC)
+        now, alike = datetime.now(UTC), self._alike(exercise.plain_id)
         priced = await ask(
             self._store,
             lambda store: store.read(
-                lambda it: has_priced_hints(it, learner, caller.course, exercise, now)
+                lambda it: has_priced_hints(it, learner, caller.course, exercise, alike, now)
             ),
         )
         if priced or (caller.course is None and exercise.attempts.hint_prices is not None):
