@@ -14,6 +14,7 @@ import pytest
 from service.access.caller import Scope
 from service.access.key_table import add_key
 from service.access.key_text import new_key_text
+from service.api.turns import ARRIVED
 from service.attempts.tutoring import forget
 from service.contract.courses import AssignmentChange, Extension, LinksRequest, NewAssignment
 from service.courses import roll
@@ -166,6 +167,23 @@ def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class
     for exercise, status in (("scara", 403), ("planar-rr", 201)):
         path = f"/v1/exercises/{exercise}/attempts"
         assert ada.ask("POST", path, answers={}, learner="ada").status_code == status
+
+
+def test_waiting_for_a_turn_makes_no_hand_in_late(class_: Class) -> None:
+    """The service was busy: the request arrived before the due date, and gets its turn after it."""
+    class_.assign(due=(NOW + timedelta(minutes=-1)).isoformat())
+    inner = class_.app
+
+    async def waited(scope: Any, receive: Any, send: Any) -> None:
+        await inner({**scope, ARRIVED: NOW - timedelta(minutes=minutes)}, receive, send)
+
+    class_.app = waited
+    minutes = 2
+    attempt = class_.hand_in("a").json()["attempt"]
+    assert attempt["is_late"] is False
+    assert datetime.fromisoformat(attempt["at"]) == NOW - timedelta(minutes=2)
+    minutes = 0
+    assert class_.hand_in("b").json()["type"].endswith("closed")
 
 
 @pytest.mark.sampled(2)

@@ -30,6 +30,7 @@ from service.api.recording.attempting import AttemptTerms, Recorder
 from service.api.recording.new_attempts import IDEMPOTENCY_KEY, not_recorded
 from service.api.recording.store import NO_STORE
 from service.api.routes.solutions import SolvedExercises
+from service.api.turns import arrived_at
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.attempts import AttemptRequest, AttemptResponse
 from service.contract.own_courses import HandInRequest, OwnCourses
@@ -110,7 +111,7 @@ def routes(
         learner = _learner(caller, body.learner)
         named = exercise_or_404(catalogue, body.exercise)
         require_parts(named, ((part, ("answers", part)) for part in body.answers))
-        now = datetime.now(UTC)
+        now = arrived_at(request)
         place = (course_id, assignment_id, named)
         begun = partial(_begun, place, learner, caller.owner, idempotency_key)
         # Not by the threads that read: there a hand-in would wait for the queries of tutors.

@@ -1,7 +1,6 @@
 """The route of hints at recorded attempts: each step is recorded, and may have a price."""
 
 from collections.abc import Collection
-from datetime import UTC, datetime
 from functools import partial
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, Any
@@ -20,7 +19,7 @@ from service.api.permissions.access import Access
 from service.api.recording.new_attempts import not_recorded
 from service.api.recording.store import NO_STORE, unknown_attempt
 from service.api.routes.hints import hint_for
-from service.api.turns import run_in_turns
+from service.api.turns import arrived_at, run_in_turns
 from service.attempts.policy import AttemptRefusedError, ruling
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
@@ -81,7 +80,7 @@ def routes(
             raise unknown_attempt()
         named = exercise_or_404(catalogue, row.exercise)
         rules, prices, counted = await read(store, partial(_terms, row, named))
-        now = datetime.now(UTC)
+        now = arrived_at(request)
         try:
             ruling(rules, counted, now)
         except AttemptRefusedError as error:

@@ -4,7 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from functools import partial
 from http import HTTPStatus
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ from service.api.http.language import language_of
 from service.api.http.problems import ProblemError, message_of, store_down
 from service.api.http.told_answer import told_json
 from service.api.monitor import Monitor
-from service.api.turns import run_in_turns
+from service.api.turns import arrived_at, run_in_turns
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.errors import StoreDownError
 from service.attempts.graded import AttemptGrading, AttemptReport
@@ -67,7 +67,7 @@ class Recorder:
 
         Without ``arrived``, the request arrives now. Raises ProblemError.
         """
-        now, before = arrived or (datetime.now(UTC), None)
+        now, before = arrived or (arrived_at(request), None)
         attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
         try:
             recorded = await attempting.recorded(request, before)

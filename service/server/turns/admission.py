@@ -10,6 +10,7 @@ import asyncio
 import math
 from collections import deque
 from collections.abc import Awaitable, Callable, Generator
+from datetime import UTC, datetime
 from functools import partial
 from time import thread_time
 from typing import Any, Final
@@ -20,7 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.access.client_key import client_key
 from service.api.http.language import language_of
 from service.api.http.problems import ProblemError
-from service.api.turns import CLIENT, ONE_ADDRESS, TURN, Client
+from service.api.turns import ARRIVED, CLIENT, ONE_ADDRESS, TURN, Client
 from service.server.limits import HEALTH
 from service.server.refusals import too_busy, too_many
 from service.server.turns.fair_queue import FairQueue, Ticket
@@ -106,6 +107,7 @@ class FairAdmission:
         body, ended = await _body(receive)
         if body is None:
             return
+        scope[ARRIVED] = datetime.now(UTC)
         host, port = scope.get("client") or ("", 0)
         client = scope.get(CLIENT) or Client(client_key(host), ONE_ADDRESS)
         ticket = Ticket(client, port, len(body))

@@ -5,13 +5,14 @@ import itertools
 import json
 import time
 from collections.abc import Callable, Coroutine
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
 from starlette.requests import ClientDisconnect, Request
 
 from service.api import turns
-from service.api.turns import CLIENT, COURSE_SITE, ONE_STUDENT, give_way
+from service.api.turns import ARRIVED, CLIENT, COURSE_SITE, ONE_STUDENT, give_way
 from service.server.turns import admission
 from service.server.turns.admission import OF_ALL, OF_ONE, FairAdmission, Metered
 from service.submissions.strict_json import MAX_BODY_SIZE
@@ -161,6 +162,26 @@ def test_requests_that_arrive_during_an_answer_are_read_before_the_next_one_begi
         await asyncio.gather(*waiting)
 
     run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_a_request_keeps_the_moment_of_its_arrival_while_it_waits() -> None:
+    arrivals: list[datetime] = []
+    starts: list[datetime] = []
+
+    def work(scope: Any) -> None:
+        arrivals.append(scope[ARRIVED])
+        starts.append(datetime.now(UTC))
+        busy(0.02)
+
+    async def story() -> None:
+        app = FairAdmission(Application(work))
+        await asyncio.gather(*begin(app, *(Client(f"10.0.0.{i}") for i in range(5))))
+
+    run(story())
+    # All of the others arrived before the second one had its turn.
+    assert max(arrivals) <= starts[1]
+    assert starts[4] - arrivals[4] >= timedelta(seconds=0.06)
 
 
 class ManyGradings(Application):
