@@ -39,7 +39,8 @@ def stranger() -> Iterator[Origin]:
 @contextmanager
 def origin() -> Iterator[Origin]:
     """Start a web server on a free port."""
-    pages: dict[str, str] = {}
+    # Browsers ask each site for its icon, sooner or later.
+    pages: dict[str, str] = {"/favicon.ico": ""}
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
