@@ -48,21 +48,23 @@ GRADING_FLOORS = (
 GRADING_ROOMS = 14
 LINES = 400
 FILES = 12
-# Folders with more files than that. The numbers may only go down.
+# Folders with one file for each answer kind, or for each repair.
+ONE_FILE_EACH = {
+    "service/catalogue/parts",
+    "service/expressions/repairs",
+    "service/grading/kinds",
+    "service/solutions/kinds",
+    "tests/expressions/corpus/repairs",
+}
+# Other folders with more files than that. The numbers may only go down.
 CROWDED = {
     "service/api/document/examples": 21,
-    # One file for each answer kind.
-    "service/catalogue/parts": 13,
-    "service/expressions/repairs": 56,  # one file for each repair
-    "service/grading/kinds": 13,
-    "service/solutions/kinds": 13,
     "tests": 15,
     "tests/attack": 17,
     "tests/attempts": 16,
     "tests/browser": 18,
     "tests/docs": 21,
     "tests/expressions": 17,
-    "tests/expressions/corpus/repairs": 53,  # one file for each repair
     "tests/frame_choice": 21,
     "tests/grading": 20,
 }
@@ -185,7 +187,8 @@ def test_no_folder_is_crowded() -> None:
         for file in house.rglob("*")
         if file.is_file() and file.suffix != ".pyc"
     )
-    assert {folder: count for folder, count in counts.items() if count > FILES} == CROWDED
+    crowded = {folder: count for folder, count in counts.items() if count > FILES}
+    assert {name: crowded[name] for name in crowded.keys() - ONE_FILE_EACH} == CROWDED
 
 
 def public_types(tree: ast.Module) -> Iterator[str]:
