@@ -131,6 +131,8 @@ def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) 
         ("planar-rr", "02"), ("planar-rrr", "0e"), ("planar-rrr-standard", "03"), ("scara", "04"),
         ("planar-rrr-drawn", "0123e"), ("rrrp-drawn", "01234"), ("stanford-arm-drawn", "0123456"),
         ("rrrp-proximal", "04"), ("spherical-wrist", "36"), ("planar-rpr-poe", "sb"),
+        ("planar-rrr-faded", "0123e"), ("scara-faded", "01234"), ("first-arm", "012"),
+        ("first-arm-modified", "012e"), ("rrrp", "04"), ("vertical-axes", "03"),
     ],
 )  # fmt: skip
 def test_a_figure_draws_the_given_frames_and_no_others(name: str, frames: str) -> None:
