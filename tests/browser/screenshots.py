@@ -15,6 +15,7 @@ from service.catalogue import load_catalogue, shipped_folder
 from tests.api.serving import ROOT, announced_port
 from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, new_attempt, recorded_all
 from tests.browser.chromium import ABSENT, OPTIONS, find_chromium
+from tests.browser.fixtures import GUARD
 from tests.browser.steps import cells, open_exercise
 
 FOLDER: Final = ROOT / "docs" / "screenshots"
@@ -199,6 +200,7 @@ def take_screenshots(service: str, names: Collection[str]) -> None:
     if found is None:
         raise SystemExit(ABSENT)
     FOLDER.mkdir(exist_ok=True)
+    expect.set_options(timeout=GUARD)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=found.program, args=OPTIONS, env={**os.environ, **found.environment}
@@ -206,6 +208,7 @@ def take_screenshots(service: str, names: Collection[str]) -> None:
         for size, viewport in SIZES.items():
             for scheme in ("light", "dark"):
                 page = browser.new_page(viewport=viewport, reduced_motion="reduce")
+                page.set_default_timeout(GUARD)
                 page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
                 for name in names:
                     # Start each view as on a first visit.
