@@ -173,9 +173,11 @@ class Judged:
     that a slip of the whole answer costs, if one explains all wrong cells. Cells that are also
     wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is true if no
     joint moves an answer that must move. The points of ``at_most`` are an upper limit for this
-    judgement, those of ``at_least`` a lower one. ``lost`` is an upper limit of the lost units of
-    content. ``chain`` returns the answer as a chain, or None; it is called only if another part
-    follows this one.
+    judgement, those of ``at_least`` a lower one. With ``needs_all``, the answer needs more rows
+    than ``at_most`` has: because of the upper limit, its wrong cells lose at most a unit each.
+    ``lost`` is an upper limit of the lost units of content. A wrong answer earns at most a unit for
+    each of its ``written`` cells, which are not lazy; None if that is unknown. ``chain`` returns
+    the answer as a chain, or None; it is called only if another part follows this one.
     """
 
     rows: tuple[RowReport, ...]
@@ -187,13 +189,20 @@ class Judged:
     stands_still: bool = False
     at_most: "Judged | None" = None
     at_least: "Judged | None" = None
+    needs_all: bool = False
     lost: float = math.inf
+    written: int | None = None
     chain: Callable[[], StudentChain | None] = _no_chain
 
     @property
     def is_right(self) -> bool:
         """True if nothing is wrong, unread or missing."""
         return not self.slips and all(row.verdict is Verdict.CORRECT for row in self.rows)
+
+    @property
+    def count_wrong(self) -> int:
+        """The number of cells that are not right."""
+        return sum(cell.verdict is not Verdict.CORRECT for row in self.rows for cell in row.cells)
 
     @property
     def is_wrong(self) -> bool:

@@ -205,8 +205,8 @@ def _judged_by_nearest(
     of_rows = ROW_COSTS[np.count_nonzero(judgement.matches < Match.ROUNDED, axis=1)].sum()
     if nearest.cost - of_rows < NO_SUCH_CELL - WRONG_CELL / 2:
         return judgement
-    # Remarks on frames make no sense if the frames do not lead to the tool. Its cost comes on top of
-    # that of the wrong cells.
+    # Remarks on frames make no sense if the frames do not lead to the tool. That costs a unit, also
+    # beside wrong cells.
     return replace(judgement, findings=(_UNREACHED,), reached=False)
 
 

@@ -1,10 +1,11 @@
 """Fill cells of a table with other numbers, or empty them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from service.grading.judging.content import KnownCells
+from service.grading.judging.content import KnownCells, known_cells
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest.spoiled_row import out_of_place
 from service.grading.judging.own_frames.row_roles import joint_variables
@@ -15,6 +16,7 @@ from service.grading.reading.tables.table import (
     COMPUTED,
     EMPTY,
     GIVEN_UP,
+    IS_ANGLE,
     StudentRow,
     StudentTable,
 )
@@ -39,6 +41,23 @@ def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) 
 def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:
     """Return the table without its entries in ``cells`` ``(rows, 4)``."""
     return _filled(answer, cells, np.full_like(answer.values, np.nan), EMPTY)
+
+
+def written_content(answer: StudentTable, given: Sequence[bool], grading: Grading) -> int:
+    """Return the number of cells that the student wrote and that are not lazy.
+
+    Lazy are 0, a joint variable with either sign, and an empty cell. ``given`` marks the rows that
+    the exercise gives.
+    """
+    values = answer.values[..., None, :: SAMPLES - 1]
+    variables = [grading.samples.values[joint.variable] for joint in grading.exercise.joints]
+    lazy = np.array([np.zeros(SAMPLES), *variables, *(-each for each in variables)])
+    scales = np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)[:, None]
+    known = known_cells(values, lazy[:, :: SAMPLES - 1], scales, IS_ANGLE[:, None, None])
+    written = (known | np.isnan(values).any(axis=-1)).all(axis=-1) & ~empty_cells(answer)
+    if len(given) == len(written):
+        written = written[~np.array(given)]
+    return int(np.count_nonzero(written))
 
 
 def with_zeros(answer: StudentTable) -> Table:

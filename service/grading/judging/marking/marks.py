@@ -161,15 +161,28 @@ def _losses(
         whole = [_Loss(WHOLE, max(1, round(judged.whole_cost * worth.total))), *beside]
         if (once := sum(loss.steps for loss in whole)) < lost:
             losses, lost = whole, once
-    if judged.at_most is not None:
-        lost = max(lost, _marks(judged.at_most, marking, points).lost)
-    if judged.at_least is not None:
-        lost = min(lost, max(1, _marks(judged.at_least, marking, points).lost))
+    lost = _limited(lost, judged, marking, points, worth)
     if not losses:
         return (_Loss(OUTSIDE, lost),) if lost else ()
     shares = apportioned(lost, [loss.steps for loss in losses])
     pairs = zip(losses, shares, strict=True)
     return tuple(replace(loss, steps=steps) for loss, steps in pairs if steps)
+
+
+def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: CellWorth) -> int:
+    """Return the steps that a wrong answer loses, within the limits of the judgement."""
+    if judged.at_most is not None:
+        least = _marks(judged.at_most, marking, points).lost
+        if judged.needs_all:
+            least = min(least, judged.count_wrong * worth.unit)
+        lost = max(lost, least)
+    if judged.at_least is not None:
+        lost = min(lost, max(1, _marks(judged.at_least, marking, points).lost))
+    # A slip of the whole answer may have put a cell where it does not count.
+    is_counted = marking == "content" and judged.whole_cost is None
+    if judged.written is not None and is_counted:
+        lost = max(lost, (worth.counted - judged.written) * worth.unit)
+    return lost
 
 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:

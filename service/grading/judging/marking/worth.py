@@ -47,6 +47,11 @@ class CellWorth:
     least_besides: int = 0
     most_besides: int = 0
 
+    @property
+    def counted(self) -> int:
+        """The number of content cells that count."""
+        return (self.is_fixed and self.content.most) or self.content.count
+
     @cached_property
     def rows(self) -> tuple[int, ...]:
         """The worth of each row."""

@@ -23,7 +23,7 @@ from service.grading.judging.own_frames.best_roles import rows_of_mechanism, usu
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
 from service.grading.judging.row_places import EXTRA_ROW, row_too_many
-from service.grading.judging.table_filled import with_lazy_cells
+from service.grading.judging.table_filled import with_lazy_cells, written_content
 from service.grading.part import Grading, Judged
 from service.grading.reading.tables.table import StudentTable
 from service.grading.report import CellReport, Place, RowReport, Verdict, row_report
@@ -80,7 +80,8 @@ def best_reading(
         silent = readings.in_silence()
         return silent.best(other, silent.as_written(other))
 
-    return with_fair_points(part, table, best, judged_again, work, grading)
+    fair = with_fair_points(part, table, best, judged_again, work, grading)
+    return replace(fair, written=written_content(table, fair.content.given, grading))
 
 
 def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> float:
@@ -122,7 +123,7 @@ class _Readings:
             if not is_certain and not self.grading.reader.budget.affords_search(self.work):
                 break
             without = self.as_written(reading.intended.table)
-            if reading.most_wrong is None or _count_wrong(without) <= reading.most_wrong:
+            if reading.most_wrong is None or without.count_wrong <= reading.most_wrong:
                 found = _with_slip(reading.intended, without, judged, self.grading)
                 return replace(found, chain=without.chain) if reading.has_links else found
         return judged
@@ -134,7 +135,7 @@ class _Readings:
             return
         if judged.whole_cost is not None:
             return
-        wrong = _count_wrong(judged)
+        wrong = judged.count_wrong
         # An unread cell is not read in any order.
         if 3 * np.count_nonzero(np.isnan(table.values).any(axis=-1)) <= wrong:
             for reordered in in_other_orders(table, self.grading):
@@ -168,10 +169,6 @@ class _Readings:
             filled = with_lazy_cells(fixed, convention, self.grading)
             return replace(judged, at_most=self.in_silence().as_written(filled))
         return judged
-
-
-def _count_wrong(judged: Judged) -> int:
-    return sum(cell.verdict is not Verdict.CORRECT for row in judged.rows for cell in row.cells)
 
 
 def _with_slip(
@@ -220,18 +217,22 @@ def _with_extra_rows(
     """
     extra = [i for i, row in enumerate(table.rows) if i not in kept and not row.is_zero]
     is_told = any(message.code in EXTRA_ROW.codes for message in judged.feedback)
-    # If nothing that was read is wrong, the table may be right.
-    tells = judged.is_wrong and not is_told
-    messages = grading.messages(tuple(map(row_too_many, extra))) if tells else ()
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
+    # The student's frames may need the rows: then these are right, and another row is wrong.
+    is_right = len(beside) == len(table.rows) - len(kept) and not (wrong or judged.slips)
+    needs_all = bool(extra) and is_right
+    # If nothing that was read is wrong, the table may be right.
+    tells = judged.is_wrong and not is_told and not needs_all
+    messages = grading.messages(tuple(map(row_too_many, extra))) if tells else ()
     return replace(
         judged,
         rows=_explained_without(judged.rows, without.rows),
         feedback=(*(m for m in judged.feedback if m.code != OWN_FRAME_CHOICE), *messages),
         slips=judged.slips + len(wrong),
         at_most=without,
+        needs_all=needs_all,
     )
 
 
