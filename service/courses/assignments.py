@@ -75,8 +75,7 @@ def extend(
 ) -> CourseAssignment:
     """Give a learner other dates or another limit. Without any, end the extension.
 
-    Attempts that are no longer late get their points back. Raises
-    CourseError.
+    Attempts that are no longer late get their points back. Raises CourseError.
     """
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)

@@ -129,9 +129,9 @@ class _Tidying:
     def _fields(self, schema: Schema, *, is_sent: bool) -> Schema:
         """Return the fields of a model.
 
-        The service sends every field that has a value, so a field with a default is
-        required there. In a request the description says the default: given as ``default``,
-        it makes some generators require the field. A field with the mark ``ADDED_LATER`` may be
+        The service sends every field that has a value, so in answers a field with a default is
+        required. In requests, the description names the default, because ``default`` makes some
+        generators require the field. A field with the mark ``ADDED_LATER`` may be
         absent in answers that an older version has recorded.
         """
         required = list(schema.get("required", ()))

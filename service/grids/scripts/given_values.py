@@ -68,8 +68,8 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
     """Return the note on numbers that a script assigns to letters.
 
-    Raises GridError if a letter in ``read``, those in the cells, has a value other than a plain
-    number.
+    ``read`` are the letters in the cells. Raises GridError if one of them has another value than a
+    plain number.
     """
     for each in given:
         if each.name in read and not each.is_number:

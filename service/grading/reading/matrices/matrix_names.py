@@ -99,7 +99,7 @@ def _from_frame_one(name: Indices, count: int) -> _Place:
 
 
 def _by_last_frame(name: Indices, count: int) -> _Place:
-    """Return the place of a name if the second matrix is T_{02}."""
+    """Return the place of a name if all names count from frame 0: T_{02} is the second one."""
     pair = tuple(name[0]) if len(name) == 1 else name
     return _number(pair[1], count) if len(pair) == 2 and pair[0] == "0" else None
 
