@@ -88,6 +88,7 @@ BODIES: Mapping[str, Any] = {
     },
     "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
     "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
+    "POST /lti/notices": {"notices": [{"jwt": "not signed"}]},
     "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},
     "POST /v1/previews": {"exercise": EXERCISE, "part": "table", "entries": [{"text": "a1"}]},
     "POST /v1/frames": {**example("frames-request"), "exercise": EXERCISE, "table": None},
