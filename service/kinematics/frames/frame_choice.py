@@ -12,7 +12,7 @@ a, α, d, θ; angles in radians. A relative pose is the pose of the writer's fra
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +31,8 @@ from service.kinematics.tolerances import (
 )
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse, rot_x
 
-# The numbers of hypotheses that a search keeps, and of their continuations. A thorough search keeps
-# WIDER times as many if the table that it found loses more than MOST_LOST units of marks.
-BEAM_WIDTH, MAX_CONTINUATIONS = 8, 20
-WIDER = 4
-MOST_LOST = 2.5
+BEAM_WIDTH = 8
+MAX_CONTINUATIONS = 20
 # A hypothesis that costs this much more than the best is dropped: it needs as many more slips.
 MAX_COST_BEHIND = 2.5
 
@@ -107,19 +104,6 @@ class _RowCounts:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Case:
-    """A search; see ``nearest_table``."""
-
-    rows: Sequence[RowConstants]
-    targets: Sequence[Target]
-    length_scale: float
-    base_given: bool
-    directions_given: bool
-    start: Matrices | None
-    z_ends_rows: bool
-
-
 def nearest_table(
     rows: Sequence[RowConstants],
     targets: Sequence[Target],
@@ -129,31 +113,18 @@ def nearest_table(
     directions_given: bool = True,
     start: Matrices | None = None,
     z_ends_rows: bool = False,
-    thorough: bool = True,
 ) -> ChainMatch:
     """Return the valid table nearest to ``rows``, the i-th of which leads to the i-th target.
 
-    ``z_ends_rows`` is true if a row of the table has its X before its Z. A ``thorough`` search is
-    repeated with more hypotheses if many cells are wrong.
+    ``z_ends_rows`` is true if a row of the table has its X before its Z.
 
     ``base_given`` is true if frame 0 is known: at ``start`` ``(L, 4, 4)`` in the reference's frame
     0, or equal to that. ``directions_given`` is true if each joint's positive direction is given,
     so that a reversed z axis needs a variable with the opposite sign.
     """
-    case = _Case(rows, targets, length_scale, base_given, directions_given, start, z_ends_rows)
-    found = _searched(case, 1)
-    if found.lost <= MOST_LOST or not thorough:
-        return found
-    # More hypotheses would also find more chances to lose little by numbers that are right by luck.
-    return replace(_searched(case, WIDER), lost=found.lost)
-
-
-def _searched(case: "_Case", width: int) -> ChainMatch:
-    """Return the valid table that a search finds which keeps ``width`` times as many hypotheses."""
-    rows, targets = case.rows, case.targets
     samples = rows[0].written.shape[-1]
-    if case.base_given:
-        pose = identity((samples,)) if case.start is None else case.start
+    if base_given:
+        pose = identity((samples,)) if start is None else start
         none = np.zeros(1)
         beam, freedom = _Beam(pose[None], none, none, [()], _RowCounts.none(1)), BaseFreedom()
         remaining = list(zip(rows, targets, strict=True))
@@ -161,9 +132,9 @@ def _searched(case: "_Case", width: int) -> ChainMatch:
         beam, freedom = _from_free_base(rows[0], targets[0])
         remaining = list(zip(rows[1:], targets[1:], strict=True))
     for row, target in remaining:
-        beam = _next_beam(beam, row, target, case, freedom, width)
+        beam = _next_beam(beam, row, target, length_scale, directions_given, freedom, z_ends_rows)
         if target.reference is not None and target.rebases and not freedom.is_used_up:
-            freedom = freedom.at_next(target.reference, target.kind, case.length_scale)
+            freedom = freedom.at_next(target.reference, target.kind, length_scale)
     best = int(np.argmin(beam.cost))
     valid_rows, poses = map(np.array, zip(*beam.paths[best], strict=True))
     return ChainMatch(valid_rows, poses, float(beam.cost[best]), float(beam.lost.min()))
@@ -186,21 +157,21 @@ def _next_beam(
     beam: _Beam,
     row: RowConstants,
     target: Target,
-    case: _Case,
+    length_scale: float,
+    directions_given: bool,
     freedom: BaseFreedom,
-    width: int,
+    z_ends_rows: bool,
 ) -> _Beam:
     """Return the cheapest hypotheses after one more row."""
-    length_scale = case.length_scale
     parents, rows, distance, unreachable = _continuations(beam, row, target, length_scale, freedom)
     expected = freedom.with_written_angle(rows, row.written)
     wrong = _wrong_cells(row, expected, length_scale)
-    if row.variable is not None and case.directions_given:
+    if row.variable is not None and directions_given:
         wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[parents] < 0
     wrong |= row.wrong_regardless
     of_x, of_z = _counts(wrong, expected, row, length_scale, free_angle=freedom.turn)
     before = beam.begun.at(parents)
-    if case.z_ends_rows:
+    if z_ends_rows:
         rows_done = [(before + of_z, 1), (before, -1), (of_x, 1)]
         begun = of_x
     else:
@@ -210,9 +181,9 @@ def _next_beam(
     lost = beam.lost[parents] + sum(sign * each.lost for each, sign in rows_done)
     last_resort = NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * unreachable
     cost, lost = cost + last_resort, lost + last_resort
-    order = np.argsort(cost, kind="stable")[: MAX_CONTINUATIONS * width]
+    order = np.argsort(cost, kind="stable")[:MAX_CONTINUATIONS]
     order = order[cost[order] <= cost[order[0]] + MAX_COST_BEHIND]
-    by_loss = np.argsort(lost + SAME_LOSS * cost, kind="stable")[: 2 * SPARING * width]
+    by_loss = np.argsort(lost + SAME_LOSS * cost, kind="stable")[: 2 * SPARING]
     kept = _with_others(order, by_loss)
     parents, expected, begun = parents[kept], expected[kept], begun.at(kept)
     cost, lost = cost[kept], lost[kept]
@@ -225,8 +196,8 @@ def _next_beam(
             if freedom.anywhere:
                 pose[..., :3, 3] = 0.0
         cost = cost + departure(relative, length_scale)
-    sparing = _distinct(pose, lost + SAME_LOSS * cost, length_scale, width)[: SPARING * width]
-    kept = _with_others(_distinct(pose, cost, length_scale, width), sparing)
+    sparing = _distinct(pose, lost + SAME_LOSS * cost, length_scale)[:SPARING]
+    kept = _with_others(_distinct(pose, cost, length_scale), sparing)
     paths = [(*beam.paths[parents[i]], (expected[i], pose[i])) for i in kept]
     return _Beam(pose[kept], cost[kept], lost[kept], paths, begun.at(kept))
 
@@ -336,11 +307,11 @@ def departure(pose: Matrices, length_scale: float) -> Numbers:
     return np.asarray(cost + MOVED * (turned.astype(np.float64) + moved))
 
 
-def _distinct(pose: Matrices, cost: Numbers, length_scale: float, width: int) -> NDArray[np.int_]:
-    """Return the cheapest hypotheses with different frames, ``width`` times BEAM_WIDTH."""
+def _distinct(pose: Matrices, cost: Numbers, length_scale: float) -> NDArray[np.int_]:
+    """Return the cheapest BEAM_WIDTH hypotheses with different frames."""
     order = np.argsort(cost, kind="stable")
     frames = pose[order, 0, :3].reshape(len(order), -1)
     difference = np.abs(frames[:, None] - frames[None]).max(axis=-1)
     equal = ~(difference > SAME_HYPOTHESIS * max(1.0, length_scale))
     earlier = np.tri(len(order), k=-1, dtype=np.bool_)
-    return np.asarray(order[~(equal & earlier).any(axis=1)][: BEAM_WIDTH * width])
+    return np.asarray(order[~(equal & earlier).any(axis=1)][:BEAM_WIDTH])

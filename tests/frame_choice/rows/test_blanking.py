@@ -73,21 +73,6 @@ SEVEN_MOVED = [
     ["0", "0", "0.28", "q6"],
     ["0", "-pi/2", "0", "-q7"],
 ]
-TWISTED = (
-    ("p", "pi/2", "w", "q1+pi/2"),
-    ("0", "-pi/2", "0", "q2"),
-    ("0.91", "0", "h", "q3"),
-    ("0.52", "pi", "q4", "0"),
-    ("0", "0", "0", "q5"),
-    ("l", "-pi/2", "0", "q6+pi"),
-)
-FIRST = [
-    ["0", "0", "w - 0.38", "q1 + 2*pi/3"],
-    ["p", "pi/2", "0", "q2 + pi"],
-    ["0", "pi/2", "h + 0.08", "q3 + pi"],
-    ["0.91", "0", "0.08 - q4", "0"],
-]
-SPOILED = [["0", "q6 - pi/2", "-0.17", "q3 + pi"], ["l", "-pi/2", "0", "0"]]
 # Tables in which an empty place once earned more: a number in place of a joint variable, a wrong
 # cell in a row of zeros, and wrong rows that hide the frames in which all others are right.
 ONCE_GAINED = [
@@ -188,12 +173,6 @@ ONCE_GAINED = [
         FREE["free tool"],
         [*SEVEN_MOVED, ["-0.44", "pi/2", "0.12", "-q7"]],
         [*SEVEN_MOVED, ["", "", "", ""]],
-    ),
-    (
-        Robot("RRRPRR", "RRRPRR", "standard", SIX, TWISTED, ("p", "w", "h", "l")),
-        FREE["free base"],
-        [*FIRST, ["0.52", "pi", "-0.17", "pi/2 - q5"], *SPOILED],
-        [*FIRST, ["0.52", "pi", "-0.17", ""], *SPOILED],
     ),
 ]
 

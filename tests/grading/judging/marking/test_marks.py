@@ -128,4 +128,4 @@ def test_a_single_value_has_lost_its_points_in_its_row() -> None:
     row = RowReport("3", Verdict.INCORRECT, 0.0, 1.0, (CellReport("3", Verdict.INCORRECT),))
     assert lost_in_row(row, 1.0).message == "row 3"
     mark = RowReport("marked", Verdict.INCORRECT, 0.0, 1.0, (CellReport("marked", row.verdict),))
-    assert lost_in_row(mark, 1.0).message == "marked"
+    assert lost_in_row(mark, 1.0).message == "the mark"

@@ -125,8 +125,7 @@ def _link_by_link(
         match = one_cell_match(rows, targets, roles, convention, freedom, grading)
     # The cell may be the only wrong one in these frames, and its row may lose less in other frames.
     if match is None or match.cost > WRONG_CELL:
-        thorough = grading.explains
-        searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale, thorough)
+        searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
         lost = searched.lost if match is None else min(match.lost, searched.lost)
         match = replace(match or searched, lost=lost)
     # Each cell should be its constant plus its joint variable.
@@ -140,7 +139,7 @@ def _link_by_link(
         spoiled = with_spoiled_row(roles, expected, scale)
         if spoiled is not None:
             rows = row_constants(spoiled, exercise.robot.joints, convention, samples)
-            searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale, False)
+            searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
             lost = min(lost, searched.lost)
     lost = lost if lost <= MOST_LOST else np.inf
     return NearestTable(roles, expected, frames, match.cost, lost)
@@ -174,7 +173,6 @@ def _searched(
     mechanism: Mechanism,
     freedom: FrameFreedom,
     scale: float,
-    thorough: bool,
 ) -> ChainMatch:
     """Search the nearest valid table, from the base, or from the tool if only that is given.
 
@@ -182,10 +180,7 @@ def _searched(
     rounding, the table is searched again from each possible base.
     """
     search = partial(
-        search_nearest_table,
-        length_scale=scale,
-        directions_given=not freedom.directions,
-        thorough=thorough,
+        search_nearest_table, length_scale=scale, directions_given=not freedom.directions
     )
     z_ends_rows = convention is Convention.MODIFIED
     # Seen from the tool, the two halves of a row are in the opposite order.
