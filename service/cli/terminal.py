@@ -35,6 +35,11 @@ def stdout() -> Console:
     return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 
 
+def counted(count: int, noun: str) -> str:
+    """Return a count with its noun, such as "1 learner" or "2 learners"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def complain(message: str) -> None:
     """Write a message to standard error."""
     print(message, file=sys.stderr)  # noqa: T201 - a program's own error output

@@ -224,7 +224,7 @@ def override_points(
         str, typer.Option("--reason", help="The reason; required.", callback=encodable)
     ] = "",
     author: Annotated[
-        str | None, typer.Option("--by", help="The author. [your user name]", callback=encodable)
+        str | None, typer.Option("--by", help="The author. \\[your user name]", callback=encodable)
     ] = None,
 ) -> None:
     """Override the points of an attempt, with a reason."""

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 from sqlalchemy import Connection
 
 from service.attempts.storage.database import in_transaction
@@ -121,9 +122,17 @@ def checked(model: type[M], **fields: Any) -> M:
         given = {name: value for name, value in fields.items() if value is not None}
         return model.model_validate(given)
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        give_up(f"{place}: {first['msg']}.")
+        give_up(" ".join(dict.fromkeys(_told(each) for each in error.errors())))
+
+
+def _told(error: ErrorDetails) -> str:
+    """Return an error of a field in words."""
+    match error["loc"], error["type"]:
+        case ("id",), "string_pattern_mismatch":
+            return "The id has small letters, digits and hyphens, such as homework-1."
+        case ("exercises",), "missing" | "too_short":
+            return "Choose at least one exercise."
+    return f"{'.'.join(map(str, error['loc']))}: {error['msg']}."
 
 
 @commands.command("add")
@@ -269,7 +278,7 @@ def variants_of_learner(
 
 @commands.command("renew")
 def renew_variants(course: CourseOption, assignment: AssignmentName) -> None:
-    """Deal the variants by the choices that `[vary]` has now in the exercise files.
+    r"""Deal the variants by the choices that `\[vary]` has now in the exercise files.
 
     Learners may get other numbers. Their attempts stay as they are.
     """

@@ -3,7 +3,7 @@
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 
@@ -17,7 +17,7 @@ from service.cli.commands.course_assignments import (
     deleted,
 )
 from service.cli.files.output import write
-from service.cli.terminal import give_up, stdout
+from service.cli.terminal import complain, counted, give_up, stdout
 from service.contract.courses import (
     LONGEST_LINK_DAYS,
     Course,
@@ -35,7 +35,7 @@ from service.courses.links import issue_links, revoke_links, written_links
 from service.courses.names import told_apart
 from service.courses.results.gradebook import gradebook, missing, written_gradebook
 from service.courses.results.workbook import gradebook_workbook
-from service.formats.shared.plain_text import number, visible
+from service.formats.shared.plain_text import visible
 from service.settings import load_settings
 
 commands = typer.Typer(
@@ -51,8 +51,10 @@ CourseIdArgument = Annotated[
     str, typer.Argument(help="The id of a course.", show_default=False, callback=encodable)
 ]
 Output = Annotated[Path | None, typer.Option(help="The file to write.")]
+# The address of a service that was started without settings.
+_LOCAL: Final = "http://127.0.0.1:8000"
 LearnerOption = Annotated[
-    list[str] | None, typer.Option("--learner", help="Only this learner. Repeatable. [all]")
+    list[str] | None, typer.Option("--learner", help="Only this learner. Repeatable. \\[all]")
 ]
 
 
@@ -91,7 +93,8 @@ def show(course: CourseIdArgument) -> None:
 
 
 def _counts(course: Course) -> str:
-    return f"{course.learners} learners, {len(course.assignments)} assignments"
+    assignments = counted(len(course.assignments), "assignment")
+    return f"{counted(course.learners, 'learner')}, {assignments}"
 
 
 @commands.command("change")
@@ -155,7 +158,7 @@ def import_learners(
     except CourseError as error:
         give_up(f"{file}: {error}")
     count = changed(lambda it: roll.add_learners(it, course, listed))
-    typer.echo(f"{len(listed)} learners, {count} of them new.")
+    typer.echo(f"{counted(len(listed), 'learner')}, {count} of them new.")
 
 
 @commands.command("links")
@@ -163,7 +166,7 @@ def links(
     course: CourseIdArgument,
     address: Annotated[
         str, typer.Option(help="The address of the service, such as https://grader.example.edu.")
-    ] = "http://127.0.0.1:8000",
+    ] = _LOCAL,
     learner: LearnerOption = None,
     renew: Annotated[
         bool, typer.Option("--renew", help="Make new links, and end the old ones.")
@@ -178,11 +181,16 @@ def links(
     now = datetime.now(UTC)
     if revoke:
         count = changed(lambda it: revoke_links(it, course, learner, now))
-        typer.echo(f"{count} links ended. Each running service knows it within seconds.")
+        typer.echo(f"{counted(count, 'link')} ended. Each running service knows it within seconds.")
         return
     secret = load_settings().known_secret()
     if secret is None:
         give_up("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE.")
+    if address == _LOCAL:
+        complain(
+            f"The links lead to {_LOCAL}, which only this machine can open. "
+            "Give the address of the service with --address https://…."
+        )
     wanted = LinksRequest(learners=learner, renew=renew, days=days)
     found = changed(lambda it: issue_links(it, course, wanted, secret, address, now))
     write(written_links(found), output, at_once=True)
@@ -228,4 +236,4 @@ def show_missing(
         ]
         told = ", ".join((*each.exercises, *dates))
         screen.print(f"{visible(names[each.learner])}: {told}", soft_wrap=True)
-    screen.print(f"Not complete: {number(len(found))} learners.")
+    screen.print(f"Not complete: {counted(len(found), 'learner')}.")

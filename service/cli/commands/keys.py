@@ -39,10 +39,10 @@ def create(
         list[Scope] | None, typer.Option(help="A right besides grading. Repeatable.")
     ] = None,
     exercise: Annotated[
-        list[str] | None, typer.Option(help="Only this exercise. Repeatable. [all]")
+        list[str] | None, typer.Option(help="Only this exercise. Repeatable. \\[all]")
     ] = None,
     course: Annotated[
-        str | None, typer.Option(help="Only this course. [all]", callback=encodable)
+        str | None, typer.Option(help="Only this course. \\[all]", callback=encodable)
     ] = None,
     days: Annotated[int, typer.Option(min=1, max=3650, help="The key's lifetime in days.")] = 365,
 ) -> None:

@@ -94,9 +94,9 @@ def deploy_command(
         bool, typer.Option("--print", help="Print the seeds, and leave the file as it is.")
     ] = False,
 ) -> None:
-    """Choose the variants of which each learner gets one: different, and equally hard.
+    r"""Choose the variants of which each learner gets one: different, and equally hard.
 
-    Their seeds are written into the file, as [vary] deployed. Seeds that are there already stay.
+    Their seeds are written into the file, as \[vary] deployed. Seeds that are there already stay.
     """
     file = installed_file(exercise_id) if not Path(exercise_id).is_file() else Path(exercise_id)
     exercise = load_exercise(file)

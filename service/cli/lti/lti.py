@@ -56,7 +56,7 @@ def register(
         Path | None, typer.Option(help="A JSON file with the values, instead of the options.")
     ] = None,
     registration: Annotated[
-        str | None, typer.Option("--id", help="Small letters, digits, hyphens. [random]")
+        str | None, typer.Option("--id", help="Small letters, digits, hyphens. \\[random]")
     ] = None,
     name: Annotated[str | None, typer.Option(help="The platform in words.")] = None,
     issuer: Value = None,
@@ -65,14 +65,14 @@ def register(
     jwks_url: Value = None,
     token_url: Value = None,
     audience: Annotated[
-        str | None, typer.Option(help="The audience of access tokens. [the token address]")
+        str | None, typer.Option(help="The audience of access tokens. \\[the token address]")
     ] = None,
     address: Annotated[
         str | None, typer.Option(help="This service: https://grader.example.edu")
     ] = None,
     zone: Annotated[str | None, typer.Option(help="The time zone of its courses. [UTC]")] = None,
     deployment: Annotated[
-        list[str] | None, typer.Option(help="Only this deployment. Repeatable. [all]")
+        list[str] | None, typer.Option(help="Only this deployment. Repeatable. \\[all]")
     ] = None,
     development: Annotated[
         bool, typer.Option(help="Allow a platform on this machine without HTTPS.")
@@ -159,7 +159,7 @@ def roster(
     ],
     names: Annotated[
         bool | None,
-        typer.Option("--names/--no-names", help="Whether to store and show names. [as before]"),
+        typer.Option("--names/--no-names", help="Whether to store and show names. \\[as before]"),
     ] = None,
 ) -> None:
     """Bring the learners of a course up to date with the roster of its platform."""
