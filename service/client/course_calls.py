@@ -10,6 +10,7 @@ from pydantic import BaseModel, TypeAdapter
 from service.client.calls import HttpCall
 from service.contract.attempts import AttemptResponse
 from service.contract.courses import (
+    AddedLearners,
     AssignmentChange,
     Course,
     CourseAssignment,
@@ -85,9 +86,9 @@ def learners(course: str) -> HttpCall[LearnerList]:
     return HttpCall(_path(course, "learners"), LearnerList.model_validate_json)
 
 
-def add_learners(course: str, new: LearnersRequest) -> HttpCall[LearnerList]:
-    """Add learners, or a class list in CSV; return all learners."""
-    return _sending(_path(course, "learners"), new, LearnerList)
+def add_learners(course: str, new: LearnersRequest) -> HttpCall[AddedLearners]:
+    """Add learners, or a class list in CSV; return all learners, and how many are new."""
+    return _sending(_path(course, "learners"), new, AddedLearners)
 
 
 def links(course: str, wanted: LinksRequest) -> HttpCall[LinkList]:

@@ -114,6 +114,13 @@ class LearnerList(BaseModel):
     learners: list[CourseLearner]
 
 
+class AddedLearners(LearnerList):
+    """The learners of a course after some were added, by name."""
+
+    listed: int = Field(description="The number of learners in the request.")
+    added: int = Field(description="The number of them that are new in the course.")
+
+
 class LinksRequest(_Request):
     """A request for personal links."""
 

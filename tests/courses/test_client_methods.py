@@ -58,7 +58,8 @@ def test_every_route_of_courses_has_a_method(tmp_path: Path) -> None:
         assert tutor.course("robots").zone == "Europe/Berlin"
         # An id may have characters that an address reserves.
         people = tutor.add_learners("robots", LearnersRequest(csv="id,name\na/?1,Ada\nu2,Grace\n"))
-        assert people == tutor.learners("robots")
+        assert (people.listed, people.added) == (2, 2)
+        assert people.learners == tutor.learners("robots").learners
         tutor.create_assignment("robots", new)
         later = Extension.model_validate({"learner": "a/?1", "limit": 7})
         assert tutor.extend("robots", "hw", later).extensions[0].limit == 7

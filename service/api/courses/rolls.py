@@ -13,6 +13,7 @@ from service.api.http.problems import invalid
 from service.api.permissions.access import Access
 from service.api.recording.store import private
 from service.contract.courses import (
+    AddedLearners,
     Course,
     CourseChange,
     CourseList,
@@ -107,7 +108,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         operation_id="addLearners",
         summary="Add learners to a course",
         response_description="All learners of the course, by name.",
-        **changing(LearnersRequest, LearnerList),
+        **changing(LearnersRequest, AddedLearners),
     )
     async def add_learners(request: Request, course_id: CourseId) -> Response:
         """Add learners, or a class list in CSV; for tutors of the course.
@@ -118,9 +119,10 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
 
         new = _new_learners(await read_body(LearnersRequest, request))
 
-        def work(connection: "Connection") -> LearnerList:
-            roll.add_learners(connection, course_id, new)
-            return _learners(course_id, connection)
+        def work(connection: "Connection") -> AddedLearners:
+            added = roll.add_learners(connection, course_id, new)
+            learners = _learners(course_id, connection).learners
+            return AddedLearners(learners=learners, listed=len(new), added=added)
 
         return private(await write(store, work))
 

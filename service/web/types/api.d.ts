@@ -1,5 +1,6 @@
 // Written by `python -m tests.front.api_types`. Do not edit.
 declare namespace Api {
+  type AddedLearners = { learners: CourseLearner[]; listed: number; added: number; };
   type AngleUnit = "radians" | "degrees";
   type AssignedPoints = { exercise: string; points: number; };
   type AssignmentChange = {

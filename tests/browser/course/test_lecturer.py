@@ -94,9 +94,15 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         expect(page.get_by_label("or paste it")).to_have_value(CLASS)
         page.get_by_role("button", name="Add learners").click()
         expect(page.get_by_role("link", name=PICTURE)).to_be_visible()
+        expect(page.get_by_text("4 learners, 4 of them new.")).to_be_visible()
+        check()
+        _refused_homework(page)
         _set_homework(page)
         expect(page.get_by_role("cell", name="0 of 4")).to_be_visible()
         expect(page.get_by_role("cell", name="2030-10-15 23:59")).to_be_visible()
+        said = "Saved: Homework 1. No late attempts are accepted, because Closes is empty."
+        expect(page.get_by_text(said)).to_be_visible()
+        expect(page.get_by_role("cell", name="no late attempts")).to_be_visible()
         check()
         with page.expect_download() as downloading:
             page.get_by_role("button", name="Download links").click()
@@ -162,6 +168,16 @@ def _delete(page: Page, said: str, check: Callable[[], None]) -> None:
     page.get_by_role("button", name="Cancel").click()
     page.get_by_role("button", name="Delete the").click()
     page.get_by_role("button", name="Delete permanently").click()
+
+
+def _refused_homework(page: Page) -> None:
+    """Try to set an assignment with a wrong id and without an exercise."""
+    expect(page.get_by_text("only if Closes is after Due")).to_be_visible()
+    page.get_by_label("Id").fill("HW 9")
+    page.get_by_label("Title").first.fill("Homework 9")
+    page.get_by_role("button", name="Add assignment").click()
+    said = "The id has small letters, digits and hyphens, such as homework-1."
+    expect(page.get_by_text(f"{said} Choose at least one exercise.")).to_be_visible()
 
 
 def _set_homework(page: Page) -> None:

@@ -3,6 +3,7 @@
 import { h, whenChosen } from "../../shared/dom.js";
 import { failed, tell } from "../records/records.js";
 import { address, send } from "../tutor_service.js";
+import { doneBy, faultsIn } from "./course_words.js";
 
 /** @typedef {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} Field */
 
@@ -56,6 +57,9 @@ function fieldsOf(row) {
   return [exercise, points];
 }
 
+// Where the page finds after its reload what a form has done.
+const TOLD = "dh-grader:told";
+
 // The service takes 256 KiB and 20,000 commas at once. A character is up to three bytes; quotes are escaped.
 const MOST = 60_000;
 const MOST_COMMAS = 15_000;
@@ -98,17 +102,44 @@ async function post(form) {
   const button = form.querySelector("button[type=submit]");
   if (!(state instanceof HTMLElement)) return;
   const body = bodyOf(form);
+  const faults = faultsIn(body);
+  if (faults) return tell(state, faults);
   button?.setAttribute("disabled", "");
   try {
     const lists = typeof body.csv === "string" ? pieces(body.csv).map((csv) => ({ ...body, csv })) : [body];
-    for (const each of lists) await send(form.dataset.post ?? "", each);
+    const answers = [];
+    for (const each of lists) answers.push(await send(form.dataset.post ?? "", each));
     if (form.dataset.done) return tell(state, form.dataset.done);
     if (form.dataset.then) location.assign(address(form.dataset.then + String(body.id)));
-    else location.reload();
+    else reload("learner" in body ? "" : doneBy(answers));
   } catch (error) {
     failed(error, state);
   } finally {
     button?.removeAttribute("disabled");
+  }
+}
+
+/** Load the page again, and say there what was done. @param {string} told */
+function reload(told) {
+  try {
+    if (told) sessionStorage.setItem(TOLD, told);
+  } catch {
+    // Without storage, the page only shows the result.
+  }
+  location.reload();
+}
+
+/** Say at the top of the page what a form has done before the reload. */
+function tellDone() {
+  try {
+    const told = sessionStorage.getItem(TOLD);
+    sessionStorage.removeItem(TOLD);
+    if (!told) return;
+    const place = h("p", { role: "status", class: "notice" });
+    document.querySelector("h1")?.after(place);
+    tell(place, told);
+  } catch {
+    // Without storage, there is nothing to say.
   }
 }
 
@@ -173,4 +204,5 @@ if (typeof document !== "undefined") {
   /** @type {NodeListOf<HTMLInputElement>} */
   const files = document.querySelectorAll("input[data-fills]");
   files.forEach(filling);
+  tellDone();
 }
