@@ -21,6 +21,8 @@ _SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
 _PROGRAM: Final = re.compile(r"[\[■]|(?<!\w)(?:dict|np|sp)(?!\w)")
 _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
+# A line of one or two words, which may be short: "DH", "% DH", "End".
+_FEW_WORDS: Final = re.compile(r"[%#*\s]*(?!pi\b)[^\W\d_]{2,}(?: [^\W\d_]+)?\s?[.!:]?")
 # Signs of a formula, a row or a program.
 _SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
 # A legend of the stars that mark joint variables.
@@ -93,7 +95,10 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
         for separator in _SEPARATORS:
             counts = [sum(map(line.text.count, separator)) for line in lines]
             rows = [count for count in counts if count]
-            if len(rows) > 1 and min(rows) > 1 and separator != ",":
+            if separator == "," and sum(count > 1 for count in rows) > 1:
+                # A sentence may have a comma.
+                return lambda line: line.count(",") > 1
+            if len(rows) > 1 and min(rows) > 1:
                 return lambda line: any(map(line.__contains__, separator))
     return lambda line: not _TITLE.match(line) or "(" in line or bool(_CONTROL.match(line))
 
@@ -105,6 +110,8 @@ def _is_padded(line: str) -> bool:
 
 def _is_prose(line: str) -> bool:
     """True if a line has words, and no signs of a formula or of headers."""
+    if _FEW_WORDS.fullmatch(line) and not _PARAMETER.search(line.lower()):
+        return True
     if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:
         return False
     return _WORD.search(line) is not None and not _SIGNS.search(_LEGEND.sub("", line))

@@ -26,6 +26,27 @@ def test_sentences_and_fences_are_no_rows(text: str) -> None:
     assert cells(text) == cells(TABLE)
 
 
+COMMAS = "a,alpha,d,theta\nl1,0,0,q1\nl2,0,0,q2"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(f"{title}\n{COMMAS}" for title in ("DH table", "% DH", "SCARA", "Hi,", "My table, v2")),
+        f"{COMMAS}\nwhere q1, q2 are the joint angles",
+        f"{COMMAS}\nEnd",
+    ],
+)
+def test_sentences_around_a_table_with_commas_are_no_rows(text: str) -> None:
+    assert cells(text) == cells(COMMAS)
+    assert [note.code for note in read_grid(text).notes] == ["text_left_aside"]
+
+
+@pytest.mark.parametrize("row", ["pi", "theta", "l2", "0"])
+def test_a_short_line_above_commas_that_may_be_a_cell_stays(row: str) -> None:
+    assert len(cells(f"{row}\n{COMMAS}")) == len(cells(COMMAS)) + 1
+
+
 def test_a_note_tells_that_sentences_were_ignored() -> None:
     text = f"My table\n{TABLE}"
     [note] = read_grid(text).notes
@@ -40,7 +61,7 @@ def test_a_sentence_with_a_unit_is_refused(unit: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ["theta d", "3", "l3 0 0 q3", "where l1 = 0.4", "Joint theta alpha"]
+    "line", ["theta d", "3", "l3 0 0 q3", "where l1 = 0.4", "Joint theta alpha", "pi"]
 )
 def test_a_line_that_may_be_a_row_stays(line: str) -> None:
     assert len(cells(f"{line}\n{TABLE}")) == 4
