@@ -1,8 +1,9 @@
 """Notices of platforms (Platform Notification Service) about files that were handed in."""
 
+import re
 from collections.abc import Mapping
 from datetime import datetime
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, TypeGuard
 
 import jwt
 from cryptography.hazmat.primitives.asymmetric.rsa import RSAPublicKey
@@ -16,6 +17,7 @@ HANDED_IN: Final = "LtiAssetProcessorSubmissionNotice"
 # With this one, platforms try whether notices arrive.
 HELLO: Final = "LtiHelloWorldNotice"
 MOST_FILES: Final = 20
+_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
 
 _Name = Annotated[str, StringConstraints(min_length=1, max_length=255)]
 _Address = Annotated[str, StringConstraints(min_length=1, max_length=1000)]
@@ -64,9 +66,9 @@ def parties_of(token: str) -> tuple[str, str]:
         raise LtiError("token-malformed") from error
     issuer, audience, party = (claims.get(name) for name in ("iss", "aud", "azp"))
     client = party or (audience[0] if isinstance(audience, list) and audience else audience)
-    if not (isinstance(issuer, str) and issuer):
+    if not _is_text(issuer):
         raise LtiError("wrong-issuer")
-    if not (isinstance(client, str) and client):
+    if not _is_text(client):
         raise LtiError("wrong-audience")
     return issuer, client
 
@@ -117,6 +119,11 @@ def _files(claims: Mapping[str, Any], registration: Registration) -> HandedFiles
         if reason := unusable(address, local=registration.is_development):
             raise LtiError("bad-address", address=address, reason=reason)
     return found
+
+
+def _is_text(value: Any) -> TypeGuard[str]:
+    """True for a text that a database can look for. A lone surrogate cannot be encoded."""
+    return isinstance(value, str) and bool(value) and not _SURROGATE.search(value)
 
 
 def _name(claims: Mapping[str, Any], claim: str, name: str) -> str:

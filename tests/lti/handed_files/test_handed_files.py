@@ -346,6 +346,8 @@ FORGED: list[tuple[Callable[[dict[str, Any]], None], str]] = [
     (put("iss", "https://evil.example"), "unknown-platform"),
     (without("iss"), "wrong-issuer"),
     (put("aud", "client-2"), "wrong-audience"),
+    (put("iss", "\ud800"), "wrong-issuer"),
+    (put("aud", "\ud800"), "wrong-audience"),
     (put("azp", "client-2"), "unknown-platform"),
     (put("aud", ["client-2", "client-3"]), "wrong-audience"),
     (without("exp"), "no-expiry"),
