@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from service.catalogue.files.fields import GivenOrFree, NotBool
 from service.catalogue.part import TablePartSpec
 from service.catalogue.robots.formulas import FieldError
-from service.catalogue.robots.robot import Robot
+from service.catalogue.robots.robot import ReferenceTable, Robot
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
@@ -103,10 +103,7 @@ class DhTableSpec(TablePartSpec):
     def shape(self, reference: Reference | None) -> DhTableShape:
         """The shape of the table in the convention of the part."""
         assert isinstance(reference, Robot)
-        if isinstance(self.convention, Convention):
-            labels = reference.tables[self.convention].labels
-        else:
-            labels = max((table.labels for table in reference.tables.values()), key=len)
+        labels = self.asked_table(reference).labels
         chosen = self.model_dump(include=_CHOICES)
         return DhTableShape(
             columns=list(COLUMNS),
@@ -116,6 +113,12 @@ class DhTableSpec(TablePartSpec):
             given=self._given_cells(reference),
             **chosen,
         )
+
+    def asked_table(self, robot: Robot) -> ReferenceTable:
+        """Return the robot's table in the part's convention, or the longer one of both."""
+        if isinstance(self.convention, Convention):
+            return robot.tables[self.convention]
+        return max(robot.tables.values(), key=lambda table: len(table.rows))
 
     def _given_cells(self, robot: Robot) -> dict[str, list[str]]:
         """Return the texts of the given rows by their labels."""

@@ -123,11 +123,15 @@ class StudentTable:
 Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 
 
-def without_empty_end(table: StudentTable, joints: int) -> StudentTable:
+def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTable:
     """Return the table without empty rows after the rows of all joints, as if they were absent.
 
-    So a table that is right in the other convention, with one row less than the form, is named.
+    So a table that is right in the other convention, with one row less than the form, is named. A
+    table with more rows than the ``asked`` ones stays as it is: an empty row too many costs as much
+    as a wrong one.
     """
+    if len(table.rows) > asked:
+        return table
     written = [i for i, row in enumerate(table.rows) if not row.is_missing]
     kept = max(joints, written[-1] + 1) if written else len(table.rows)
     return replace(table, rows=table.rows[:kept], values=table.values[:kept])
