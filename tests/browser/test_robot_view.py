@@ -106,7 +106,7 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     # The forearm is 0.6 long, and twice as long in the table.
     expect(gap).to_have_text("0.6")
     expect(page.locator("output.gap")).to_have_text("0.6")
-    expect(words).to_contain_text("to the tool frame: 0.6.")
+    expect(words).to_contain_text("misses the tool frame: 0.6 m short along x₀")
     moved = picture(page)
     assert tool(page) == robot
     page.get_by_role("checkbox", name="Show frame 1").uncheck()
