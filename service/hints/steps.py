@@ -11,7 +11,9 @@ from typing import Final
 from service.catalogue import Exercise, PartSpec
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.catalogue.parts.dh_table import DhTableSpec
+from service.catalogue.parts.find_slip import FindSlipSpec
 from service.grading import Report
+from service.grading.kinds.find_slip import MARKED
 from service.grading.report import (
     Feedback,
     PartReport,
@@ -76,6 +78,8 @@ def hint_step(
     message = None if told is None else _message(told, topic)
     if part is None or told is None or message is None:
         return None
+    if isinstance(part, FindSlipSpec):
+        part = part.table
     convention = _convention(part, answers.get(part.id), told)
     name = _rule_name(message, topic, part)
     rule = RULES[name]
@@ -131,7 +135,7 @@ def _fields(
     topic: Topic, part: PartSpec, convention: Convention, report: PartReport
 ) -> dict[str, str]:
     """Return the values of the fields of a sentence."""
-    labels = [row.label for row in report.rows]
+    labels = [row.label for row in report.rows if row.label != MARKED]
     if isinstance(part, DhTableSpec) and topic.row in labels:
         index = labels.index(topic.row)
         before, here = (labels[index - 1] if index else "0"), topic.row

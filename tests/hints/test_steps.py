@@ -88,3 +88,32 @@ def test_the_row_of_the_end_effector_has_axes_of_its_own(catalogue: Mapping[str,
     look, _, apply = steps_of(catalogue["planar-rrr-drawn"], table, topic)
     assert look.startswith("Look at z3 and z_e")
     assert "positive in the direction of x3" in apply
+
+
+GIVEN = "0 0 0 θ1\n0 -90° d2 θ2\n0 -90° d3 0\n0 0 0 θ4\n0 -90° 0 θ5\n0 90° d6 θ6"
+
+
+def test_a_wrong_mark_on_a_given_table_has_the_moves_of_its_convention(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    topic = Topic("slip", "slip_elsewhere", "marked", "marked")
+    answer = f"marked: 2.alpha\n{GIVEN}"
+    look, rule, apply = steps_of(catalogue["find-the-slip-stanford"], answer, topic)
+    assert look.startswith("Look at the order of the four moves in a row")
+    assert rule.startswith("Modified convention: turn by α_{i-1} about x_{i-1}")
+    assert apply.startswith("Do the four moves of one row")
+
+
+def test_a_mended_table_has_the_hints_of_a_table(catalogue: Mapping[str, Exercise]) -> None:
+    topic = Topic("slip", "sign", "3", "alpha")
+    answer = f"marked: 3.alpha\n{GIVEN}"
+    look, rule, apply = steps_of(catalogue["find-the-slip-stanford"], answer, topic)
+    assert look.startswith("Look at z2 and z3")
+    assert "about x_{i-1}," in rule
+    assert "thumb along x2. Turn z2 until it points as z3" in apply
+    # The row of the mark is none of the table: before row 1 is the base frame.
+    wrong = "marked: 2.alpha\na1 90° 0 θ1\na2 180° 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
+    first = Topic("slip", "quarter_turn", "1", "alpha")
+    assert steps_of(catalogue["find-the-slip-scara"], wrong, first)[0].startswith(
+        "Look at z0 and z1"
+    )

@@ -82,3 +82,22 @@ function exampleInWords(given, yours, expected) {
 /** Return an item if a part was judged with an earlier answer of the student. @param {Api.PartReport} report */
 export const followedItems = ({ follow_through: isFollowed }) =>
   isFollowed ? [item({ severity: "note", message: worded("Counted with your own earlier answer.") })] : [];
+
+/**
+ * Return messages of a part, and those on rows that the form does not show, with the place of each.
+ *
+ * @param {Api.Feedback[]} feedback
+ * @param {Iterable<Api.RowReport>} rows
+ * @returns {[Api.Feedback, Front.Topic | undefined][]}
+ */
+export function messagesOf(feedback, rows) {
+  return [
+    ...feedback.map((each) => /** @type {[Api.Feedback, Front.Topic | undefined]} */ ([each, each.places?.[0]])),
+    ...[...rows].flatMap(({ label: row, feedback, cells }) => [
+      ...feedback.map((each) => /** @type {[Api.Feedback, Front.Topic]} */ ([each, { row }])),
+      ...cells.flatMap(({ label: cell, feedback }) =>
+        feedback.map((each) => /** @type {[Api.Feedback, Front.Topic]} */ ([each, { row, cell }]))
+      ),
+    ]),
+  ];
+}

@@ -4,7 +4,7 @@ import { h, visible } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
 import { html } from "../shared/markup.js";
 import { lostItems } from "./report/lost_points.js";
-import { followedItems, item } from "./messages.js";
+import { followedItems, item, messagesOf } from "./messages.js";
 import { cellsInWords } from "./report/places.js";
 import { PartGrids } from "./form/part_grids.js";
 import { pasteBox } from "./form/paste_box.js";
@@ -308,9 +308,9 @@ export class PartView {
       rows.delete(view.label);
     }
     this.marks?.show(rows.get("marked")?.verdict ?? null);
-    const more = [...rows.values()].flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]);
-    const items = [...report.feedback, ...more].map((each) =>
-      this.#item(each, this.#at(each), { verdict: report.verdict, rows: report.rows }, each.places?.[0])
+    const options = { verdict: report.verdict, rows: report.rows };
+    const items = messagesOf(report.feedback, rows.values()).map(([each, place]) =>
+      this.#item(each, this.#at(each), options, place)
     );
     items.push(...lostItems(report, this.symbols));
     this.list.replaceChildren(...followedItems(report), ...items);
