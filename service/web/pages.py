@@ -10,6 +10,8 @@ from service.api.routes.reference import SCRIPT, START, STYLE
 from service.catalogue import Exercise, by_level, in_language
 from service.formats.shared.html_templates import html, own_html
 from service.translations import ENGLISH, LANGUAGES, Language, say
+from service.typeset.formulas import matrix
+from service.typeset.names import typeset
 from service.typeset.statement import statement_html
 from service.variants.robots.practice_id import practice_id
 from service.web.assets import Assets
@@ -23,6 +25,24 @@ _MENU: Final = (
     (say("Help"), "help/expressions"),
 )
 _TUTORS_MENU: Final = (*_MENU, (say("For tutors"), "tutor"))
+# The link transform of a row, in the standard and in the modified convention.
+_TRANSFORMS: Final = (
+    (
+        "A_i = Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α)",
+        """cos(theta), -sin(theta)*cos(alpha), sin(theta)*sin(alpha), a*cos(theta)
+        sin(theta), cos(theta)*cos(alpha), -cos(theta)*sin(alpha), a*sin(theta)
+        0, sin(alpha), cos(alpha), d
+        0, 0, 0, 1""",
+    ),
+    (
+        "A_i = Rot_x(α) Trans_x(a) Rot_z(θ) Trans_z(d)",
+        """cos(theta), -sin(theta), 0, a
+        sin(theta)*cos(alpha), cos(theta)*cos(alpha), -sin(alpha), -d*sin(alpha)
+        sin(theta)*sin(alpha), cos(theta)*sin(alpha), cos(alpha), d*cos(alpha)
+        0, 0, 0, 1""",
+    ),
+)
+_OF_A: Final = '<span class="maths">(<math><mi>a</mi></math>)</span>'
 
 
 def catalogue_page(
@@ -104,6 +124,11 @@ def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False)
         styles=["ten_minutes.css"],
         language=language,
         tutor=tutor,
+        transforms=[
+            # As a word of a sentence, "a" is no name.
+            Markup(f"{typeset(moves, {'d'}).replace('(a)', _OF_A)} = {matrix(entries)}")
+            for moves, entries in _TRANSFORMS
+        ],
     )
 
 

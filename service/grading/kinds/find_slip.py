@@ -108,7 +108,8 @@ def judge(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
         rows, feedback = table.rows, table.feedback
         content = _content(rows, drawn)
     else:
-        rows, feedback = (_hidden_table(answer, table, grading),), _on_reading(table)
+        hidden = _hidden_table(answer, table, grading, is_found=is_found)
+        rows, feedback = (hidden,), _on_reading(table)
         content = Content(((True,), (True,)), ((0,), (1,)), equal=True)
     return Judged(
         (marked, *rows),
@@ -135,12 +136,16 @@ def _marked_row(
     return _MarkedRow(Verdict.INCORRECT, (_NOT_THERE,))
 
 
-def _hidden_table(answer: FoundSlip, table: Judged | None, grading: Grading) -> RowReport:
+def _hidden_table(
+    answer: FoundSlip, table: Judged | None, grading: Grading, *, is_found: bool
+) -> RowReport:
     """Return a row for a table that is not right as a whole, without its cells."""
     verdict, findings = Verdict.MISSING, tuple[Finding, ...]()
     if answer.unread is not None:
         verdict, findings = Verdict.UNREADABLE, (answer.unread,)
-    elif answer.table is not None and table is not None:
+    elif answer.table is None or table is None:
+        findings = (_NOT_MENDED,) if is_found else ()
+    else:
         entries = [entry for row in answer.table.rows for entry in row.entries]
         unread = [entry for entry in entries if not entry.readable]
         findings = tuple(dict.fromkeys(each for entry in unread for each in entry.findings))
@@ -288,6 +293,11 @@ def _named(slip: str) -> Finding:
 _NOT_THERE: Final = Finding(
     "slip_elsewhere",
     say("The slip is not here, or not only here. Mark the wrong cells and no others."),
+)
+_NOT_MENDED: Final = Finding(
+    "not_mended",
+    say("The mark is right. Now write the mended table below, and check again."),
+    severity=Severity.INFO,
 )
 _WRONG_SHAPE: Final = reading_error(
     "wrong_shape",

@@ -12,7 +12,7 @@ declare namespace Front {
   // A part of an exercise: its grids of cells, and their contents.
   type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity; offers?: string[]; help?: string };
   type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity; prefill?: string[]; isGiven?: boolean };
-  type Grid = { title: string; look: "table" | "matrix" | "list"; columns: Column[]; rows: Row[]; hasNamedRows?: boolean };
+  type Grid = { title: string; look: "table" | "matrix" | "list"; columns: Column[]; rows: Row[]; hasNamedRows?: boolean; help?: string };
   type Layout = {
     grids: Grid[];
     choices: Record<string, string> | null;

@@ -30,6 +30,7 @@ def test_a_slip_is_marked_and_mended_by_keyboard(visit: Opening, service: str, a
     # Marked, but not mended: the mark is right, and the report says what is wrong.
     page.get_by_role("button", name="Check").click()
     expect(page.locator(".part .points").first).to_have_text("4 / 8 points")
+    expect(page.locator(".messages")).to_contain_text("Now write the mended table below")
     expect(page.locator(".slip-marks")).to_have_attribute("data-verdict", "correct")
     cells(page).nth(5).fill("180deg")
     page.keyboard.press("Control+Enter")
@@ -41,6 +42,22 @@ def test_a_slip_is_marked_and_mended_by_keyboard(visit: Opening, service: str, a
     page.reload()
     expect(mark).to_have_attribute("aria-pressed", "true")
     expect(cells(page).nth(5)).to_have_value("180deg")
+
+
+@pytest.mark.parametrize(
+    ("name", "marked"),
+    [("stanford", "alpha, link twist, row 2"), ("scara", "a, link length, row 1")],
+)
+def test_a_wrong_mark_has_a_hint(visit: Opening, service: str, name: str, marked: str) -> None:
+    page = visit().page
+    open_exercise(page, service, f"find-the-slip-{name}")
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator(".bar .hint")).to_have_text("First mark the cell with the slip.")
+    page.locator(".slip-mark").filter(has_text=marked).click()
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator(".messages")).to_contain_text("The slip is not here")
+    page.get_by_role("button", name="Hint", exact=True).click()
+    expect(page.locator(".hint-steps > li")).to_contain_text("the four moves in a row")
 
 
 @pytest.mark.campaign

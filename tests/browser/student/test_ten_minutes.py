@@ -148,6 +148,16 @@ def test_each_column_head_leads_to_its_screen(visit: Opening, service: str) -> N
         beside.close()
 
 
+def test_a_link_transform_leads_to_its_matrix(visit: Opening, service: str) -> None:
+    page = visit().page
+    open_exercise(page, service, "planar-rr")
+    with page.context.expect_page() as opened:
+        page.get_by_role("link", name="What is A1?").click()
+    expect(opened.value.locator("#link-transform")).to_be_in_viewport()
+    expect(opened.value.get_by_role("radio", name="Standard")).to_be_checked()
+    expect(opened.value.locator("#frames")).to_be_hidden()
+
+
 @pytest.mark.long
 def test_given_rows_are_filled_in_and_cannot_be_changed(
     visit: Opening, service: str, axe: str

@@ -54,7 +54,7 @@ def test_a_marked_and_mended_slip_has_full_marks_and_its_name(
 @pytest.mark.parametrize(
     ("marked", "rows", "points", "codes"),
     [
-        ("2.alpha", None, 4, set()),
+        ("2.alpha", None, 4, {"not_mended"}),
         ("2.alpha", GIVEN, 4, {"half_turn"}),
         ("2.alpha", [*GIVEN[:3], ["0", "0", "d3", "theta4"]], 4, None),
         (None, RIGHT, 4, set()),

@@ -360,7 +360,7 @@ export class DhExercise extends HTMLElement {
       ? worded("This assignment has no check: hand the exercise in.")
       : Object.keys(answers).length
       ? ""
-      : worded("Nothing is filled in yet.");
+      : this.form.firstStep;
     this.bar.hint(hint);
     if (hint) return this.announce(hint);
     if (this.bar.isBusy || this.hasAttribute("readonly")) return;

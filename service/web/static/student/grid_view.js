@@ -48,7 +48,12 @@ function gridElement(grid, part, owner, id, rows) {
     rows.push(view);
     body.append(view.element, view.notes);
   });
-  const caption = h("caption", { class: grid.title ? "named" : "aloud" }, ...typeset(grid.title || part.title));
+  const caption = h(
+    "caption",
+    { class: grid.title ? "named" : "aloud" },
+    ...typeset(grid.title || part.title),
+    helpOf({ ...grid, head: grid.title }),
+  );
   const look = `${grid.look}${isWide(grid) ? " wide" : ""}`;
   const table = h("table", { class: look }, caption, h("thead", { class: isMatrix ? "aloud" : null }, head), body);
   return h("div", { class: "scroll" }, table);
@@ -71,7 +76,11 @@ function headOf(column) {
   );
 }
 
-/** Return the link that explains a column; it opens beside the exercise. @param {Front.Column} column */
+/**
+ * Return the link that explains a column or a table; it opens beside the exercise.
+ *
+ * @param {{ head: string, help?: string }} explained
+ */
 function helpOf({ head, help }) {
   if (!help) return null;
   const name = worded("What is {column}?", { column: head });

@@ -129,6 +129,7 @@ const FORMS = {
     /** @type {Front.Grid[]} */
     const grids = shape.matrices.map((name) => ({
       title: name,
+      help: screenOf(shape.convention, "link-transform"),
       look: "matrix",
       columns: numbered(shape.columns),
       rows: shape.rows.map((label, i) => ({
@@ -214,9 +215,13 @@ function parameters(shape) {
     index: label === "a" || label === "alpha" ? before : "i",
     spoken: SPOKEN[label],
     quantity: QUANTITIES[label],
-    help: `learn-dh?convention=${shape.convention === "modified" ? "modified" : "standard"}#${label}`,
+    help: screenOf(shape.convention, label),
   }));
 }
+
+/** Return the address of a place in *DH in ten minutes*. @param {string} convention @param {string} place */
+const screenOf = (convention, place) =>
+  `learn-dh?convention=${convention === "modified" ? "modified" : "standard"}#${place}`;
 
 /** @param {string} label @param {string} spoken @param {string} [head] @returns {Front.Row} */
 const row = (label, spoken, head = label) => ({ label, spoken, head });

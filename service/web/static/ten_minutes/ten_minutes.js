@@ -161,15 +161,17 @@ function choose(convention) {
   mark();
 }
 
-/** Show the screen that the address names. @param {boolean} isMove */
+/** Show the screen of the place that the address names. @param {boolean} isMove */
 function follow(isMove) {
-  const current = screens.find(({ id }) => id === location.hash.slice(1)) ?? screens[0];
+  const place = document.getElementById(location.hash.slice(1));
+  const current = screens.find((each) => each.contains(place)) ?? screens[0];
   for (const picture of pictures.values()) picture.stop();
   for (const screen of screens) screen.hidden = screen !== current;
   for (const [id, link] of links) {
     if (id === current.id) link.setAttribute("aria-current", "step");
     else link.removeAttribute("aria-current");
   }
+  if (place && place !== current) return place.scrollIntoView({ block: "center" });
   if (!isMove) return;
   current.querySelector("h2")?.focus({ preventScroll: true });
   tour.scrollIntoView({ block: "start" });

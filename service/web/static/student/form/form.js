@@ -54,6 +54,13 @@ export class Form {
     cell.input.focus();
   }
 
+  /** What to read out if there is no answer to check. */
+  get firstStep() {
+    return this.parts.every(({ marks }) => marks)
+      ? worded("First mark the cell with the slip.")
+      : worded("Nothing is filled in yet.");
+  }
+
   /**
    * Lead to the first slip of the parts, wrong before missing. Return what to read out about it.
    *

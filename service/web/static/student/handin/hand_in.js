@@ -149,8 +149,8 @@ export class HandIn {
     const { bar, answers } = this.host;
     if (this.#isSending || bar.isBusy || this.host.hasAttribute("readonly")) return;
     if (!Object.keys(answers).length) {
-      bar.hint(worded("Nothing is filled in yet."));
-      return this.host.announce(worded("Nothing is filled in yet."));
+      bar.hint(this.host.form.firstStep);
+      return this.host.announce(this.host.form.firstStep);
     }
     bar.isBusy = true;
     await this.refresh();
