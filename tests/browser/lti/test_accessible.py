@@ -28,10 +28,16 @@ def without_exercises(claims: dict[str, Any]) -> None:
 
 
 def framed(page: Page, text: str) -> Frame:
-    """Return the frame of the service as soon as it has a text."""
-    expect(page.frame_locator("iframe").get_by_text(text).first).to_be_visible()
-    [found] = [each for each in page.frames if each.name == "tool"]
-    return found
+    """Return the frame of the service as soon as it has a text.
+
+    The frame moves to another process while it opens. A locator that began in the old one may wait
+    for ever, so the frames are looked at again and again.
+    """
+    while True:
+        for each in page.frames:
+            if each.name == "tool" and each.get_by_text(text).first.is_visible():
+                return each
+        page.wait_for_timeout(100)
 
 
 @pytest.mark.long
