@@ -126,7 +126,7 @@ def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False)
         tutor=tutor,
         transforms=[
             # As a word of a sentence, "a" is no name.
-            Markup(f"{typeset(moves, {'d'}).replace('(a)', _OF_A)} = {matrix(entries)}")
+            own_html(f"{typeset(moves, {'d'}).replace('(a)', _OF_A)} = {matrix(entries)}")
             for moves, entries in _TRANSFORMS
         ],
     )

@@ -92,9 +92,17 @@ READBACK: Final = "GPU stall due to ReadPixels"
 
 
 def complaint(line: ConsoleMessage) -> list[str]:
-    """Return the message of the console, if it is a complaint."""
-    is_complaint = line.type in ("error", "warning") and READBACK not in line.text
-    return [line.text] if is_complaint else []
+    """Return the message of the console, if it is a complaint.
+
+    A browser looks for an icon at the top of a site if a page, such as a JSON document, names none.
+    """
+    is_known = READBACK in line.text or line.location["url"].endswith("/favicon.ico")
+    return [f"{line.text} {line.location['url']}"] if is_serious(line) and not is_known else []
+
+
+def is_serious(line: ConsoleMessage) -> bool:
+    """True for an error or a warning."""
+    return line.type in ("error", "warning")
 
 
 def failure(request: Request) -> list[str]:

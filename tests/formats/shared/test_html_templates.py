@@ -23,6 +23,7 @@ TRUSTED = {
     "formats/shared/html_templates.py _filled": "texts of templates and of their catalogues",
     "formats/shared/html_templates.py formula": "formulas in MathML: formulas.formula()",
     "web/pages.py _markdown": "statements and prompts: statement_html()",
+    "web/pages.py ten_minutes_page": "the matrix of a row: typeset() and matrix()",
     "web/tutor/tutor_pages.py _formula": "MathML of model solutions: formula_html()",
 }
 
