@@ -1,4 +1,4 @@
-"""The seed of a learner. It follows from a secret, so that nobody can compute or choose it.
+"""The seed of a learner. It is derived from a secret. Clients can neither compute nor choose it.
 
 If seeds are deployed, it is the deployed seed with the largest keyed hash. So one more deployed
 seed changes the variants of only a few learners.

@@ -59,7 +59,8 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
     table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
     if not table.rows:
         return None
-    # With a free tool, a table without the last row may be right: then its row e costs a unit.
+    # With a free tool, a table may be right without row e. There, an empty row e costs as much as a
+    # wrong one.
     if part.tool == "given" and table.rows[-1].is_missing:
         robot = grading.exercise.robot
         table = without_empty_end(table, len(robot.joints), len(part.asked_table(robot).rows))
