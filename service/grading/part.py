@@ -138,8 +138,8 @@ class Content:
     cells. ``groups`` has the number of each cell's group; a group cannot lose more than it is
     worth. With ``besides``, each group has a small worth besides its content cells. With ``equal``,
     all groups are worth the same. ``most`` is the largest number of cells that count, because a
-    student's own choices may add content cells. With ``empty_is_wrong``, an empty cell costs as
-    much as a wrong one, so that leaving a cell empty gains nothing. ``usual`` are the numbers of
+    student's own choices may add content cells. ``bottom`` are the rows that are the same in every
+    right answer, the last ones of homogeneous matrices. ``usual`` are the numbers of
     rows and content cells of the reference, if those of an answer may differ. ``given`` marks the
     rows that the exercise gives, which earn nothing; empty if there are none.
     """
@@ -149,7 +149,7 @@ class Content:
     besides: bool = False
     equal: bool = False
     most: int | None = None
-    empty_is_wrong: bool = False
+    bottom: tuple[int, ...] = ()
     usual: tuple[int, int] | None = None
     given: tuple[bool, ...] = ()
 

@@ -37,15 +37,12 @@ def of_rows(
     known: KnownCells,
     *,
     most: int | None = None,
-    empty_is_wrong: bool = False,
     usual: tuple[int, int] | None = None,
 ) -> Content:
     """Return the content of rows ``(rows, cells)`` that each have a worth: tables and screws."""
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
-    return Content(
-        rows, groups, besides=True, most=most, empty_is_wrong=empty_is_wrong, usual=usual
-    )
+    return Content(rows, groups, besides=True, most=most, usual=usual)
 
 
 def of_one_row(known: KnownCells) -> Content:
@@ -90,7 +87,8 @@ def _of_rigid(right: Numbers, length_scale: float) -> Content:
     known = _differs_from_identity(right, length_scale)
     halves = known[:, :3].any() and known[:, 3:].any()
     groups = tuple(int(halves and column == 3) for column in range(known.shape[1]))
-    return Content(_rows(_all_if_none(known)), (groups,) * len(known), equal=True)
+    bottom = (3,) if len(known) == 4 else ()
+    return Content(_rows(_all_if_none(known)), (groups,) * len(known), equal=True, bottom=bottom)
 
 
 def of_matrix(right: Numbers, scale: Numbers) -> Content:
@@ -114,7 +112,10 @@ def of_links(
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)
     groups = tuple((i // 4,) * 4 for i in range(4 * len(right)))
-    return Content(_rows(known.reshape(-1, 4)), groups, besides=True, most=_count(most))
+    bottom = tuple(range(3, 4 * len(right), 4))
+    return Content(
+        _rows(known.reshape(-1, 4)), groups, besides=True, most=_count(most), bottom=bottom
+    )
 
 
 def _differs_from_motion(

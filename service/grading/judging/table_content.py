@@ -46,7 +46,7 @@ def table_content(
     of_robot = exercise.robot.convention
     same = task if convention is of_robot else replace(task, convention=of_robot)
     usual = _of_reference(same).usual
-    return of_rows(known, most=most, empty_is_wrong=True, usual=usual)
+    return of_rows(known, most=most, usual=usual)
 
 
 def _differs_from_lazy(
@@ -81,7 +81,7 @@ def _of_reference(task: _Task) -> Content:
     usual: tuple[int, int] | None = (sum(content.earning), content.count)
     if task.convention != task.exercise.robot.convention:
         usual = _of_reference(replace(task, convention=task.exercise.robot.convention)).usual
-    return replace(content, empty_is_wrong=True, usual=usual)
+    return replace(content, usual=usual)
 
 
 def _without_given(content: Content, part: DhTableSpec) -> Content:

@@ -192,7 +192,7 @@ def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
         wrong = [[True] * len(row.cells) for row in rows]
     known = ((True,), *(tuple(row) for row in wrong))
     groups = ((0,), *((1,) * len(row.cells) for row in rows))
-    return Content(known, groups, equal=True, empty_is_wrong=True)
+    return Content(known, groups, equal=True)
 
 
 # --- the given table

@@ -108,7 +108,7 @@ class _Asked:
 @lru_cache(maxsize=256)
 def _content(asked: _Asked) -> Content:
     """Return the content of the frames. An empty cell costs as much as a wrong one."""
-    return of_rows(known_frames(asked.robot, asked.home), empty_is_wrong=True)
+    return of_rows(known_frames(asked.robot, asked.home))
 
 
 def _without_messages(

@@ -188,9 +188,9 @@ def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
     """Return the cost of the cells of each row that are not right.
 
-    A group of cells cannot lose more than it is worth. An unread content cell costs a unit; all
-    other unread cells of a row cost a fifth together. An empty cell of a table costs as much as a
-    wrong one.
+    A group of cells cannot lose more than it is worth. A content cell costs a unit, and so does
+    another one that is wrong or empty. What needs no knowledge and could not be read costs a fifth
+    in each row; so do the cells of the bottom row of a homogeneous matrix.
     """
     if marking == "rows":
         pairs = zip(worth.rows, verdicts, strict=True)
@@ -201,20 +201,17 @@ def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[in
         if _is_right(row):
             continue
         cells = zip(content.known[i], content.groups[i], worth.cells[i], row, strict=True)
-        unread = set()
+        cheap = set()
         for known, group, steps, verdict in cells:
             if verdict is Verdict.CORRECT:
                 continue
-            is_wrong = verdict is Verdict.INCORRECT or (
-                content.empty_is_wrong and verdict is Verdict.MISSING
-            )
             charged = found.setdefault(group, {})
-            if known or is_wrong:
+            if known or (verdict is not Verdict.UNREADABLE and i not in content.bottom):
                 cost = steps if known and not worth.is_fixed else worth.units[group]
                 charged[i] = charged.get(i, 0) + cost
             else:
-                unread.add(group)
-        for group in unread:
+                cheap.add(group)
+        for group in cheap:
             found[group][i] = found[group].get(i, 0) + worth.fifth(group)
     charges = [0] * len(verdicts)
     for group, rows in found.items():

@@ -61,11 +61,12 @@ def test_a_bad_entry_affects_only_itself(
     place = (str(i + 1), str(j + 1))
     assert not_correct(report) == {place: verdict}
     # Four entries of the rotation and two of the position differ from the identity; each half is
-    # worth 4 points. A wrong entry costs a unit; an unread one costs a unit only if it is a content
-    # cell, else a fifth: 0.2 and 0.4 points, in quarters.
+    # worth 4 points. A wrong or empty entry costs a unit. In the bottom row, it costs a fifth: 0.2
+    # and 0.4 points, in quarters; so does an unread entry that is no content cell.
     known = POSE[i][j] not in ("0", "1")
     unit, fifth = (2.0, 0.5) if j == 3 else (1.0, 0.25)
-    cost = unit if known or verdict is Verdict.INCORRECT else fifth
+    is_cheap = i == 3 or (verdict is Verdict.UNREADABLE and not known)
+    cost = fifth if is_cheap else unit
     assert report.points == report.max_points - cost
     assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
     if i == 3 and verdict is Verdict.INCORRECT and code != "undefined":
