@@ -9,7 +9,12 @@ from typing import Final
 from service.expressions.errors import Note, UnreadableError, shortened
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.built import build_function
-from service.expressions.parsing.lexing.literal_notes import on_call, on_shorthand, on_sum
+from service.expressions.parsing.lexing.literal_notes import (
+    on_call,
+    on_product,
+    on_shorthand,
+    on_sum,
+)
 from service.expressions.parsing.lexing.tokens import Token
 from service.expressions.tree import (
     Binary,
@@ -70,6 +75,8 @@ class Builder:
 
     def multiply(self, left: Node, right: Node) -> Node:
         """Build left * right."""
+        if type(left) is Number and type(right) is Number:
+            self._add_note(on_product(self.source, left, right))
         return Binary("*", left, right, left.start, right.end)
 
     def divide(self, left: Node, right: Node) -> Node:

@@ -1,6 +1,7 @@
 """Notes on formulas that are read literally although the student may mean something else.
 
-``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine plus 2.
+``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine plus 2, and
+``0·5`` is 0.
 """
 
 import math
@@ -18,6 +19,7 @@ from service.translations import say
 _WHOLE_TURN: Final = 2 * math.pi
 _SHORTHAND: Final = re.compile(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
 _DIGIT: Final = re.compile(r"[1-9]")
+_DOTS: Final = ("·", "⋅", "∙", "•")
 
 
 def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
@@ -61,6 +63,18 @@ def on_shorthand(
             digit=digit,
         )
     return Note("shorthand", message, (last.start, right.end))
+
+
+def on_product(source: str, left: Number, right: Number) -> Note | None:
+    """Return the note on 0·5 and 2⋅5, whose dot may be a decimal point, or None."""
+    if source[left.end : right.start] not in _DOTS or "." in left.literal + right.literal:
+        return None
+    message = say(
+        "{written} was read as a product. In a decimal number, write a full stop: {number}.",
+        written=source[left.start : right.end],
+        number=f"{left.literal}.{right.literal}",
+    )
+    return Note("raised_dot", message, (left.start, right.end))
 
 
 def on_call(
