@@ -63,8 +63,12 @@ COLUMNS_SWAPPED = register(
     code="columns_swapped",
     rule="product",
     means="a and d are exchanged, throughout or in one row",
-    example=("planar-rr", "position", "[0, 0]"),
-    unlike={"2/1": "0"},
+    example=(
+        "planar-rr",
+        "pose",
+        "[c12, -s12, 0, 0; s12, c12, 0, 0; 0, 0, 1, a1 + a2; 0, 0, 0, 1]",
+    ),
+    unlike={"3/4": "a1"},
 )
 PARAMETER_SIGN = register(
     of=Slip,

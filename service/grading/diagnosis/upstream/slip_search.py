@@ -74,9 +74,10 @@ class SlipSearch:
 
     def explaining(self, entries: Mask) -> list[Slip]:
         """Return the slips that explain all readable ``entries``, likeliest first."""
-        if not self.answers.slips:
-            return []
         read = entries & np.isfinite(self.actual).all(axis=-1)
+        # Nobody has calculated an answer of zeros from a table.
+        if not self.answers.slips or not self.actual[np.isfinite(self.actual)].any():
+            return []
         fits, changes = self._at_two_samples
         found = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))
         slips = [self.answers.slips[k] for k in found]
