@@ -23,6 +23,8 @@ _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
 # A line of one or two words, which may be short: "DH", "% DH", "End".
 _FEW_WORDS: Final = re.compile(r"[%#*\s]*(?!pi\b)[^\W\d_]{2,}(?: [^\W\d_]+)?\s?[.!:]?")
+# Signs of a row with several values.
+_SEVERAL: Final = re.compile(r"[\s,;\[\]]")
 # Signs of a formula, a row or a program.
 _SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
 # A legend of the stars that mark joint variables.
@@ -100,7 +102,18 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
                 return lambda line: line.count(",") > 1
             if len(rows) > 1 and min(rows) > 1:
                 return lambda line: any(map(line.__contains__, separator))
-    return lambda line: not _TITLE.match(line) or "(" in line or bool(_CONTROL.match(line))
+    heading = lines[0].text if len(lines) > 1 and _has_heading(lines) else None
+    return lambda line: (
+        line != heading and (not _TITLE.match(line) or "(" in line or bool(_CONTROL.match(line)))
+    )
+
+
+def _has_heading(lines: list[SourceText]) -> bool:
+    """True if the first line is a word above rows of several values, or two above brackets."""
+    first, *others = (line.text.strip() for line in lines)
+    if not _is_few_words(first) or not _WORD.search(first):
+        return False
+    return "[" in others[0] or (" " not in first and all(map(_SEVERAL.search, others)))
 
 
 def _is_padded(line: str) -> bool:
@@ -110,11 +123,15 @@ def _is_padded(line: str) -> bool:
 
 def _is_prose(line: str) -> bool:
     """True if a line has words, and no signs of a formula or of headers."""
-    if _FEW_WORDS.fullmatch(line) and not _PARAMETER.search(line.lower()):
+    if _is_few_words(line):
         return True
     if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:
         return False
     return _WORD.search(line) is not None and not _SIGNS.search(_LEGEND.sub("", line))
+
+
+def _is_few_words(line: str) -> bool:
+    return bool(_FEW_WORDS.fullmatch(line)) and not _PARAMETER.search(line.lower())
 
 
 def _check_units(line: SourceText) -> None:

@@ -42,6 +42,18 @@ def test_sentences_around_a_table_with_commas_are_no_rows(text: str) -> None:
     assert [note.code for note in read_grid(text).notes] == ["text_left_aside"]
 
 
+@pytest.mark.parametrize("heading", ["Pose", "Lösung:", "**Pose:**"])
+@pytest.mark.parametrize("matrix", ["[c1, -s1; s1, c1]", "[c1 -s1\n s1 c1]", "c1 -s1\ns1 c1"])
+def test_a_heading_above_a_matrix_is_no_row(heading: str, matrix: str) -> None:
+    assert cells(f"{heading}\n{matrix}") == cells(matrix)
+
+
+def test_two_words_are_a_heading_only_above_brackets() -> None:
+    assert cells("My answer\n[c1, -s1; s1, c1]") == cells("[c1, -s1; s1, c1]")
+    assert cells("gamma, delta\n1, 2") == [["gamma", "delta"], ["1", "2"]]
+    assert cells("gamma delta\n1 2\n3 4") == [["gamma", "delta"], ["1", "2"], ["3", "4"]]
+
+
 @pytest.mark.parametrize("row", ["pi", "theta", "l2", "0"])
 def test_a_short_line_above_commas_that_may_be_a_cell_stays(row: str) -> None:
     assert len(cells(f"{row}\n{COMMAS}")) == len(cells(COMMAS)) + 1
