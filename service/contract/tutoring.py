@@ -74,8 +74,19 @@ class RegradeRequest(BaseModel):
     )
 
 
+class CountedChange(BaseModel):
+    """The points of an attempt in its assignment, as the gradebook has them."""
+
+    before: float = Field(description="The old points.")
+    after: float = Field(description="The new points.")
+    max_points: float = Field(description="The points of the exercise in the assignment.")
+    awarded: float | None = Field(
+        None, description="The points that a tutor gave instead, if any: they stay and count."
+    )
+
+
 class AttemptChange(BaseModel):
-    """An attempt whose points or results change."""
+    """An attempt whose points or results change. Its points are those of the exercise file."""
 
     id: str
     learner: str
@@ -89,6 +100,9 @@ class AttemptChange(BaseModel):
     reasons: list[str] = Field(
         description="The parts whose results change. Empty if only the points for a late attempt "
         "change."
+    )
+    counted: CountedChange | None = Field(
+        None, description="The same points in the assignment, if one sets the exercise."
     )
 
 

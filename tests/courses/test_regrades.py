@@ -62,6 +62,12 @@ def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
     assert (told["applied"], told["regraded"], told["left"]) == (False, 1, 0)
     [change] = told["changes"]
     assert change["before"] == 1.0 < change["after"]
+    # scara has 24 points, and 10 in the assignment.
+    counted = change["counted"]
+    assert change["max_points"] == 24.0
+    assert counted["max_points"] == 10.0
+    assert counted["before"] == pytest.approx(10 / 24, abs=1e-6)
+    assert counted["after"] == pytest.approx(change["after"] * 10 / 24, abs=1e-6)
     assert versions(both) == {"robots": True, "others": True}
     for refused in ("others", "no-such"):
         answer = both.ask("POST", f"{PATH}?course={refused}", "tutor", apply=True)
@@ -92,6 +98,10 @@ def test_the_command_regrades_one_course(class_: Class, monkeypatch: pytest.Monk
     monkeypatch.setenv("DH_GRADER_DATABASE", str(both.store.engine.url.database))
     run = partial(CliRunner().invoke, program)
     words = ["attempts", "regrade", "scara", "--course", "others"]
-    assert "1 attempt was graded by another version" in run(words).output
+    told = run(words).output
+    assert "1 attempt was graded by another version" in told
+    # Points of the assignment, not of the exercise.
+    assert "0.42 → " in told
+    assert " of 10 (" in told
     assert "Regraded: 1." in run([*words, "--apply"]).output
     assert versions(both) == {"robots": True, "others": False}

@@ -52,11 +52,21 @@ _BATCH_SECONDS: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
+class CountedPoints:
+    """The points of an attempt in its assignment, as the gradebook has them."""
+
+    before: float
+    after: float
+    max_points: float
+    awarded: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class RegradedAttempt:
-    """The points of an attempt before and after a regrade.
+    """The points of an attempt before and after a regrade, as the exercise file gives them.
 
     ``reasons`` names the parts whose result has changed. Points that a tutor has ``awarded`` stay
-    and count.
+    and count. ``counted`` has the points in the assignment, if one sets the exercise.
     """
 
     id: str
@@ -67,11 +77,14 @@ class RegradedAttempt:
     max_points: float
     awarded: float | None
     reasons: tuple[str, ...]
+    counted: CountedPoints | None
 
     @property
     def is_changed(self) -> bool:
         """True if the points or the result of a part have changed."""
-        return self.before != self.after or bool(self.reasons)
+        counted = self.counted
+        counts_otherwise = counted is not None and counted.before != counted.after
+        return self.before != self.after or bool(self.reasons) or counts_otherwise
 
 
 class Regrading:
@@ -206,7 +219,8 @@ class Regrading:
         return exercise is not None and (row.version, row.grader) != (exercise.version, VERSION)
 
     def _rows(self, connection: Connection, numbers: Sequence[int]) -> Sequence[Row[Any]]:
-        chosen = select(attempts, assignments.c.choices).join(assignments, isouter=True)
+        of_assignment = (assignments.c.choices, assignments.c.exercises)
+        chosen = select(attempts, *of_assignment).join(assignments, isouter=True)
         chosen = chosen.where(attempts.c.number.in_(numbers))
         return connection.execute(chosen.order_by(attempts.c.number)).all()
 
@@ -237,6 +251,7 @@ class Regrading:
             report.max_points,
             row.awarded,
             reasons,
+            _counted(row, after, report.max_points),
         )
         return change, report
 
@@ -305,6 +320,22 @@ def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
     except NoVariantError:
         return None
     return variant if values_of(variant.version) == values_of(row.version) else None
+
+
+def _counted(row: Row[Any], after: float, max_points: float) -> CountedPoints | None:
+    """Return the points in the assignment; None if no assignment sets the exercise."""
+    chosen = json.loads(row.exercises or "[]")
+    assigned = next((it["points"] for it in chosen if it["exercise"] == row.exercise), None)
+    if assigned is None:
+        return None
+
+    def scaled(points: float, most: float) -> float:
+        return round(points / most * assigned, 6) if most else 0.0
+
+    awarded = None if row.awarded is None else scaled(row.awarded, max_points)
+    return CountedPoints(
+        scaled(row.points, row.max_points), scaled(after, max_points), assigned, awarded
+    )
 
 
 def _results(report: Mapping[str, Any]) -> PartResults:

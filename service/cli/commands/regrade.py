@@ -35,10 +35,13 @@ def show_what_would_change(engine: Engine, exercise: Exercise, course: str | Non
                         changes.append(each)
     screen = stdout()
     for each in changes[:_MOST_SHOWN]:
-        points = f"{number(each.before)} → {number(each.after)} of {number(each.max_points)}"
+        counted = each.counted or each
+        points = (
+            f"{number(counted.before)} → {number(counted.after)} of {number(counted.max_points)}"
+        )
         why = "; ".join(each.reasons) or "what a late attempt earns"
-        if each.awarded is not None:
-            why += f"; a tutor's {number(each.awarded)} stays"
+        if counted.awarded is not None:
+            why += f"; a tutor's {number(counted.awarded)} stays"
         screen.print(f"{visible(each.learner)}, attempt {each.ordinal or '-'}: {points} ({why})")
     if len(changes) > _MOST_SHOWN:
         screen.print(f"… and {len(changes) - _MOST_SHOWN} more")

@@ -39,6 +39,7 @@ declare namespace Api {
     max_points: number;
     awarded?: number;
     reasons: string[];
+    counted?: CountedChange;
   };
   type AttemptDetail = {
     attempt: AttemptSummary;
@@ -80,6 +81,7 @@ declare namespace Api {
   type Convention = "standard" | "modified";
   type ConvertedRow = { label: string; cells: PrintedFormula[]; };
   type Correction = { text: string; latex?: string; };
+  type CountedChange = { before: number; after: number; max_points: number; awarded?: number; };
   type Course = { id: string; title: string; zone: string; learners: number; assignments: string[]; };
   type CourseAssignment = {
     id: string;

@@ -102,32 +102,36 @@ export function regradeForm(exercise, done) {
   /** @param {Api.AttemptChange[]} changed */
   function list(changed) {
     const rows = changed.slice(0, MOST_SHOWN).map((
-      { id, learner, ordinal, before, after, max_points: most, awarded, reasons },
-    ) => [
-      h(
-        "a",
-        { href: address(`tutor/attempts/${encodeURIComponent(id)}`) },
-        learnerName(learner),
+      { id, learner, ordinal, reasons, counted, ...ofExercise },
+    ) => {
+      // The gradebook has the points of the assignment.
+      const { before, after, max_points: most, awarded } = counted ?? ofExercise;
+      return [
+        h(
+          "a",
+          { href: address(`tutor/attempts/${encodeURIComponent(id)}`) },
+          learnerName(learner),
+          h(
+            "span",
+            { class: "aloud" },
+            ", ",
+            ordinal === undefined
+              ? worded("an attempt that does not count")
+              : worded("attempt {number}", { number: ordinal }),
+          ),
+        ),
+        String(ordinal ?? "–"),
+        `${points(before, most).split(" / ")[0]} → ${points(after, most)}`,
         h(
           "span",
-          { class: "aloud" },
-          ", ",
-          ordinal === undefined
-            ? worded("an attempt that does not count")
-            : worded("attempt {number}", { number: ordinal }),
+          {},
+          ...message(reasons.join("; ") || worded("the rule for late attempts")),
+          ...(awarded === undefined
+            ? []
+            : ["; ", worded("the overridden mark {points} stays", { points: number(awarded) })]),
         ),
-      ),
-      String(ordinal ?? "–"),
-      `${points(before, most).split(" / ")[0]} → ${points(after, most)}`,
-      h(
-        "span",
-        {},
-        ...message(reasons.join("; ") || worded("the rule for late attempts")),
-        ...(awarded === undefined
-          ? []
-          : ["; ", worded("the overridden mark {points} stays", { points: number(awarded) })]),
-      ),
-    ]);
+      ];
+    });
     const more = changed.length - rows.length;
     const all = table(
       worded("Changes"),
