@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from service.authoring.answers import duplicate_parts, failed_checks, missing_checks, model_answer
 from service.authoring.freedom import lost_freedom
 from service.authoring.lazy import lazy_answers
-from service.authoring.remarks import Remark
+from service.authoring.remarks import Level, Remark
 from service.authoring.slips import unfit_slips
 from service.authoring.symbols import ambiguous_symbols, badly_scaled, bare_degrees, unused_symbols
 from service.catalogue import Exercise
@@ -29,3 +29,12 @@ EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
 def examine(exercise: Exercise) -> list[Remark]:
     """Return all remarks on an exercise: failures and warnings."""
     return [remark for examination in EXAMINATIONS for remark in examination(exercise)]
+
+
+def failures(exercise: Exercise) -> list[str]:
+    """Return what is wrong with an exercise, in sentences; warnings are left out."""
+    return [
+        f"{remark.field}: {remark.text}" if remark.field else remark.text
+        for remark in examine(exercise)
+        if remark.level is Level.FAILED
+    ]

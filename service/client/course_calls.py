@@ -195,10 +195,11 @@ def regrade(
     *,
     course: str | None = None,
     apply: bool = False,
+    force: bool = False,
     cursor: str | None = None,
 ) -> HttpCall[RegradeAnswer]:
     """Regrade some attempts at an exercise, or in one course; repeat it with ``next`` as cursor."""
-    body = RegradeRequest(apply=apply, cursor=cursor)
+    body = RegradeRequest(apply=apply, force=force, cursor=cursor)
     path = f"v1/exercises/{quote(exercise, safe='')}/regrade{_query(course=course)}"
     return _sending(path, body, RegradeAnswer)
 

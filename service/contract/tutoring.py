@@ -69,6 +69,9 @@ class RegradeRequest(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     apply: _Apply = False
+    force: StrictBool = Field(
+        False, description="Apply the change although the exercise fails its check."
+    )
     cursor: Annotated[str, Field(max_length=60)] | None = Field(
         None, description="The `next` of the previous step; omit it in the first step."
     )
@@ -113,6 +116,11 @@ class RegradeAnswer(BaseModel):
     regraded: int = Field(description="The number of attempts in this step.")
     left: int = Field(description="The number of attempts left after this step.")
     changes: list[AttemptChange] = Field(description="The attempts of this step that change.")
+    failures: list[str] | None = Field(
+        None,
+        description="Why the exercise fails `dh-grader exercises check`; in the first step, if it "
+        "does.",
+    )
     next: str | None = Field(
         None, description="The `cursor` of the next step; absent after the last step."
     )

@@ -15,7 +15,7 @@ from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
 from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.http.problems import invalid
+from service.api.http.problems import ProblemError, invalid
 from service.api.permissions.access import Access
 from service.api.recording.listing import (
     AssignmentFilter,
@@ -43,6 +43,7 @@ from service.contract.tutoring import (
     RegradeAnswer,
     RegradeRequest,
 )
+from service.translations import say
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from service.attempts.regrades.outdated import Regrading
@@ -174,7 +175,7 @@ def routes(
         operation_id="regradeAttempts",
         summary="Regrade some attempts at a corrected exercise",
         response_description="The results of this step, and the cursor of the next one.",
-        **posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED),
+        **posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED, HTTPStatus.CONFLICT),
     )
     async def regrade_attempts(
         request: Request, exercise_id: ExerciseId, course: CourseFilter = None
@@ -188,7 +189,8 @@ def routes(
         results would change and why. With `apply` the new reports are written, and the old
         ones are kept. All variants of the exercise are regraded, each by its own answer; an
         attempt at a variant that has other values now stays. An interrupted regrade continues
-        with a request without a cursor.
+        with a request without a cursor. If the exercise fails its check, the first answer has
+        `failures`, and `apply` needs `force`.
         """
         exercise = exercise_or_404(catalogue, exercise_id.partition("~")[0])
         course = course_of(access.caller(request), course)
@@ -206,6 +208,8 @@ class _Regrades:
         self._work = BoundedWork()
         # The regrade of the last step, which has memoized the reports on equal answers.
         self._last: tuple[Exercise, str | None, Regrading] | None = None
+        # The exercise that was checked last.
+        self._checked: tuple[Exercise, list[str]] | None = None
 
     async def step(
         self, store: "AttemptStore", exercise: Exercise, course: str | None, body: RegradeRequest
@@ -219,6 +223,17 @@ class _Regrades:
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 
+        failures = self._failures(exercise) if body.cursor is None else []
+        if failures and body.apply and not body.force:
+            raise ProblemError(
+                HTTPStatus.CONFLICT,
+                say(
+                    "The exercise fails its check: {failures} Correct its file first.",
+                    failures=" ".join(failures),
+                ),
+                "exercise-fails",
+                say("The exercise fails its check"),
+            )
         step = apply_step if body.apply else preview_step
         try:
             done = step(store.engine, self._of(exercise, course), body.cursor)
@@ -234,8 +249,17 @@ class _Regrades:
             regraded=len(done.regraded),
             left=done.left,
             changes=[AttemptChange.model_validate(each, from_attributes=True) for each in changed],
+            failures=failures or None,
             next=done.following,
         )
+
+    def _failures(self, exercise: Exercise) -> list[str]:
+        """Return why the exercise fails its check."""
+        from service.authoring import failures
+
+        if self._checked is None or self._checked[0] is not exercise:
+            self._checked = (exercise, failures(exercise))
+        return self._checked[1]
 
     def _of(self, exercise: Exercise, course: str | None) -> "Regrading":
         from service.attempts.regrades.outdated import Regrading

@@ -31,7 +31,7 @@ from service.attempts.tutoring import (
     override,
 )
 from service.cli.files.output import write
-from service.cli.terminal import give_up, installed, installed_exercise, stdout
+from service.cli.terminal import complain, give_up, installed, installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible, whole_percent
 from service.settings import load_settings
 
@@ -199,13 +199,24 @@ def regrade(
     course: Annotated[
         str | None, typer.Option(help="Only attempts in this course.", callback=encodable)
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Save although the exercise fails its check.")
+    ] = False,
 ) -> None:
     """Regrade the attempts at a corrected exercise."""
     # Import here: no other command of this group grades.
+    from service.authoring import failures
     from service.cli.commands.regrade import regrade_all, show_what_would_change
 
     corrected = installed_exercise(exercise)
     with database() as engine:
+        if wrong := failures(corrected):
+            complain("\n  ".join([f"{exercise} fails its check:", *wrong]))
+        if wrong and apply and not force:
+            give_up(
+                "Nothing is regraded. Correct the file of the exercise, or add --force to regrade "
+                "with it as it is."
+            )
         if not apply:
             show_what_would_change(engine, corrected, course)
             return

@@ -217,6 +217,28 @@ def test_a_regrade_goes_step_by_step(
         assert tutor.ask("POST", path, {"cursor": cursor}).status_code == 422
 
 
+@pytest.mark.long
+def test_an_exercise_that_fails_its_check_regrades_only_if_forced(
+    store: AttemptStore, catalogue: Mapping[str, Exercise], tmp_path: Path
+) -> None:
+    recorded(store, catalogue["scara"], "ada", NO_TWIST)
+    text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+    # Its checks still say what was right before.
+    wrong = text.replace('["a2", "180deg",', '["a2", "0",')
+    (tmp_path / "scara.toml").write_text(wrong, encoding="utf-8")
+    tutor = Tutor(load_catalogue(tmp_path), store)
+    path = "/v1/exercises/scara/regrade"
+    preview = tutor.post(path)
+    assert preview["regraded"] == 1
+    assert preview["failures"]
+    refused = tutor.ask("POST", path, {"apply": True})
+    assert refused.status_code == 409
+    assert refused.json()["type"].endswith(":exercise-fails")
+    assert preview["failures"][0] in refused.json()["detail"]
+    done = tutor.post(path, apply=True, force=True)
+    assert (done["applied"], done["regraded"]) == (True, 1)
+
+
 def test_only_callers_with_the_right_change_attempts(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -159,6 +159,7 @@ def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Install the exercise with another marking rule, where the last attempt counts."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
+    text = text.partition("[[checks]]")[0]  # they give the points of the other rule
     folder = tmp_path / "exercises"
     folder.mkdir()
     (folder / "scara.toml").write_text(text + '\n[attempts]\ncounts = "last"\n', encoding="utf-8")
@@ -186,6 +187,26 @@ def test_a_regrade_is_previewed_before_it_is_applied(run: Run, course: list[str]
     ]
     assert [each["counts"] for each in lines] == [False, True, True]
     assert run("attempts", "regrade", "scara", "--apply", "--jobs", "2").exit_code == 2
+
+
+@pytest.mark.long
+def test_an_exercise_that_fails_its_check_is_regraded_only_with_force(
+    run: Run, course: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+    folder = tmp_path / "exercises"
+    folder.mkdir()
+    # Its checks still say what was right before.
+    wrong = text.replace('["a2", "180deg",', '["a2", "0",')
+    (folder / "scara.toml").write_text(wrong, encoding="utf-8")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(folder))
+    preview = run("attempts", "regrade", "scara")
+    assert "scara fails its check:" in preview.output
+    assert preview.exit_code == 0
+    refused = run("attempts", "regrade", "scara", "--apply")
+    assert refused.exit_code == 2
+    assert "--force" in refused.output
+    assert "Regraded: 3." in run("attempts", "regrade", "scara", "--apply", "--force").output
 
 
 def test_an_override_requires_a_reason(run: Run, course: list[str]) -> None:

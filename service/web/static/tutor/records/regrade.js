@@ -20,6 +20,16 @@ export function regradeForm(exercise, done) {
   const state = h("p", { class: "state-line", role: "status" });
   const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": worded("Attempts regraded") });
   const changes = h("div", {});
+  const force = h("input", { type: "checkbox" });
+  force.addEventListener("change", () => (write.disabled = !force.checked));
+  const failing = h("ul", {});
+  const warning = h(
+    "div",
+    { class: "notice", hidden: true },
+    h("p", {}, worded("The exercise fails its check. Correct its file before you regrade:")),
+    failing,
+    h("p", {}, h("label", {}, force, " ", worded("Regrade with it as it is"))),
+  );
   const preview = h("button", { type: "button", onclick: () => run(false) }, worded("Preview regrade"));
   const write = h(
     "button",
@@ -38,16 +48,25 @@ export function regradeForm(exercise, done) {
     tell(state, apply ? worded("Writing …") : worded("Grading …"));
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement : preview;
     try {
-      const { graded, changed, left } = await allSteps(apply);
+      const { graded, changed, left, failures } = await allSteps(apply);
+      if (!apply) warn(failures);
       told(apply, graded, changed, left);
       write.hidden = apply ? !left : !graded;
       if (apply) done();
     } catch (error) {
       failed(error, state);
     }
-    preview.disabled = write.disabled = false;
+    preview.disabled = false;
+    write.disabled = !warning.hidden && !force.checked;
     stop.hidden = bar.hidden = true;
     if (document.activeElement === document.body) (focused.hidden ? preview : focused).focus();
+  }
+
+  /** @param {string[]} failures */
+  function warn(failures) {
+    warning.hidden = !failures.length;
+    force.checked = false;
+    failing.replaceChildren(...failures.map((each) => h("li", {}, ...message(each))));
   }
 
   /**
@@ -57,6 +76,8 @@ export function regradeForm(exercise, done) {
    */
   async function allSteps(apply) {
     const changed = [];
+    /** @type {string[]} */
+    let failures = [];
     let graded = 0;
     let cursor;
     // On the page of a course, only its attempts.
@@ -65,13 +86,15 @@ export function regradeForm(exercise, done) {
     for (;;) {
       const step = await sendPatiently(path, {
         apply,
+        force: apply && force.checked,
         ...(cursor ? { cursor } : {}),
       });
+      failures = step.failures ?? failures;
       graded += step.regraded;
       changed.push(...step.changes);
       bar.value = graded / Math.max(graded + step.left, 1);
       cursor = step.next;
-      if (!cursor || isStopped) return { graded, changed, left: cursor ? step.left : 0 };
+      if (!cursor || isStopped) return { graded, changed, left: cursor ? step.left : 0, failures };
       if (!step.regraded) await pause(OTHERS);
     }
   }
@@ -151,6 +174,7 @@ export function regradeForm(exercise, done) {
         "Grade again all attempts that were graded by another version of the exercise or of the program, for example after a correction. Overridden marks and the earlier reports are kept.",
       ),
     ),
+    warning,
     h("p", { class: "choices" }, preview, write, stop),
     bar,
     state,
