@@ -30,6 +30,9 @@ class OwnExercise(BaseModel):
 
     exercise: str
     title: str
+    is_missing: bool = Field(
+        False, description="True if the service does not have the exercise at the moment."
+    )
     points: float = Field(description="The points of the exercise in the assignment.")
     earned: float | None = Field(
         None, description="The points of the attempt that counts, of these points."

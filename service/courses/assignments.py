@@ -189,7 +189,12 @@ def _check_exercises(chosen: list[str], known: Collection[str]) -> None:
         if exercise not in known:
             meant = nearest(exercise, known)
             hint = f" Did you mean {meant}?" if meant else ""
-            raise CourseError("unusable", f"There is no exercise {exercise}.{hint}")
+            message = (
+                f"There is no exercise {exercise}.{hint} A new file must be in a folder of "
+                "DH_GRADER_EXERCISES_DIR. The service reads it when it starts, or at once with "
+                "DH_GRADER_RELOAD_EXERCISES=true."
+            )
+            raise CourseError("unusable", message)
         if exercise in chosen[:i]:
             raise CourseError("unusable", f"The exercise {exercise} is there twice.")
 

@@ -1,9 +1,11 @@
 """The courses and assignments of one learner, as this learner sees them."""
 
 import json
+import logging
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cache
 from itertools import groupby
 
 from sqlalchemy import Connection, case, or_, select
@@ -26,6 +28,7 @@ from service.courses.terms import LearnerTerms, learner_terms
 from service.courses.times import local
 from service.translations import ENGLISH, Language
 
+_log = logging.getLogger("uvicorn.error")
 # Full marks, but for rounding.
 _FULL = 1 - 1e-9
 
@@ -98,7 +101,9 @@ def own_view(
         found = []
         for name in terms.exercises:
             exercise = catalogue.get(name)
-            if exercise is not None:
+            if exercise is None:
+                _log_missing(terms.id, name)
+            else:
                 exercise = own_variant(connection, terms, learner, exercise)
                 exercise = in_language(exercise, language)
             place = (terms.number, name)
@@ -116,6 +121,17 @@ def own_view(
             )
             for row in rows
         ],
+    )
+
+
+@cache  # Learners ask often: once is enough.
+def _log_missing(assignment: str, exercise: str) -> None:
+    """Log that the service does not have an exercise of an assignment."""
+    _log.warning(
+        "The assignment %s sets the exercise %s, which this service does not have. "
+        "If its file is new, restart the service.",
+        assignment,
+        exercise,
     )
 
 
@@ -237,6 +253,7 @@ def _exercise(
     return OwnExercise(
         exercise=name,
         title=name if exercise is None else exercise.title,
+        is_missing=exercise is None,
         points=points,
         earned=None if best is None else round(best.share * points, 6),
         best=max((round(each.whole_share * points, 6) for each in counted), default=None),

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from service.catalogue import shipped_folder
 from service.cli.program import program
 from tests.courses.conftest import Class
 
@@ -84,6 +85,24 @@ def test_a_mistyped_assignment_is_refused_with_advice(
     told = CliRunner().invoke(program, words)
     assert told.exit_code == 2
     assert said in " ".join(told.output.split())
+
+
+def test_the_command_says_when_a_service_reads_a_new_file(
+    class_: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    folder = tmp_path / "own"
+    folder.mkdir()
+    text = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
+    (folder / "brand-new.toml").write_text(text, encoding="utf-8")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", f"{folder}:shipped")
+    add = ["courses", "assignments", "add", "robots"]
+    said = CliRunner().invoke(program, [*add, "one", "--exercise", "brand-new=3"]).output
+    assert "brand-new: if the file is new, restart the service." in said
+    assert "restart" not in CliRunner().invoke(program, [*add, "two", "--exercise", "scara"]).output
+    monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "true")
+    said = CliRunner().invoke(program, [*add, "three", "--exercise", "brand-new=3"]).output
+    assert "restart" not in said
 
 
 def test_the_command_says_which_rules_have_no_effect(

@@ -13,6 +13,7 @@ from sqlalchemy import Connection
 from service.attempts.storage.database import in_transaction
 from service.catalogue import FeedbackLevel
 from service.cli.commands.attempts import database, encodable
+from service.cli.exercises.new_file import warn_of_unread
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
 from service.contract.courses import (
     AssignedPoints,
@@ -171,6 +172,7 @@ def add(
         return made
 
     _print(changed(added))
+    warn_of_unread(each.exercise for each in body.exercises)
 
 
 @commands.command("change")
@@ -212,6 +214,7 @@ def change(
         return made
 
     _print(changed(done))
+    warn_of_unread(each.exercise for each in body.exercises or ())
 
 
 @commands.command("list")

@@ -1,8 +1,11 @@
-"""Write a new exercise file, and never over another one."""
+"""Write a new exercise file, and never over another one; say when a service reads it."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
-from service.cli.terminal import give_up
+from service.catalogue import shipped_folder
+from service.cli.terminal import complain, give_up
+from service.settings import load_settings
 
 
 def write_new(folder: Path, exercise_id: str, text: str) -> Path:
@@ -17,3 +20,14 @@ def write_new(folder: Path, exercise_id: str, text: str) -> Path:
     except OSError as error:
         give_up(f"{file}: cannot be written: {error.strerror}")
     return file
+
+
+def warn_of_unread(exercises: Iterable[str]) -> None:
+    """Say that a running service may not have read the files of these exercises yet."""
+    shipped = shipped_folder()
+    own = [each for each in exercises if not (shipped / f"{each}.toml").is_file()]
+    if own and not load_settings().reload_exercises:
+        complain(
+            f"{', '.join(own)}: if the file is new, restart the service. It reads new files only "
+            "when it starts, or at once with DH_GRADER_RELOAD_EXERCISES=true."
+        )

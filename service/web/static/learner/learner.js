@@ -5,7 +5,7 @@ import { Service } from "../shared/service.js";
 import { ownState } from "../student/handin/own_state.js";
 import { back, form, handedIn, report, solution } from "./assigned.js";
 import { forgetKey, placeIn, takeKey, takePageKey } from "./link_key.js";
-import { overview } from "./overview.js";
+import { MISSING, overview } from "./overview.js";
 import { worded } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url).href;
@@ -56,6 +56,9 @@ function failed(error) {
 async function exercise(view, place) {
   const own = ownState(view, place.path, place.exercise);
   if (!own) return [back(), h("h1", {}, worded("This is not one of your assignments"))];
+  if (own.exercise.is_missing && !place.attempt) {
+    return [back(), h("h1", {}, visible(own.exercise.title)), h("p", { class: "lead" }, MISSING)];
+  }
   if (place.attempt) return [back(), ...await report(service, place, own)];
   const { element, done } = form(place, key);
   let latest = own;

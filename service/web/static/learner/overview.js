@@ -6,6 +6,10 @@ import { typeset } from "../typeset/names.js";
 import { fragmentOf } from "./link_key.js";
 import { worded, wordedFor } from "../shared/words/words.js";
 
+export const MISSING = worded(
+  "This exercise is not there at the moment. It is noted in the log of the service. What you have handed in is not lost.",
+);
+
 /** @param {Api.OwnCourses} view */
 export function overview({ courses }) {
   if (!courses.length) {
@@ -48,13 +52,14 @@ function assignmentCard(course, assignment) {
         h(
           "li",
           {},
-          h(
+          each.is_missing ? h("span", {}, visible(each.title)) : h(
             "a",
             { href: fragmentOf({ path: `${course.id}/${id}`, exercise: each.exercise }) },
             ...typeset(visible(each.title)),
           ),
           h("span", {}, pointsInWords(each)),
           h("span", { class: "quiet" }, [attemptsInWords(assignment, each), ...handedIn(each)].join(" · ")),
+          each.is_missing ? h("p", { class: "quiet" }, MISSING) : null,
         )
       ),
     ),
