@@ -83,6 +83,9 @@ class NewLearner(_Request):
         "e-mail address, or else a new random one.",
     )
     name: _Line
+    family_name: _Line | None = Field(
+        None, description="The family name, by which lists are sorted. Default: the name."
+    )
     email: _Email | None = Field(None, description="The e-mail address.")
 
 

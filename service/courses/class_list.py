@@ -104,11 +104,18 @@ def _columns(head: list[str]) -> dict[str, int]:
 def _learner(cells: dict[str, str], line: int) -> NewLearner:
     first, last = cells.get("first", ""), cells.get("last", "")
     name = cells.get("name") or (f"{last}{first}" if _HAN.match(last) else f"{first} {last}")
+    # A name such as "Lovelace, Ada" begins with the family name.
+    family = " ".join(last.split()) if first and not cells.get("name") else ""
     learner, email = cells.get("learner") or None, cells.get("email") or None
     if learner is None and email is None:
         raise CourseError("unusable", f"Line {line} of the class list has no id and no e-mail.")
     try:
-        return NewLearner(learner=learner, name=visible(" ".join(name.split())), email=email)
+        return NewLearner(
+            learner=learner,
+            name=visible(" ".join(name.split())),
+            family_name=visible(family) or None,
+            email=email,
+        )
     except ValidationError as error:
         field = error.errors()[0]["loc"][0]
         message = f"Line {line} of the class list has no usable {field}."

@@ -17,6 +17,7 @@ from service.access.keys import WRONG_SECRET, Key, Secret
 from service.attempts.storage.tables import course_learners, courses, keys
 from service.contract.courses import LinksRequest, PersonalLink
 from service.courses.errors import CourseError
+from service.courses.names import place_of
 from service.formats.shared import spreadsheet
 
 # The page of a learner, relative to the service. The key is in the fragment, which browsers neither
@@ -85,17 +86,16 @@ def _valid(connection: Connection, course: str, now: datetime) -> dict[str, Key]
     return {each.learner: each for each in found if each.learner and each.expires_at > now}
 
 
-def people(connection: Connection, course: str) -> Sequence[Row[Any]]:
-    """Return ``learner``, ``name`` and ``email`` of the learners of a course, by name.
+def people(connection: Connection, course: str) -> list[Row[Any]]:
+    """Return the learners of a course with their names and e-mail addresses, in alphabetical order.
 
     Raises CourseError.
     """
     if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
         raise CourseError("unknown-course", f"There is no course {course}.")
     of_course = course_learners.c
-    named = select(of_course.learner, of_course.name, of_course.email)
-    mine = named.where(of_course.course == course)
-    return list(connection.execute(mine.order_by(of_course.name, of_course.learner)))
+    named = select(of_course.learner, of_course.name, of_course.family_name, of_course.email)
+    return sorted(connection.execute(named.where(of_course.course == course)), key=place_of)
 
 
 def _chosen(

@@ -1,7 +1,9 @@
-"""The names of learners as tutors read them."""
+"""The names of learners as tutors read them, and their alphabetical order."""
 
+import unicodedata
 from collections import Counter
 from collections.abc import Sequence
+from typing import Any
 
 from service.contract.courses import CourseLearner, MissingLearner
 
@@ -15,3 +17,17 @@ def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, st
         else f"{each.name} ({each.email or each.learner})"
         for each in people
     }
+
+
+def place_of(learner: Any) -> tuple[str, str, str]:
+    """Return the key that sorts learners by family name, then by name, then by id.
+
+    A learner without a family name is sorted by the name. Capitals and accents do not matter.
+    """
+    name = _plain(learner.name)
+    return _plain(learner.family_name) if learner.family_name else name, name, learner.learner
+
+
+def _plain(text: str) -> str:
+    letters = unicodedata.normalize("NFKD", text.casefold())
+    return "".join(each for each in letters if not unicodedata.combining(each))

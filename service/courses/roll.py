@@ -84,7 +84,8 @@ def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearne
     for each in new:
         email = each.email.lower() if each.email else None
         learner = each.learner or by_email.get(email or "") or secrets.token_hex(8)
-        values = {"name": each.name} | ({"email": each.email} if each.email else {})
+        values = {"name": each.name, "family_name": each.family_name}
+        values |= {"email": each.email} if each.email else {}
         where = {"course": course_id, "learner": learner}
         if learner in known:
             mine = (of_course.course == course_id) & (of_course.learner == learner)

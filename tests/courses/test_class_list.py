@@ -58,6 +58,17 @@ def test_class_lists_of_platforms_and_by_hand_are_read(
     assert found == expected
 
 
+def test_lists_with_two_columns_have_family_names() -> None:
+    def families(text: str) -> list[str | None]:
+        return [each.family_name for each in read_class_list(text)]
+
+    assert families(MOODLE) == ["Lovelace", "Hopper"]
+    assert families("Nombre;Apellidos;Email\nAda;García López;a@b.c\n") == ["García López"]
+    # "Lovelace, Ada" begins with it.
+    assert families(CANVAS) == [None, None]
+    assert families(SEMICOLONS) == [None, None]
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [

@@ -1,5 +1,7 @@
+from dataclasses import dataclass
+
 from service.contract.courses import CourseLearner
-from service.courses.names import told_apart
+from service.courses.names import place_of, told_apart
 
 
 def test_learners_of_one_name_are_told_apart() -> None:
@@ -13,3 +15,27 @@ def test_learners_of_one_name_are_told_apart() -> None:
         "u2": "Ada Lovelace",
         "u3": "Alan Turing (u3)",
     }
+
+
+@dataclass
+class Person:
+    """A row of a course's learners."""
+
+    name: str
+    family_name: str | None = None
+    learner: str = "u1"
+
+
+def test_learners_are_sorted_by_family_name_else_by_name() -> None:
+    in_order = [
+        Person("Élodie Adam", "Adam"),
+        Person("Zoë Amsel", "Amsel"),
+        Person("amsel, anna"),
+        Person("Ångström, Zoë"),
+        Person("Ada de la Cruz", "de la Cruz"),
+        Person("Grace Hopper", "Hopper", "u1"),
+        Person("Grace Hopper", "Hopper", "u2"),
+        Person("Ada Żuk", "Żuk"),
+    ]
+    backwards = in_order[::-1]
+    assert sorted(backwards, key=place_of) == in_order

@@ -84,6 +84,7 @@ course_learners = Table(
     Column("learner", String(200), primary_key=True, index=True),
     Column("name", String(200), nullable=False),
     Column("email", String(254)),
+    Column("family_name", String(200)),
 )
 
 # ``exercises`` is a JSON list of exercises with their points; ``feedback`` a list of levels, one

@@ -107,16 +107,20 @@ def enrol_members(
         learner: (each.name if shows_names else "") or pseudonymous_name(learner)
         for learner, each in learners.items()
     }
+    family = {
+        learner: (each.family_name if shows_names and each.name else "") or None
+        for learner, each in learners.items()
+    }
     there = _enrolled(connection, mine, course)
     new = [
-        {"course": course, "learner": learner, "name": name}
+        {"course": course, "learner": learner, "name": name, "family_name": family[learner]}
         for learner, name in wanted.items()
         if learner not in there
     ]
     renamed = [
-        {"of_learner": learner, "new_name": name}
+        {"of_learner": learner, "new_name": name, "new_family_name": family[learner]}
         for learner, name in wanted.items()
-        if there.get(learner, name) != name
+        if there.get(learner, (name, family[learner])) != (name, family[learner])
     ]
     gone = [{"of_learner": learner} for learner in there if learner not in wanted]
     of = course_learners.c
@@ -124,7 +128,11 @@ def enrol_members(
     if new:
         connection.execute(insert_or_ignore(course_learners)[kind], new)
     if renamed:
-        changed = update(course_learners).where(one).values(name=bindparam("new_name"))
+        changed = (
+            update(course_learners)
+            .where(one)
+            .values(name=bindparam("new_name"), family_name=bindparam("new_family_name"))
+        )
         connection.execute(changed, renamed)
     if gone:
         # Attempts and extensions stay: a learner who comes back has them again.
@@ -134,14 +142,17 @@ def enrol_members(
     return RosterChange(len(wanted), len(new), len(gone), len(renamed))
 
 
-def _enrolled(connection: Connection, registration_id: str, course: str) -> dict[str, str]:
-    """Return the names of the learners of a course that came from a platform.
+def _enrolled(
+    connection: Connection, registration_id: str, course: str
+) -> dict[str, tuple[str, str | None]]:
+    """Return the names and family names of the learners of a course that came from a platform.
 
     Learners whom a tutor has added are not among them: the roster does not remove them.
     """
     of = course_learners.c
-    joined = select(of.learner, of.name).join(
+    joined = select(of.learner, of.name, of.family_name).join(
         tables.learners, tables.learners.c.learner == of.learner
     )
     mine = (of.course == course) & (tables.learners.c.registration == registration_id)
-    return {row.learner: row.name for row in connection.execute(joined.where(mine))}
+    rows = connection.execute(joined.where(mine))
+    return {row.learner: (row.name, row.family_name) for row in rows}

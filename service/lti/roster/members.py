@@ -31,6 +31,7 @@ class Member:
 
     sub: str
     name: str
+    family_name: str = ""
 
 
 def read_members(registration: Registration, url: str, token: str) -> list[Member]:
@@ -97,7 +98,12 @@ def _member(entry: Any) -> Member | None:
     if not isinstance(name, str) or not name.strip():
         parts = [entry.get(each) for each in ("given_name", "family_name")]
         name = " ".join(each for each in parts if isinstance(each, str))
-    return Member(sub, visible(" ".join(name.split()))[:_LONGEST_NAME].strip())
+    family = entry.get("family_name")
+    return Member(sub, _line(name), _line(family if isinstance(family, str) else ""))
+
+
+def _line(text: str) -> str:
+    return visible(" ".join(text.split()))[:_LONGEST_NAME].strip()
 
 
 def _full(role: str) -> str:

@@ -11,11 +11,12 @@ from service.attempts.storage.tables import assignments, attempts, course_learne
 from service.contract.scores import PlatformScore, SendAgainRequest
 from service.courses import roll
 from service.courses.assignments import assignment_of
+from service.courses.names import place_of
 from service.lti.scores.score_problems import told
 
 
 def scores_of(connection: Connection, course: str, wanted: SendAgainRequest) -> list[PlatformScore]:
-    """Return the scores of a course, by assignment and name. Raises CourseError."""
+    """Return the scores of a course, by assignment and learner. Raises CourseError."""
     _check(connection, course, wanted)
     enrolled = and_(
         course_learners.c.course == course, course_learners.c.learner == scores.c.learner
@@ -24,6 +25,8 @@ def scores_of(connection: Connection, course: str, wanted: SendAgainRequest) -> 
         select(
             scores,
             course_learners.c.name,
+            course_learners.c.family_name,
+            line_items.c.assignment.label("of_assignment"),
             assignments.c.id.label("assignment"),
             resource_links.c.title.label("link"),
         )
@@ -32,8 +35,8 @@ def scores_of(connection: Connection, course: str, wanted: SendAgainRequest) -> 
         .join(resource_links, resource_links.c.number == line_items.c.resource_link)
         .join(course_learners, enrolled)
         .where(_chosen(course, wanted))
-        .order_by(assignments.c.number, course_learners.c.name, scores.c.line_item)
-    )
+    ).all()
+    ordered = sorted(rows, key=lambda it: (it.of_assignment, place_of(it), it.line_item))
     return [
         PlatformScore(
             learner=row.learner,
@@ -48,7 +51,7 @@ def scores_of(connection: Connection, course: str, wanted: SendAgainRequest) -> 
             next_try_at=row.next_try_at if row.state == "waiting" else None,
             problem=told(row.refusal) or None,
         )
-        for row in rows
+        for row in ordered
     ]
 
 
