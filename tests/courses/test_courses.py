@@ -3,6 +3,7 @@
 import asyncio
 import json
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime, timedelta
 from functools import partial
@@ -16,14 +17,25 @@ from service.access.key_table import add_key
 from service.access.key_text import new_key_text
 from service.api.turns import ARRIVED
 from service.attempts.tutoring import forget
-from service.contract.courses import AssignmentChange, Extension, LinksRequest, NewAssignment
+from service.catalogue import Exercise
+from service.contract.courses import (
+    AssignmentChange,
+    Extension,
+    LinksRequest,
+    NewAssignment,
+    NewLearner,
+)
 from service.courses import roll
 from service.courses.assignments import add_assignment, assignments_of, change_assignment, extend
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links
 from service.courses.results.gradebook import gradebook, missing, written_gradebook
+from service.translations import ENGLISH
+from service.web.assets import load_assets
+from service.web.courses.course_pages import CourseState, assignment_page
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, SECRET, Class, days
+from tests.courses.results.test_workbook import as_tutor
 
 
 def points(class_: Class) -> list[list[float | None]]:
@@ -128,6 +140,64 @@ def test_no_practice_while_an_exercise_counts(class_: Class) -> None:
     assert practised() == [200, "report", 200]
     # Another exercise may be practised all the time.
     assert class_.ask("POST", "/v1/exercises/planar-rr/grade", answers={}).status_code == 200
+
+
+def test_no_practice_before_the_assignment_opens_either(class_: Class) -> None:
+    grade = "/v1/exercises/scara/grade"
+    assert class_.ask("POST", grade, answers={}).status_code == 200
+    class_.assign(limit=3, opens=days(1))
+    assert class_.ask("POST", grade, answers={}).status_code == 403
+
+
+def test_an_exercise_whose_file_is_not_there_is_named_to_learner_and_tutor(
+    class_: Class, catalogue: Mapping[str, Exercise], caplog: pytest.LogCaptureFixture
+) -> None:
+    """The command line knows a new file, which the service has not read yet."""
+    exercises = [{"exercise": each, "points": 1} for each in ("scara", "brand-new")]
+    fields = {"id": "homework", "title": "Homework", "exercises": exercises}
+    new = NewAssignment.model_validate(fields)
+    class_.do(lambda it: add_assignment(it, "robots", new, {"scara", "brand-new"}))
+    for _ in range(2):
+        [course] = class_.ask("GET", "/v1/me").json()["courses"]
+    found = course["assignments"][0]["exercises"]
+    assert [each["is_missing"] for each in found] == [False, True]
+    assert [each for each in caplog.messages if "brand-new, which this service" in each]
+
+    def drawn(connection: Any) -> str:
+        [chosen] = assignments_of(connection, "robots")
+        learners = roll.learners(connection, "robots", NOW)
+        state = CourseState(roll.course(connection, "robots"), learners, [chosen], {}, None)
+        book = gradebook(connection, "robots")
+        page = assignment_page(state, chosen, [], book, [], catalogue, load_assets(), ENGLISH)
+        return page.decode()
+
+    page = class_.do(drawn)
+    assert page.count("This service does not have the exercise") == 1
+    assert "brand-new, which this service does not have" in page
+    # The form cannot drop it silently.
+    body = {"exercises": [{"exercise": "brand-new", "points": 1}]}
+    path = "/v1/courses/robots/assignments/homework"
+    refused = as_tutor(class_, None).ask("POST", path, "tutor", **body)
+    assert refused.status_code == 422
+    assert "DH_GRADER_RELOAD_EXERCISES=true" in refused.json()["detail"]
+
+
+def test_all_lists_have_the_order_of_family_names(class_: Class) -> None:
+    class_.assign()
+    people = [
+        NewLearner(learner="ada", name="Ada Lovelace", family_name="Lovelace"),
+        NewLearner(learner="grace", name="Grace Hopper", family_name="Hopper"),
+        NewLearner(learner="u3", name="Ängström, Zoë"),
+    ]
+    class_.do(lambda it: roll.add_learners(it, "robots", people))
+    names = ["u3", "grace", "ada"]
+    assert [each.learner for each in class_.do(lambda it: gradebook(it, "robots")).rows] == names
+    absent = class_.do(lambda it: missing(it, "robots", "homework"))
+    assert [each.learner for each in absent] == names
+    tutor = as_tutor(class_, None)
+    listed = tutor.ask("GET", "/v1/courses/robots/learners", "tutor").json()["learners"]
+    assert [each["learner"] for each in listed] == names
+    assert "family_name" not in tutor.ask("GET", "/v1/courses/robots/gradebook", "tutor").text
 
 
 def test_an_exercise_with_the_same_robot_is_no_practice_either(class_: Class) -> None:

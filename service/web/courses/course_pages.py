@@ -76,7 +76,7 @@ def course_page(
         assets,
         language,
         "../../",
-        ["course_forms.js", "deletion.js"],
+        ["course_forms.js", "deletion.js", "learner_filter.js"],
         **state._asdict(),
         catalogue=_in_language(catalogue, language),
         has_secret=has_secret,
@@ -98,6 +98,8 @@ def assignment_page(
 ) -> bytes:
     """Return the page of an assignment: its fields, extensions, missing learners and points."""
     names = told_apart(state.learners)
+    place_of = {learner: i for i, learner in enumerate(names)}
+    given = sorted(chosen.extensions, key=lambda it: place_of.get(it.learner, len(names)))
     return _page(
         "assignment",
         assets,
@@ -107,7 +109,7 @@ def assignment_page(
         course=state.course,
         learners=state.learners,
         names=names,
-        assignment=chosen,
+        assignment=chosen.model_copy(update={"extensions": given}),
         missing=missing,
         groups=distribution(book),
         columns=_columns(book),

@@ -359,7 +359,7 @@ declare namespace Api {
     id: string;
   };
   type NewCourse = { id: string; title: string; zone: string; };
-  type NewLearner = { learner?: string; name: string; email?: string; };
+  type NewLearner = { learner?: string; name: string; family_name?: string; email?: string; };
   type OverrideRequest = { points?: number; reason: string; author?: string; };
   type OwnAssignment = {
     id: string;
@@ -390,6 +390,7 @@ declare namespace Api {
   type OwnExercise = {
     exercise: string;
     title: string;
+    is_missing: boolean;
     points: number;
     earned?: number;
     best?: number;
@@ -488,8 +489,15 @@ declare namespace Api {
   type Quantity = "angle" | "length" | "number";
   type ReadEntry = { text: string; latex: string; };
   type Readiness = { status: "ready"; exercises: number; };
-  type RegradeAnswer = { applied: boolean; regraded: number; left: number; changes: AttemptChange[]; next?: string; };
-  type RegradeRequest = { apply?: boolean; cursor?: string; };
+  type RegradeAnswer = {
+    applied: boolean;
+    regraded: number;
+    left: number;
+    changes: AttemptChange[];
+    failures?: string[];
+    next?: string;
+  };
+  type RegradeRequest = { apply?: boolean; force?: boolean; cursor?: string; };
   type RemovalRequest = { apply?: boolean; with_attempts?: boolean; learner: string; };
   type Report = {
     exercise: string;

@@ -3,6 +3,7 @@
 import { byId, h, number, visible } from "../../shared/dom.js";
 import { failed, fieldOf, learnerName, query, tell } from "../records/records.js";
 import { address, get } from "../tutor_service.js";
+import { isFound } from "./learner_filter.js";
 import { worded, wordedFor } from "../../shared/words/words.js";
 
 const course = byId("main", HTMLElement).dataset.course ?? "";
@@ -16,6 +17,8 @@ let book = { course, columns: [], rows: [] };
 // The column by which the rows are sorted: -1 for the name, the number of columns for the total.
 let sorting = { column: -1, descending: false };
 let isWhole = false;
+/** The places of the rows in alphabetical order. @type {Map<Api.GradebookRow, number>} */
+let places = new Map();
 // The names that several learners have.
 let shared = new Set();
 
@@ -33,6 +36,7 @@ async function load() {
   try {
     book = await get(`${path}/gradebook${query({ assignment })}`);
     const names = book.rows.map(({ name }) => name).sort();
+    places = new Map(book.rows.map((row, i) => [row, i]));
     shared = new Set(names.filter((name, i) => name === names[i - 1]));
     if (sorting.column > book.columns.length) sorting = { column: -1, descending: false };
     draw();
@@ -48,15 +52,18 @@ const valueAt = (row, column) => (column === book.columns.length ? row.total : r
 /** @param {Api.GradebookRow} one @param {Api.GradebookRow} other */
 function inOrder(one, other) {
   const { column, descending } = sorting;
-  const by = column < 0 ? one.name.localeCompare(other.name) : valueAt(one, column) - valueAt(other, column);
+  // The service has sorted the rows by the names of the learners.
+  const by = column < 0
+    ? (places.get(one) ?? 0) - (places.get(other) ?? 0)
+    : valueAt(one, column) - valueAt(other, column);
   return descending ? -by : by;
 }
 
 function draw() {
-  const wanted = fieldOf("name").value.trim().toLowerCase();
-  const matches = book.rows.filter(({ name, learner, email }) =>
-    [name, learner, email ?? ""].some((text) => text.toLowerCase().includes(wanted))
-  ).sort(inOrder);
+  const wanted = fieldOf("name").value;
+  const matches = book.rows.filter(({ name, learner, email }) => isFound([name, learner, email ?? ""], wanted)).sort(
+    inOrder,
+  );
   const shown = isWhole ? matches : matches.slice(0, SHOWN);
   const found = wordedFor("{count} learner", "{count} learners", matches.length);
   const all = shown.length === matches.length;
