@@ -16,6 +16,7 @@ from service.lti.registrations import Registration
 from service.lti.scores.access_tokens import fetched_token
 from service.lti.scores.line_items import SEND
 from service.lti.scores.score_problems import ScoreError
+from service.translations import say
 
 # The greatest difference of clocks (seconds): messages may come from ten seconds ahead.
 _CLOCKS: Final = 10.0
@@ -41,17 +42,20 @@ def check_registration(registration: Registration, key: SigningKey) -> Iterator[
                 raise FetchError("the answer is not JSON") from error
             date = response.headers.get("date")
     except FetchError as error:
-        yield CheckLine(False, f"keys of the platform: {error}")
+        yield CheckLine(False, say("Keys of the platform: {reason}", reason=str(error)))
     else:
         usable = sum(key is not None for key in keys.values())
-        yield CheckLine(usable > 0, f"keys of the platform: {usable} of {len(keys)} can be used")
+        told = say(
+            "Keys of the platform: {usable} of {all} can be used", usable=usable, all=len(keys)
+        )
+        yield CheckLine(usable > 0, told)
         yield _clocks(date)
     yield _token(registration, key)
     launched = registration.launched_at
-    told = f"{launched:%Y-%m-%d %H:%M} UTC" if launched else "never"
-    yield CheckLine(None, f"last launch: {told}")
+    told = f"{launched:%Y-%m-%d %H:%M} UTC" if launched else say("never")
+    yield CheckLine(None, say("Last launch: {when}", when=told))
     if refusal := last_refusal(registration):
-        yield CheckLine(None, f"last refusal: {refusal}")
+        yield CheckLine(None, say("Last refusal: {refusal}", refusal=refusal))
 
 
 def last_refusal(registration: Registration) -> str:
@@ -65,12 +69,14 @@ def last_refusal(registration: Registration) -> str:
 
 def _token(registration: Registration, key: SigningKey) -> CheckLine:
     if registration.token_url is None:
-        return CheckLine(None, "access token: no token address is registered; no scores are sent")
+        return CheckLine(
+            None, say("Access token: no token address is registered; no scores are sent")
+        )
     try:
         fetched_token(registration, SEND, key, datetime.now(UTC))
     except ScoreError as error:
-        return CheckLine(False, f"access token: {error}")
-    return CheckLine(True, "access token: the platform gives one for scores")
+        return CheckLine(False, say("Access token: {reason}", reason=str(error)))
+    return CheckLine(True, say("Access token: the platform gives one for scores"))
 
 
 def _clocks(date: str | None) -> CheckLine:
@@ -78,5 +84,5 @@ def _clocks(date: str | None) -> CheckLine:
         theirs = parsedate_to_datetime(date or "")
         apart = abs((datetime.now(UTC) - theirs).total_seconds())
     except (ValueError, TypeError):
-        return CheckLine(None, "clocks: the platform does not tell its time")
-    return CheckLine(apart <= _CLOCKS, f"clocks: {apart:.0f} s apart")
+        return CheckLine(None, say("Clocks: the platform does not tell its time"))
+    return CheckLine(apart <= _CLOCKS, say("Clocks: {seconds} s apart", seconds=f"{apart:.0f}"))

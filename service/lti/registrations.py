@@ -15,6 +15,7 @@ from service.attempts.recording import insert_or_ignore
 from service.attempts.storage import lti_tables as tables
 from service.courses.times import zone_named
 from service.lti.problems import LtiError
+from service.translations import say
 
 LAUNCH_PATH: Final = "/lti/launch"
 LOGIN_PATH: Final = "/lti/login"
@@ -194,7 +195,9 @@ def add_registration(connection: Connection, new: NewRegistration, now: datetime
     known = tables.registrations
     added = insert_or_ignore(known)[connection.dialect.name].values(values)
     if not connection.execute(added).rowcount:
-        raise RegistrationError("There is a registration with this id, or this issuer and client.")
+        raise RegistrationError(
+            say("There is a registration with this id, or this issuer and client.")
+        )
     add_deployments(connection, new.id, new.deployments, now)
     return registration(connection, new.id)
 

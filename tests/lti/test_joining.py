@@ -270,3 +270,10 @@ def test_the_file_for_canvas_has_our_addresses_and_placements() -> None:
     [extension] = with_files["extensions"]
     places = [each["placement"] for each in extension["settings"]["placements"]]
     assert places == ["assignment_selection", "link_selection", "ActivityAssetProcessor"]
+
+
+def test_the_page_is_in_the_readers_language(tool: Tool) -> None:
+    page = tool.send("GET", "/lti/register?invitation=x", headers={"accept-language": "de"})
+    assert page.status_code == 403
+    assert "Verbinden Sie Ihre Plattform" in page.text
+    assert "Dieser Link ist ungültig, wurde schon benutzt oder ist abgelaufen." in page.text

@@ -35,8 +35,8 @@ def test_the_page_lists_registrations_and_keys(journey: Journey) -> None:
 def test_a_registration_is_tested_by_page(journey: Journey) -> None:
     tool, tutor = journey.tool, journey.tutor()
     page = tool.send("POST", CHECK, headers=tutor).text
-    assert "OK: access token: the platform gives one for scores" in page
-    assert "OK: keys of the platform: 1 of 1 can be used" in page
+    assert "OK: Access token: the platform gives one for scores" in page
+    assert "OK: Keys of the platform: 1 of 1 can be used" in page
     assert "Wrong" not in page
     tool.platform.keys.clear()
     journey.gradebook.token_trouble = (400, {})
@@ -46,6 +46,15 @@ def test_a_registration_is_tested_by_page(journey: Journey) -> None:
     for name in ("another", "A%00"):
         unknown = tool.send("POST", f"{PAGE}/{name}/check", headers=tutor)
         assert unknown.status_code in (404, 422)
+
+
+def test_the_page_and_the_test_are_in_the_readers_language(journey: Journey) -> None:
+    tool, tutor = journey.tool, journey.tutor() | {"accept-language": "de"}
+    page = tool.send("POST", CHECK, headers=tutor)
+    assert page.headers["content-language"] == "de"
+    assert "Zugriffstoken: Die Plattform gibt eines für Punkte" in page.text
+    assert "Öffentliche Schlüssel" in page.text
+    assert "Letzter Start: nie" in page.text
 
 
 def test_a_tutor_of_one_course_sees_no_registrations(journey: Journey) -> None:

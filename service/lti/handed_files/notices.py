@@ -38,11 +38,16 @@ class FileAtPlatform(_Stored):
 
 
 class HandedFiles(_Stored):
-    """The files of one submission, where the report goes, and the parameters of the grading."""
+    """The files of one submission, where the report goes, and the parameters of the grading.
+
+    ``deployment`` and ``context`` are the course at the platform; "" if the notice names none.
+    """
 
     assets: Annotated[list[FileAtPlatform], Field(min_length=1, max_length=MOST_FILES)]
     report_url: _Address
     custom: dict[str, str] = {}
+    deployment: str = ""
+    context: str = ""
 
 
 class SubmissionNotice(BaseModel):
@@ -102,7 +107,9 @@ def notice_in(
 
 def _files(claims: Mapping[str, Any], registration: Registration) -> HandedFiles:
     service, report = claims.get(f"{LTI}assetservice"), claims.get(f"{LTI}assetreport")
-    custom = claims.get(f"{LTI}custom")
+    custom, context = claims.get(f"{LTI}custom"), claims.get(f"{LTI}context")
+    deployment = claims.get(f"{LTI}deployment_id")
+    course = context.get("id") if isinstance(context, dict) else None
     try:
         found = HandedFiles(
             assets=service["assets"] if isinstance(service, dict) else [],
@@ -112,6 +119,8 @@ def _files(claims: Mapping[str, Any], registration: Registration) -> HandedFiles
                 for name, value in (custom.items() if isinstance(custom, dict) else ())
                 if isinstance(value, str) and len(value) <= 2000
             },
+            deployment=deployment if isinstance(deployment, str) else "",
+            context=course if isinstance(course, str) else "",
         )
     except (ValidationError, KeyError) as error:
         raise LtiError("no-files") from error

@@ -11,6 +11,7 @@ from service.lti.fetching import TIMEOUT, FetchError, answer, content
 from service.lti.joining.invitations import Invitation
 from service.lti.joining.tool_configuration import registration_request
 from service.lti.registrations import RegistrationError, origin_of, unusable
+from service.translations import say
 
 _PLATFORM: Final = "https://purl.imsglobal.org/spec/lti-platform-configuration"
 _ADDRESSES: Final = (
@@ -38,9 +39,11 @@ def register_at(invitation: Invitation, configuration: str, token: str) -> dict[
     """
     local = invitation.is_development
     if reason := unusable(configuration, local=local):
-        raise RegistrationError(f"The address of the configuration {reason}.")
+        raise RegistrationError(
+            say("The address of the configuration cannot be used ({reason}).", reason=reason)
+        )
     if len(token) > _LONGEST_TOKEN or not (token.isascii() and token.isprintable()):
-        raise RegistrationError("The registration token is no token.")
+        raise RegistrationError(say("The registration token is no token."))
     headers = {"Authorization": f"Bearer {token}"} if token else {}
     try:
         found = _asked(configuration, "GET", local=local, headers=headers)
@@ -49,12 +52,14 @@ def register_at(invitation: Invitation, configuration: str, token: str) -> dict[
         endpoint = found["registration_endpoint"]
         made = _asked(endpoint, "POST", local=local, headers=headers, json=body)
     except FetchError as error:
-        raise RegistrationError(f"The platform cannot be registered: {error}.") from error
+        raise RegistrationError(
+            say("The platform cannot be registered: {reason}.", reason=str(error))
+        ) from error
     client = made.get("client_id")
     # Some platforms have numbers.
     client = str(client) if isinstance(client, int) and not isinstance(client, bool) else client
     if not isinstance(client, str) or not 0 < len(client) <= 255:
-        raise RegistrationError("The platform gives no client id.")
+        raise RegistrationError(say("The platform gives no client id."))
     audience = found.get("authorization_server")
     return {
         "issuer": found["issuer"],

@@ -25,6 +25,7 @@ from service.lti.registrations import (
     registration,
     unusable,
 )
+from service.translations import say
 
 LONGEST_DAYS: Final = 90
 _HELD: Final = "held-"
@@ -79,7 +80,7 @@ def invitation_of(connection: Connection, text: str, now: datetime) -> Invitatio
     mine = invitations.c.digest == digest(text)
     row = connection.execute(select(invitations).where(mine)).one_or_none()
     if row is None or row.used_at is not None or row.expires_at <= now:
-        raise RegistrationError("This link is not valid, was used already, or has expired.")
+        raise RegistrationError(say("This link is not valid, was used already, or has expired."))
     return Invitation(row.digest, row.name, row.address, row.zone, text.startswith(_HELD))
 
 
@@ -88,7 +89,7 @@ def claim(connection: Connection, text: str, now: datetime) -> Invitation:
     found = invitation_of(connection, text, now)
     mine = (invitations.c.digest == found.digest) & invitations.c.used_at.is_(None)
     if not connection.execute(update(invitations).where(mine).values(used_at=now)).rowcount:
-        raise RegistrationError("This link is being used just now.")
+        raise RegistrationError(say("This link is being used just now."))
     return found
 
 
@@ -111,7 +112,7 @@ def accept(
             **values,
         )
     except ValidationError as error:
-        raise RegistrationError("The platform has sent unusable values.") from error
+        raise RegistrationError(say("The platform has sent unusable values.")) from error
     made = add_registration(connection, new, now)
     if invitation.waits:
         mine = registrations.c.id == made.id

@@ -23,6 +23,13 @@ SCORE_PROBLEMS: Final[Mapping[str, str]] = {
     "no-secret": "The secret of the service is not the one with which its keys were made.",
     "failed": "The service could not send the score. Its log has the cause.",
 }
+# The same for reports on handed-in files, where the sentence is another one.
+_REPORT_PROBLEMS: Final[Mapping[str, str]] = {
+    "not-accepted": "The platform refuses the report (status {status}).",
+    "no-token-address": "No token address is registered for this platform.",
+    "stamp": "The platform has a report with a later time.",
+    "failed": "The service could not grade the files. Its log has the cause.",
+}
 
 
 class ScoreError(Exception):
@@ -55,9 +62,10 @@ class ThisLaterError(ScoreError):
     """This score is not taken now; others may be."""
 
 
-def told(stored: str | None) -> str:
-    """Return the sentence of a stored problem, or ""."""
+def told(stored: str | None, *, of_report: bool = False) -> str:
+    """Return the sentence of a stored problem of a score, or of a report; or ""."""
     if not stored:
         return ""
     name, values = json.loads(stored)
-    return SCORE_PROBLEMS[name].format_map(values)
+    sentences = {**SCORE_PROBLEMS, **_REPORT_PROBLEMS} if of_report else SCORE_PROBLEMS
+    return sentences[name].format_map(values)

@@ -24,6 +24,7 @@ from service.web.pages import page
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Row
 
+    from service.lti.handed_files.overview import MissingReport
     from service.lti.roster.enrolment import RosterChange
 
 # The number of groups in the distribution of points.
@@ -34,7 +35,8 @@ class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
     ``handed_in`` has the number of learners with a readable attempt, by assignment; ``roster`` is
-    the context of a platform that tells its roster, or None.
+    the context of a platform that tells its roster, or None. ``reports`` are those on handed-in
+    files that did not reach their platform.
     """
 
     course: Course
@@ -42,6 +44,7 @@ class CourseState(NamedTuple):
     assignments: Sequence[CourseAssignment]
     handed_in: dict[str, int]
     roster: "Row[Any] | None"
+    reports: "Sequence[MissingReport]" = ()
 
 
 class PointsGroup(NamedTuple):
@@ -129,12 +132,14 @@ def learner_page(
     learner: str,
     variants: Mapping[str, Sequence[LearnerVariant]],
     scores: Sequence[PlatformScore],
+    reports: "Sequence[MissingReport]",
     now: datetime,
     assets: Assets,
     language: Language,
 ) -> bytes:
     """Return the page of a learner: what the learner sees, the variants, scores and the link.
 
+    ``reports`` are those on handed-in files that did not reach their platform.
     ``variants`` has the learner's variants by assignment.
     """
     return _page(
@@ -147,6 +152,7 @@ def learner_page(
         learner=learner,
         variants=variants,
         scores=scores,
+        reports=reports,
         now=now,
         shown=_shown,
     )

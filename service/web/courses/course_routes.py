@@ -121,6 +121,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         """Answer with the page of a learner. An id may have a slash: it is not in the path."""
         from service.courses.dealing import learner_variants
         from service.courses.learner_view import own_view
+        from service.lti.handed_files.overview import missing_reports
         from service.lti.scores.overview import scores_of
 
         now, language = datetime.now(UTC), language_of(request)
@@ -136,7 +137,8 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
                 for each in own.assignments
             }
             scores = scores_of(connection, course_id, SendAgainRequest(learner=learner))
-            return learner_page(own, learner, variants, scores, now, assets, language)
+            reports = missing_reports(connection, course_id, learner)
+            return learner_page(own, learner, variants, scores, reports, now, assets, language)
 
         return _answer(request, await read(store, drawn))
 
@@ -172,6 +174,7 @@ def _state(connection: "Connection", course_id: str) -> CourseState:
     from service.courses import roll
     from service.courses.assignments import assignments_of
     from service.courses.results.gradebook import handed_in
+    from service.lti.handed_files.overview import missing_reports
     from service.lti.roster.enrolment import roster_context
 
     roster = roster_context(connection, course_id)
@@ -181,4 +184,5 @@ def _state(connection: "Connection", course_id: str) -> CourseState:
         assignments_of(connection, course_id),
         handed_in(connection, course_id),
         roster,
+        missing_reports(connection, course_id),
     )

@@ -5,10 +5,11 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
-from fastapi import APIRouter, Path
-from starlette.responses import HTMLResponse, Response
+from fastapi import APIRouter, Path, Request
+from starlette.responses import Response
 
 from service.api.courses.asking import read, write
+from service.api.http.language import language_of
 from service.api.http.problems import ProblemError
 from service.contract.courses import CourseName
 from service.lti.checking import check_registration, last_refusal
@@ -22,6 +23,7 @@ from service.lti.registrations import (
     registration,
 )
 from service.web.lti.landing import Landings
+from service.web.page_answer import page_answer
 from service.web.page_headers import FORM_HEADERS
 from service.web.pages import page
 
@@ -40,13 +42,16 @@ class _Shown(NamedTuple):
     registration: Registration
     deployments: list[str]
     refusal: str
+    missing_reports: int
 
 
 def platform_routes(landings: Landings) -> APIRouter:
     """Return the routes of the page."""
     router = APIRouter(prefix="/tutor/platforms")
 
-    async def answer(tested: str = "", lines: "tuple[CheckLine, ...]" = ()) -> Response:
+    async def answer(
+        request: Request, tested: str = "", lines: "tuple[CheckLine, ...]" = ()
+    ) -> Response:
         found, keys = await read(landings.store, lambda it: (_shown(it), own_key_list(it)))
         root = "../../../" if tested else "../"
         content = page(
@@ -55,6 +60,7 @@ def platform_routes(landings: Landings) -> APIRouter:
             root,
             ["page.js"],
             styles=["tutor.css", "records.css"],
+            language=language_of(request),
             tutor=True,
             platforms=found,
             keys=keys,
@@ -62,15 +68,15 @@ def platform_routes(landings: Landings) -> APIRouter:
             tested=tested,
             lines=lines,
         )
-        return HTMLResponse(content, headers=FORM_HEADERS)
+        return page_answer(request, content, FORM_HEADERS)
 
     @router.get("")
-    async def platforms() -> Response:
+    async def platforms(request: Request) -> Response:
         """Answer with the registrations and our keys."""
-        return await answer()
+        return await answer(request)
 
     @router.post("/{registration_id}/check")
-    async def check(registration_id: _RegistrationId) -> Response:
+    async def check(request: Request, registration_id: _RegistrationId) -> Response:
         """Test a registration; answer with the page and what the test has found."""
         secret, now = landings.secret, datetime.now(UTC)
 
@@ -86,13 +92,21 @@ def platform_routes(landings: Landings) -> APIRouter:
         except LtiError as error:
             raise ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, str(error)) from error
         lines = await asyncio.to_thread(lambda: tuple(check_registration(found, key)))
-        return await answer(found.id, lines)
+        return await answer(request, found.id, lines)
 
     return router
 
 
 def _shown(connection: "Connection") -> list[_Shown]:
+    from service.lti.handed_files.overview import missing_counts
+
+    missing = missing_counts(connection)
     return [
-        _Shown(each, deployments_of(connection, each.id), last_refusal(each))
+        _Shown(
+            each,
+            deployments_of(connection, each.id),
+            last_refusal(each),
+            missing.get(each.id, 0),
+        )
         for each in all_registrations(connection)
     ]

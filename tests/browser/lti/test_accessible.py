@@ -128,7 +128,7 @@ def test_the_pages_of_admins_are_accessible(course: Course, axe: str) -> None:
     expect(page.get_by_role("heading", name="Moodle of the university")).to_be_visible()
     assert violations(page, "") == []
     page.get_by_role("button", name="Test").click()
-    expect(page.get_by_text("keys of the platform: 1 of 1")).to_be_visible()
+    expect(page.get_by_text("Keys of the platform: 1 of 1")).to_be_visible()
     assert violations(page, "") == []
     page.set_viewport_size({"width": 320, "height": 700})
     assert violations(page, "") == []

@@ -30,7 +30,7 @@ def test_a_platform_is_registered_from_a_file_checked_and_removed(run: Run, tmp_
         checked = run("lti", "check", "moodle")
         assert checked.exit_code == 0
         assert "1 of 1 can be used" in checked.output
-        assert "last launch: never" in checked.output
+        assert "Last launch: never" in checked.output
     down = run("lti", "check", "moodle")
     assert (down.exit_code, "does not answer" in down.output) == (1, True)
     assert len(run("lti", "keys", "list").output.splitlines()) == 1

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from html import unescape
 from typing import Any
 
@@ -12,11 +12,15 @@ import jwt
 import pytest
 from sqlalchemy import select
 
-from service.attempts.storage.lti_tables import handed_files
+from service.access.caller import Scope
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
+from service.attempts.storage.lti_tables import contexts, handed_files
 from service.attempts.tutoring import forget
 from service.catalogue import Exercise
 from service.lti.handed_files import queue
 from service.lti.handed_files.file_reporting import FileReporting
+from service.lti.handed_files.overview import missing_counts, missing_reports
 from service.lti.own_keys import published_keys
 from service.lti.registrations import registration, remove_registration
 from service.lti.scores.sending import BackgroundSending
@@ -291,6 +295,49 @@ def test_a_platform_in_trouble_gets_its_reports_later(course: Course) -> None:
     course.hand_in("grace", "notice-2", table_csv=RIGHT)
     course.grade()
     assert [each.state for each in course.rows()] == ["sent", "refused"]
+
+
+def test_tutors_see_which_reports_did_not_arrive(course: Course) -> None:
+    tool, store = course.tool, course.store
+    for user in ("ada", "grace"):
+        tool.launch(user)
+    course.hand_in(table_csv=RIGHT)
+    store.trouble["report"] = [404]
+    course.grade()
+    store.trouble["report"] = [503]
+    course.hand_in("grace", "notice-2", pose_csv=RIGHT)
+    course.grade()
+    # The same student in another course of the platform, and a notice that names no course.
+    for number, more in ((3, {"id": "course-2"}), (4, None)):
+        store.trouble["report"] = [404]
+        claims = store.notice("table.csv", notice=f"notice-{number}")
+        assert course.notify(claims | {f"{LTI}context": more}).status_code == 200
+        course.grade()
+    here = tool.do(lambda it: it.scalar(select(contexts.c.course)))
+    waiting, refused = tool.do(lambda it: missing_reports(it, here))
+    assert (refused.files, refused.next_try_at) == (["table.csv"], None)
+    assert refused.problem == "The platform refuses the report (status 404)."
+    assert (waiting.files, waiting.next_try_at is None) == (["pose.csv"], False)
+    assert tool.do(missing_counts) == {"moodle": 4}
+    ada = refused.learner
+    key = tutor_key(tool)
+    headers = {"authorization": f"Bearer {key}"}
+    pages = {
+        f"/tutor/courses/{here}": ["table.csv", "pose.csv"],
+        f"/tutor/courses/{here}/learner?learner={ada}": ["table.csv"],
+        "/tutor/platforms": ["Did not arrive: 4"],
+    }
+    for path, expected in pages.items():
+        page = tool.send("GET", path, headers=headers).text
+        assert re.findall(r"table\.csv|pose\.csv|Did not arrive: 4", page)[::-1] == expected, path
+
+
+def tutor_key(tool: Tool) -> str:
+    """Return a key of a tutor of all courses."""
+    text, now = new_key_text(), datetime.now(UTC)
+    digest, end = SECRET.key_digest(text), now + timedelta(days=1)
+    tool.do(lambda it: add_key(it, "t", digest, set(Scope), None, now, end))
+    return text
 
 
 def test_after_three_days_files_are_given_up(course: Course) -> None:

@@ -8,16 +8,20 @@ from typing import Any, Final
 
 from fastapi import APIRouter, Request
 from sqlalchemy import Connection
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import Response
 
 from service.api.courses.asking import read, write
+from service.api.http.language import language_of
+from service.api.http.problems import message_of
 from service.api.permissions.access import is_same_origin
 from service.lti.joining.dynamic_registration import register_at
 from service.lti.joining.invitations import Invitation, accept, claim, invitation_of, release
 from service.lti.own_keys import ensure_key
 from service.lti.registrations import Registration, RegistrationError, origin_of, unusable
+from service.translations import say
 from service.web.lti.landing import Landings
 from service.web.lti.lti_pages import frame_headers, lti_page
+from service.web.page_answer import page_answer
 from service.web.sign_in import form_fields
 
 _FIELDS: Final = ("invitation", "openid_configuration", "registration_token")
@@ -28,15 +32,16 @@ def joining_forms(landings: Landings) -> APIRouter:
     router = APIRouter(prefix="/lti")
     store = landings.store
 
-    def answered(fields: dict[str, str], known: bool, **values: Any) -> Response:
+    def answered(request: Request, fields: dict[str, str], known: bool, **values: Any) -> Response:
         scripts = ["close_registration.js"] if values.get("made") else []
         shown = {"made": None, "message": "", "invitation": None, **values}
-        content = lti_page("register.html", landings.assets, scripts, fields=fields, **shown)
+        shown |= {"fields": fields, "language": language_of(request)}
+        content = lti_page("register.html", landings.assets, scripts, **shown)
         configuration = fields["openid_configuration"]
         may_frame = known and not unusable(configuration, local=True)
         headers = frame_headers([origin_of(configuration)] if may_frame else [])
         status = HTTPStatus.FORBIDDEN if values.get("message") else HTTPStatus.OK
-        return HTMLResponse(content, status, headers=headers)
+        return page_answer(request, content, headers, status)
 
     @router.get("/register")
     async def ask(request: Request) -> Response:
@@ -46,14 +51,14 @@ def joining_forms(landings: Landings) -> APIRouter:
         try:
             found = await read(store, lambda it: invitation_of(it, fields["invitation"], now))
         except RegistrationError as error:
-            return answered(fields, False, message=str(error))
+            return answered(request, fields, False, message=message_of(error))
         if not fields["openid_configuration"]:
-            message = (
+            message = say(
                 "Paste this link into your platform, where it asks for the address of a dynamic "
                 "registration. The platform then opens this page with an address of its own."
             )
-            return answered(fields, True, message=message)
-        return answered(fields, True, invitation=found)
+            return answered(request, fields, True, message=message)
+        return answered(request, fields, True, invitation=found)
 
     @router.post("/register")
     async def register(request: Request) -> Response:
@@ -61,17 +66,19 @@ def joining_forms(landings: Landings) -> APIRouter:
         given = await form_fields(request)
         fields = {name: given.get(name, "") for name in _FIELDS}
         if not is_same_origin(request):
-            return answered(fields, False, message="The page of another site has sent the form.")
+            return answered(
+                request, fields, False, message=say("The page of another site has sent the form.")
+            )
         now = datetime.now(UTC)
         try:
             found = await write(store, lambda it: claim(it, fields["invitation"], now))
         except RegistrationError as error:
-            return answered(fields, False, message=str(error))
+            return answered(request, fields, False, message=message_of(error))
         try:
             made = await _registered(landings, found, fields)
         except RegistrationError as error:
-            return answered(fields, True, message=str(error), invitation=found)
-        return answered(fields, True, invitation=found, made=made)
+            return answered(request, fields, True, message=message_of(error), invitation=found)
+        return answered(request, fields, True, invitation=found, made=made)
 
     return router
 
