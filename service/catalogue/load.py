@@ -34,8 +34,8 @@ def shipped_folder() -> Path:
 def exercise_files(*folders: Path) -> list[Path]:
     """The exercise files of folders, folder by folder, sorted by name.
 
-    Raises CatalogueError if a folder is missing or has no exercises, or two folders have a file of
-    the same name.
+    Raises CatalogueError if a folder is missing, all are empty, or two folders have a file of the
+    same name. One of several folders may be empty: its first exercise is still to be written.
     """
     files: dict[str, Path] = {}
     faults: list[Fault] = []
@@ -45,12 +45,12 @@ def exercise_files(*folders: Path) -> list[Path]:
         except OSError as error:
             faults.append(Fault(folder, "", _folder_reason(error)))
             continue
-        if not found:
-            faults.append(Fault(folder, "", "holds no exercise file (*.toml)"))
         for file in found:
             if files.setdefault(file.stem, file) is not file:
                 reason = f"has the name of {file}; give it another, for it is the id"
                 faults.append(Fault(files[file.stem], "", reason))
+    if not files and not faults:
+        faults = [Fault(each, "", "holds no exercise file (*.toml)") for each in folders]
     if faults:
         raise CatalogueError(faults)
     return list(files.values())

@@ -45,10 +45,9 @@ def check_registration(registration: Registration, key: SigningKey) -> Iterator[
         yield CheckLine(False, say("Keys of the platform: {reason}", reason=str(error)))
     else:
         usable = sum(key is not None for key in keys.values())
-        told = say(
-            "Keys of the platform: {usable} of {all} can be used", usable=usable, all=len(keys)
-        )
-        yield CheckLine(usable > 0, told)
+        count = len(keys)
+        said = say("Keys of the platform: {usable} of {all} can be used", usable=usable, all=count)
+        yield CheckLine(usable > 0, said)
         yield _clocks(date)
     yield _token(registration, key)
     launched = registration.launched_at

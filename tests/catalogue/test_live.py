@@ -184,3 +184,13 @@ def test_the_files_are_checked_once_a_second(
     for clock.now in (0.5, 0.99, 1.0, 1.2, 1.9, 2.0, 2.5):
         assert catalogue["arm"].id == "arm"
     assert looks == [1.0, 2.0]
+
+
+def test_a_folder_for_exercises_to_come_may_be_empty(tmp_path: Path) -> None:
+    own, other = tmp_path / "own", tmp_path / "other"
+    for each in (own, other):
+        each.mkdir()
+    with pytest.raises(CatalogueError, match="holds no exercise file"):
+        exercise_files(own, other)
+    (other / "arm.toml").write_text("", encoding="utf-8")
+    assert exercise_files(own, other) == [other / "arm.toml"]
