@@ -19,6 +19,7 @@ from service.grading.reading.tables.table import (
     IS_ANGLE,
     StudentRow,
     StudentTable,
+    computed_row,
 )
 from service.grading.report import Verdict
 from service.kinematics.chain import Table
@@ -36,6 +37,17 @@ def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) 
     """Return the table with numbers that are wrong in any frames in ``cells`` ``(rows, 4)``."""
     numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
     return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
+
+
+def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
+    """Return the table with ``more`` rows of such numbers at its end."""
+    rows = len(answer.rows)
+    numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
+    values = np.repeat(numbers, SAMPLES, axis=-1)
+    given_up = tuple(computed_row(row, GIVEN_UP) for row in values)
+    return replace(
+        answer, rows=(*answer.rows, *given_up), values=np.concatenate([answer.values, values])
+    )
 
 
 def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:

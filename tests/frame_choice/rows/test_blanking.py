@@ -5,6 +5,7 @@ import pytest
 from tests.frame_choice.robots import GIVEN, POLICIES, Policy, Robot, exercise
 from tests.frame_choice.rows import careless
 from tests.frame_choice.rows.blanking import run
+from tests.frame_choice.rows.other_readings import OTHER_READINGS, OtherReading
 from tests.frame_choice.rows.shipped_robots import shipped_robots
 from tests.frame_choice.rows.student_rows import Texts
 from tests.frame_choice.trials import grade_rows
@@ -198,8 +199,18 @@ def test_an_empty_place_earns_no_more_after_slips_in_whole_rows() -> None:
 def test_an_empty_place_earns_no_more_in_known_tables(
     robot: Robot, policy: Policy, texts: Texts, empty: Texts
 ) -> None:
+    _holds(robot, policy, robot.convention, texts, empty)
+
+
+@pytest.mark.parametrize("table", OTHER_READINGS, ids=[each.robot.name for each in OTHER_READINGS])
+def test_an_empty_place_leads_to_no_better_reading(table: OtherReading) -> None:
+    _holds(table.robot, table.policy, table.convention, table.texts, table.empty)
+
+
+def _holds(robot: Robot, policy: Policy, convention: str, texts: Texts, empty: Texts) -> None:
+    """Assert that the empty place earns no more, and that the points add up."""
     compiled = exercise(robot, policy)
-    written, blank = (grade_rows(compiled, t, robot.convention) for t in (texts, empty))
+    written, blank = (grade_rows(compiled, each, convention) for each in (texts, empty))
     assert 0 < blank.points <= written.points < written.max_points
     for report in (written, blank):
         assert sum(row.points for row in report.rows) == pytest.approx(report.points)

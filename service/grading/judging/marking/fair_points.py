@@ -12,18 +12,20 @@ import numpy as np
 
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.marking.marks import least_lost, steps_lost
+from service.grading.judging.own_frames.best_roles import usual_rows
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
 from service.grading.judging.table_filled import (
     empty_cells,
     with_empty_cells,
     with_wrong_cells,
+    with_wrong_rows,
 )
 from service.grading.numerics.tolerances import SAME_CONTENT
 from service.grading.part import Grading, Judged
 from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Verdict
-from service.kinematics.chain import ALPHA, A
+from service.kinematics.chain import ALPHA, COLUMNS, A
 from service.kinematics.dh import Convention
 
 # The most wrong cells that are looked for in all rows at once if nothing but the frames is free.
@@ -50,6 +52,14 @@ def with_fair_points(
 
     budget = grading.reader.budget
     unread = np.isnan(answer.values).any(axis=-1)
+    if missing := _missing_at_end(part, answer, judged, grading):
+        # A missing row counts as a wrong one.
+        if judged.count_wrong == missing * len(COLUMNS):
+            return judged
+        budget.charge_search(work)
+        full = with_wrong_rows(answer, missing, grading)
+        fair = with_fair_points(part, full, judged_again(full), judged_again, work, grading)
+        return replace(judged, at_most=fair, at_least=None if unread.any() else fair)
     if unread.any():
         empty = empty_cells(answer)
         # A table without any readable cell earns nothing anyway.
@@ -58,7 +68,7 @@ def with_fair_points(
         budget.charge_search(work)
         others = [judged_again(with_wrong_cells(answer, empty, grading))]
         others += [] if judged.at_most is None else [judged.at_most]
-        return replace(judged, at_most=max(others, key=lost))
+        return replace(judged, at_most=max(others, key=lost), at_least=None)
     best = judged
     # All tables that differ from the answer in as few cells have been compared.
     is_searched = _has_given_ends(part, judged) and sum(_counts_wrong(judged)) <= FEW
@@ -76,6 +86,25 @@ def with_fair_points(
             other = judged_again(with_empty_cells(answer, cells))
         best = min(best, other, key=lost)
     return judged if best is judged else replace(judged, at_least=best)
+
+
+def _missing_at_end(
+    part: DhTableSpec, answer: StudentTable, judged: Judged, grading: Grading
+) -> int:
+    """Return the number of rows that are missing at the end of a table."""
+    convention = _convention_of(part, answer)
+    # The other convention may need fewer rows.
+    if convention is None or part.frames == "given" or judged.whole_cost is not None:
+        return 0
+    missing = usual_rows(convention, grading) - len(answer.rows)
+    after = [cell for row in judged.rows[len(answer.rows) :] for cell in row.cells]
+    is_at_end = all(cell.verdict is Verdict.MISSING for cell in after)
+    return missing if is_at_end and len(after) == missing * len(COLUMNS) else 0
+
+
+def _convention_of(part: DhTableSpec, answer: StudentTable) -> Convention | None:
+    """Return the convention in which a table is judged; None if it names none and may choose."""
+    return answer.convention if part.convention == "either" else part.convention
 
 
 def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
@@ -115,7 +144,7 @@ def _content_in_any_frames(
     These are the angle between its two axes, unless they are parallel, and their distance, unless
     an axis only has a direction.
     """
-    convention = answer.convention if part.convention == "either" else part.convention
+    convention = _convention_of(part, answer)
     table = grading.exercise.robot.tables.get(convention) if convention else None
     if not rows or table is None or len(table.rows) != len(answer.rows):
         return [(i, 0) for i in rows]

@@ -32,8 +32,7 @@ class CellWorth:
     ``cells`` ``(rows, cells)`` and ``besides`` ``(rows,)``, which a row has besides its cells, sum
     to ``total``. ``unit`` is the cost of a wrong cell; with ``is_fixed`` it is also that of a
     content cell, whatever that is worth. ``slip`` is the cost of a slip outside all cells.
-    ``least_besides`` is the smallest worth that a group has besides its cells, ``most_besides`` the
-    largest.
+    ``least_besides`` is the smallest worth that a group has besides its cells.
     """
 
     step: float
@@ -45,7 +44,6 @@ class CellWorth:
     slip: int
     is_fixed: bool = False
     least_besides: int = 0
-    most_besides: int = 0
 
     @property
     def counted(self) -> int:
@@ -62,7 +60,7 @@ class CellWorth:
         """The most that each group of cells can lose, at least a step."""
         if self.is_fixed:
             counts = _counts(self.content)
-            return {g: max(1, n * self.unit + self.most_besides) for g, n in counts.items()}
+            return {g: max(1, n * self.unit + self.least_besides) for g, n in counts.items()}
         worth = dict.fromkeys(_counts(self.content), 0)
         for cells, numbers in zip(self.cells, self.content.groups, strict=True):
             for cell, number in zip(cells, numbers, strict=True):
@@ -170,9 +168,7 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
     if is_fixed:
         unit = _unit(content.most or 0, len(counts), total)
         groups = evenly(max(0, total - unit * (content.most or 0)), len(counts))
-    return CellWorth(
-        step, total, content, cells, tuple(besides), unit, unit, is_fixed, min(groups), max(groups)
-    )
+    return CellWorth(step, total, content, cells, tuple(besides), unit, unit, is_fixed, min(groups))
 
 
 def _unit(cells: int, groups: int, total: int) -> int:

@@ -19,6 +19,7 @@ from service.grading.diagnosis.tables.column_order import in_other_orders
 from service.grading.diagnosis.tables.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
 from service.grading.judging.marking.fair_points import with_fair_points
+from service.grading.judging.marking.marks import steps_lost
 from service.grading.judging.own_frames.best_roles import rows_of_mechanism, usual_rows
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
@@ -125,6 +126,8 @@ class _Readings:
             without = self.as_written(reading.intended.table)
             if reading.most_wrong is None or without.count_wrong <= reading.most_wrong:
                 found = _with_slip(reading.intended, without, judged, self.grading)
+                if steps_lost(self.part, found) > steps_lost(self.part, judged):
+                    found = replace(found, at_least=judged)
                 return replace(found, chain=without.chain) if reading.has_links else found
         return judged
 

@@ -47,7 +47,7 @@ from service.kinematics.frames.chain_match import (
     match_as_written,
     match_tables,
 )
-from service.kinematics.frames.frame_choice import BESIDES, WRONG_CELL
+from service.kinematics.frames.frame_choice import WRONG_CELL
 from service.kinematics.frames.frame_choice import nearest_table as search_nearest_table
 from service.kinematics.frames.reversed_chain import (
     reversed_cells,
@@ -57,10 +57,6 @@ from service.kinematics.frames.reversed_chain import (
 from service.kinematics.tolerances import PARALLEL
 from service.kinematics.transforms import cross
 
-# If a table loses more than two cells, or a row of two content cells, in all frames, the intended
-# frames are unknown.
-MOST_LOST = 2 * WRONG_CELL + BESIDES
-
 
 def nearest_for_roles(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
@@ -69,6 +65,10 @@ def nearest_for_roles(
     if freedom == FrameFreedom() and all(role.row is not None for role in roles):
         nearest = nearest_by_few_cells(roles, convention, grading)
         nearest = nearest or _as_intended(roles, convention, freedom, grading)
+        if nearest is not None and 2 * WRONG_CELL < nearest.lost < np.inf:
+            # Frames in which cells of several rows are wrong may lose less than a whole row.
+            searched = _link_by_link(roles, convention, freedom, grading)
+            nearest = replace(nearest, lost=min(nearest.lost, searched.lost))
         if nearest is not None:
             return nearest
     return _link_by_link(roles, convention, freedom, grading)
@@ -141,7 +141,6 @@ def _link_by_link(
             rows = row_constants(spoiled, exercise.robot.joints, convention, samples)
             searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
             lost = min(lost, searched.lost)
-    lost = lost if lost <= MOST_LOST else np.inf
     return NearestTable(roles, expected, frames, match.cost, lost)
 
 

@@ -1,0 +1,159 @@
+"""Tables that once earned more with an empty place, because it led to another reading."""
+
+from typing import NamedTuple
+
+from tests.frame_choice.robots import GIVEN, MODIFIED, POLICIES, STANDARD, Policy, Robot
+from tests.frame_choice.rows.student_rows import Texts
+
+_SEVEN = tuple(f"q{i}" for i in range(1, 8))
+
+
+class OtherReading(NamedTuple):
+    """A wrong table in a convention, and the row and the columns that are then left empty."""
+
+    robot: Robot
+    policy: Policy
+    convention: str
+    texts: Texts
+    row: int
+    columns: tuple[int, ...] = (0, 1, 2, 3)
+
+    @property
+    def empty(self) -> Texts:
+        """The table with the empty place."""
+        return [
+            ["" if i == self.row and j in self.columns else text for j, text in enumerate(cells)]
+            for i, cells in enumerate(self.texts)
+        ]
+
+
+OTHER_READINGS = [
+    # Of two choices of frames that are about as likely, the other one loses two units less.
+    OtherReading(
+        Robot(
+            "kuka-kr-5-arc",
+            "RRRRRR",
+            STANDARD,
+            tuple(f"theta{i}" for i in range(1, 7)),
+            (
+                ("0.18", "-(90*pi/180)", "0.4", "theta1"),
+                ("0.6", "0", "0", "theta2 - (90*pi/180)"),
+                ("0.12", "(90*pi/180)", "0", "theta3"),
+                ("0", "-(90*pi/180)", "-0.62", "theta4"),
+                ("0", "(90*pi/180)", "0", "theta5"),
+                ("0", "(180*pi/180)", "-0.115", "theta6"),
+            ),
+            (),
+        ),
+        GIVEN,
+        STANDARD,
+        [
+            ["0.18", "-pi/2", "0.4", "theta1"],
+            ["0.6", "0", "0", "theta2 - pi/2"],
+            ["0.12", "-pi/2", "0", "theta3"],
+            ["0.12", "180", "0", "-theta4 + pi/2"],
+            ["0", "-pi/2", "0", "theta5"],
+            ["0.115", "0 - pi/2", "0.3", "theta5"],
+        ],
+        5,
+    ),
+    # One wrong row explains the table, but cells of several rows lose less.
+    OtherReading(
+        Robot(
+            "a row of seven",
+            "RRRRRRR",
+            MODIFIED,
+            _SEVEN,
+            (
+                ("0", "0", "l1", "q1-pi/2"),
+                ("l2", "0", "l3", "q2"),
+                ("l3", "0", "0.6398", "q3"),
+                ("0", "0", "0", "q4"),
+                ("0", "0", "0", "q5"),
+                ("0.2", "0", "0.7480", "q6"),
+                ("0.7058", "0", "0", "q7+pi/2"),
+            ),
+            ("l1", "l2", "l3"),
+        ),
+        GIVEN,
+        MODIFIED,
+        [
+            ["0", "pi", "-l1 + 0.66", "-q1 - pi/2"],
+            ["-l2", "0", "-l2 - l3 - 0.66", "-q2"],
+            ["-l3", "0", "l2 - 0.6398", "-q3 + pi"],
+            ["l3 - 0.49", "pi/4", "0", "pi"],
+            ["0", "0", "-2*l3 + 0.88", "-q5"],
+            ["-0.2", "0", "l3 - 1.678", "-q6"],
+            ["-0.7058", "pi", "-0.54", "q7 - pi/2"],
+        ],
+        4,
+        (3,),
+    ),
+    # An empty row at the end is a missing row, so that this table was judged as one of two rows.
+    OtherReading(
+        Robot(
+            "no tool row",
+            "RR",
+            STANDARD,
+            _SEVEN[:2],
+            (("a1", "0", "0", "q1"), ("a2", "0", "0", "q2")),
+            ("a1", "a2"),
+        ),
+        next(policy for policy in POLICIES if policy.name == "free directions"),
+        MODIFIED,
+        [["0", "0", "0.3", "-q1"], ["a1", "0", "0", "q2"], ["a1", "0", "a1", "0"]],
+        2,
+    ),
+    # In the student's frames, a wrong cell in a row of zeros cost more than the whole row.
+    OtherReading(
+        Robot(
+            "a row of zeros",
+            "RRR",
+            MODIFIED,
+            _SEVEN[:3],
+            (
+                ("0", "0", "0", "q1"),
+                ("l1", "0", "0", "q2"),
+                ("l2", "0", "0", "q3"),
+                ("l3",) + ("0",) * 3,
+            ),
+            ("l1", "l2", "l3"),
+        ),
+        GIVEN,
+        MODIFIED,
+        [
+            ["0", "q1", "0", "q1"],
+            ["l1", "0", "l3", "q2 - pi"],
+            ["-l2", "pi", "l3", "-q3 - pi"],
+            ["l3", "pi", "0", "0"],
+        ],
+        0,
+    ),
+    # With two columns exchanged, the table lost more than as written.
+    OtherReading(
+        Robot(
+            "exchanged columns",
+            "RRRP",
+            MODIFIED,
+            _SEVEN[:4],
+            (
+                ("0", "0", "l1", "q1"),
+                ("l2", "0", "0", "q2"),
+                ("l3", "pi", "l4", "q3"),
+                ("0", "0", "q4", "0"),
+            ),
+            ("l1", "l2", "l3", "l4"),
+        ),
+        GIVEN,
+        MODIFIED,
+        [
+            ["l1 - l2", "0", "0", "q1 - pi"],
+            ["-l2", "pi", "-l2", "-q2 - pi"],
+            ["-l2 + l4", "0", "l3", "q3 + pi/2"],
+            ["-q4 - l2", "pi", "0", "pi/2"],
+            ["0", "pi", "0", "0"],
+        ],
+        2,
+        (0,),
+    ),
+]
