@@ -52,7 +52,7 @@ declare namespace Front {
     pasted(event: ClipboardEvent, cell: Cell<Place>): void;
     beforeInput(event: InputEvent): void;
     typed(cell: Cell<Place>, before: string): void;
-    changed(cell: Cell<Place>): void;
+    changed(cell: Cell<Place>, told: HTMLElement[]): void;
     understood(cell: Cell<Place>): void;
     repaired(cell: Cell<Place>, suggestion: string): void;
   }

@@ -73,9 +73,10 @@ export class Cell {
 
   #changed() {
     this.#before = this.text;
+    const told = this.messages;
     this.mark(null);
     this.#underline(null);
-    this.owner.changed(this);
+    this.owner.changed(this, told);
   }
 
   /**

@@ -8,6 +8,7 @@ export class CheckBar {
   constructor(check) {
     this.button = h("button", { type: "button", class: "check", part: "check", onclick: check }, worded("Check"));
     this.total = h("p", { class: "total" });
+    this.since = h("span", { class: "since" }, worded("for your answer before the change"));
     this.trouble = h("p", { class: "trouble-line", hidden: true });
     this.hinted = h("p", { class: "hint", hidden: true });
     const line = h("div", { class: "bar-line" }, this.button, this.hinted, this.total);
@@ -60,12 +61,19 @@ export class CheckBar {
       meter,
       ...placed(worded("{points} points"), { points: h("strong", {}, points(earned, most)) }),
     );
-    this.total.classList.remove("outdated");
+    this.#setOutdated(false);
   }
 
-  /** Fade the points, because the answers have changed since. */
+  /** Say that the points are those of the last check, because the answers have changed since. */
   outdated() {
     this.hint("");
-    if (this.total.childNodes.length) this.total.classList.add("outdated");
+    if (this.total.childNodes.length) this.#setOutdated(true);
+  }
+
+  /** @param {boolean} isOutdated */
+  #setOutdated(isOutdated) {
+    this.total.classList.toggle("outdated", isOutdated);
+    if (isOutdated) this.total.append(this.since);
+    else this.since.remove();
   }
 }

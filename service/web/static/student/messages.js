@@ -52,6 +52,19 @@ export function item(feedback, options = {}) {
   return h("li", {}, badge, text);
 }
 
+/**
+ * Say that a message is on the text before a change of its cell, and remove what it proposes.
+ *
+ * @param {HTMLElement} told a list item
+ */
+export function outdate(told) {
+  const badge = told.querySelector(".badge");
+  told.classList.add("past");
+  badge?.removeAttribute("data-verdict");
+  badge?.replaceChildren(worded("before your change"));
+  for (const button of told.querySelectorAll("p > button")) button.remove();
+}
+
 /** @param {Record<string, string | number>} values */
 function counterexample(values) {
   const given = Object.entries(values).filter(([name]) => name !== YOURS && name !== EXPECTED);

@@ -4,7 +4,8 @@ import { h, visible } from "../shared/dom.js";
 import { layoutOf } from "./kinds.js";
 import { html } from "../shared/markup.js";
 import { lostItems } from "./report/lost_points.js";
-import { followedItems, item, messagesOf } from "./messages.js";
+import { followedItems, item, messagesOf, outdate } from "./messages.js";
+import { PartResult } from "./report/part_result.js";
 import { cellsInWords } from "./report/places.js";
 import { PartGrids } from "./form/part_grids.js";
 import { pasteBox } from "./form/paste_box.js";
@@ -14,7 +15,7 @@ import { ReadingLine } from "./form/reading_line.js";
 import { SlipMarks } from "./slip/slip_marks.js";
 import { target, undoKey } from "../shared/keyboard.js";
 import { typeset } from "../typeset/names.js";
-import { earnedInWords, mostInWords, nothingTo, optionName, verdictName } from "../shared/words/phrases.js";
+import { nothingTo, optionName } from "../shared/words/phrases.js";
 
 export class PartView {
   changedAt = 0;
@@ -42,8 +43,7 @@ export class PartView {
     this.choice = choices ? this.#choiceField(choices) : null;
     this.marks = marks ? new SlipMarks(this.layout.grids[0], marks, this.symbols, () => this.#chosen()) : null;
     this.mended = h("div", { class: "grids", hidden: Boolean(marks) }, ...this.grids.elements);
-    this.badge = h("span", { class: "badge", hidden: true });
-    this.worth = h("span", { class: "points" }, mostInWords(part.points));
+    this.result = new PartResult(part);
     this.list = h("ul", { class: "messages", hidden: true });
     this.line = new ReadingLine(part, this.symbols, (text, pause) => host.announce(text, pause));
     this.reading = this.line.element;
@@ -73,7 +73,7 @@ export class PartView {
     this.element = h(
       "section",
       { class: "card part", "aria-labelledby": id },
-      h("header", {}, h(level, { id }, this.fold), this.badge, this.worth),
+      h("header", {}, h(level, { id }, this.fold), ...this.result.elements),
       this.body,
     );
     if (host.form) this.#prefill();
@@ -119,9 +119,7 @@ export class PartView {
    * @returns {Front.Progress}
    */
   get progress() {
-    const isCurrent = !this.badge.hidden && !this.element.classList.contains("outdated");
-    const verdict = isCurrent ? /** @type {Api.Verdict | undefined} */ (this.badge.dataset.verdict) : null;
-    return { verdict: verdict ?? null, ...this.grids.progress };
+    return { verdict: this.result.verdict, ...this.grids.progress };
   }
 
   /** @param {Record<string, string>} choices */
@@ -194,8 +192,9 @@ export class PartView {
     return changes;
   }
 
-  /** Read all cells again, in another unit. */
+  /** Read all cells again, in another unit: the report was of the unit before. */
   readAgain() {
+    this.outdated();
     for (const cell of this.cells) this.#ask(cell);
   }
 
@@ -220,10 +219,13 @@ export class PartView {
     this.host.history.note([{ target: cell, before, after: cell.text }], true);
   }
 
-  /** @param {Front.PartCell} cell */
-  changed(cell) {
+  /** @param {Front.PartCell} cell @param {HTMLElement[]} told the messages that were on it */
+  changed(cell, told) {
     this.changedAt = performance.now();
-    cell.place.row.outdated();
+    const { row } = cell.place;
+    row.outdated();
+    const isOn = (/** @type {Front.Topic} */ place) => place.row === row.label && !place.cell;
+    for (const { element, place } of this.told) if (told.includes(element) || isOn(place)) outdate(element);
     this.outdated();
     this.#ask(cell);
     if (this.#quiet) return;
@@ -315,8 +317,7 @@ export class PartView {
     items.push(...lostItems(report, this.symbols));
     this.list.replaceChildren(...followedItems(report), ...items);
     this.list.hidden = items.length === 0;
-    this.setVerdict(report.verdict);
-    this.worth.textContent = earnedInWords(report.points, report.max_points);
+    this.#showResult(report);
     this.grids.markTabs();
   }
 
@@ -374,25 +375,22 @@ export class PartView {
     return [...own, ...ofCells];
   }
 
-  /** @param {Api.Verdict | null} verdict */
-  setVerdict(verdict) {
-    this.badge.hidden = !verdict;
-    this.badge.textContent = verdict ? verdictName(verdict) : "";
-    if (verdict) this.badge.dataset.verdict = verdict;
+  /** @param {Api.PartReport | null} report */
+  #showResult(report) {
+    this.result.show(report);
     this.element.classList.remove("outdated");
   }
 
   /** Fade the report, because the answer has changed since. */
   outdated() {
-    if (!this.badge.hidden) this.element.classList.add("outdated");
+    if (this.result.outdated()) this.element.classList.add("outdated");
   }
 
   clearReport() {
-    this.setVerdict(null);
+    this.#showResult(null);
     this.list.hidden = true;
     for (const row of this.rows) row.mark(null);
     this.marks?.show(null);
     this.grids.markTabs();
-    this.worth.textContent = mostInWords(this.part.points);
   }
 }
