@@ -1,10 +1,10 @@
 // The model solution beside the student's own answers: after full marks, or as the assignment allows.
 
 import { h, visible } from "../../shared/dom.js";
-import { typesetMessage } from "../../typeset/names.js";
+import { typeset, typesetMessage } from "../../typeset/names.js";
 import { cellsOf } from "../handin/answer_cells.js";
 import { layoutOf } from "../kinds.js";
-import { worded } from "../../shared/words/words.js";
+import { placed, worded } from "../../shared/words/words.js";
 
 const NOTE = worded(
   "Entries that are written differently are marked. Both may be right: the same value has many forms, and many choices of frames are valid.",
@@ -18,21 +18,27 @@ const NOTE = worded(
  * @param {Api.Report} report
  */
 export function offerSolution(host, parts, report) {
-  host.bar.element.querySelector(".solution-beside")?.remove();
+  for (const old of host.bar.element.parentElement?.querySelectorAll(".solution-beside") ?? []) old.remove();
   const { handIn, exercise, service, answers, angleUnit } = host;
   const isFull = exercise.parts.every(({ id }) =>
     report.parts.some((each) => each.part === id && each.verdict === "correct")
   );
   if (handIn ? !handIn.own.exercise.shows_solution : !isFull) return;
   const note = h("p", { class: "quiet", role: "status" });
-  const place = h("div", { class: "choices solution-beside" });
+  const offer = h("div", { class: "choices solution-beside" });
+  // In the page, above the bar: the bar itself covers the page.
+  const place = h("section", { class: "card choices solution-beside" });
   const show = async () => {
     try {
       const { parts: model } = handIn
         ? await service.assignedSolution(handIn.path, handIn.own.exercise.exercise)
         : await service.solution(exercise.id, { answers, angle_unit: angleUnit });
       place.replaceChildren(...besides(exercise, model, answers));
-      place.querySelector("h3")?.focus();
+      host.bar.element.before(place);
+      offer.remove();
+      const head = place.querySelector("h3");
+      head?.focus({ preventScroll: true });
+      place.scrollIntoView({ block: "start" });
     } catch (error) {
       note.textContent = visible(error.message);
     }
@@ -42,9 +48,12 @@ export function offerSolution(host, parts, report) {
     { type: "button", class: "quiet-button", onclick: show },
     worded("Compare with the model solution"),
   );
-  place.append(button, note);
-  host.bar.element.append(place);
-  const close = () => place.remove();
+  offer.append(button, note);
+  host.bar.element.append(offer);
+  const close = () => {
+    offer.remove();
+    place.remove();
+  };
   for (const { input } of parts.flatMap(({ cells }) => cells)) input.addEventListener("input", close, { once: true });
 }
 
@@ -64,21 +73,31 @@ export function besides(exercise, model, answers) {
       const own = answers[part] ?? null;
       const [mine, theirs] = layout ? [cellsOf(layout, own), cellsOf(layout, answer)] : [null, null];
       const boxes = layout && mine && theirs && !layout.marks && own !== null
-        ? [cellTables(layout, mine.cells, theirs.cells, symbols), cellTables(layout, theirs.cells, mine.cells, symbols)]
-        : [plain(own), plain(text)];
+        ? pairs(layout, mine.cells, theirs.cells, symbols)
+        : [{ title: "", yours: plain(own), model: plain(text) }];
       return [
         h("h3", { tabindex: -1 }, ...typesetMessage(visible(title), symbols)),
-        h(
-          "div",
-          { class: "side-by-side" },
-          h("section", {}, h("h4", {}, worded("Your answer")), ...boxes[0]),
-          h("section", {}, h("h4", {}, worded("Model solution")), ...boxes[1]),
+        ...boxes.map(({ title, yours, model }) =>
+          h(
+            "div",
+            { class: "side-by-side" },
+            h("section", {}, h("h4", {}, ...yoursOf(title)), ...yours),
+            h("section", {}, h("h4", {}, ...modelOf(title)), ...model),
+          )
         ),
       ];
     }),
     h("p", { class: "quiet" }, NOTE),
   ];
 }
+
+/** @param {string} name of a matrix, or none */
+const yoursOf = (name) =>
+  name ? placed(worded("{name}, yours"), { name: typeset(visible(name)) }) : [worded("Your answer")];
+
+/** @param {string} name of a matrix, or none */
+const modelOf = (name) =>
+  name ? placed(worded("{name}, model"), { name: typeset(visible(name)) }) : [worded("Model solution")];
 
 /** @param {unknown} answer */
 function plain(answer) {
@@ -88,41 +107,61 @@ function plain(answer) {
 }
 
 /**
- * Return one table for each grid; entries that are not those of `others` are marked.
+ * Return the student's table and the model's for each grid; entries that differ are marked.
  *
  * @param {Front.Layout} layout
+ * @param {string[]} mine
+ * @param {string[]} theirs
+ * @param {Set<string>} symbols
+ */
+function pairs({ grids }, mine, theirs, symbols) {
+  let from = 0;
+  return grids.map((grid) => {
+    const [own, model] = [mine, theirs].map((texts) =>
+      texts.slice(from, from + grid.rows.length * grid.columns.length)
+    );
+    from += own.length;
+    return {
+      title: grids.length > 1 ? grid.title : "",
+      yours: [cellTable(grid, own, model, symbols)],
+      model: [cellTable(grid, model, own, symbols)],
+    };
+  });
+}
+
+/**
+ * Return the table of a grid, with brackets in place of heads if it is a matrix.
+ *
+ * @param {Front.Grid} grid
  * @param {string[]} cells
  * @param {string[]} others
  * @param {Set<string>} symbols
  */
-function cellTables({ grids }, cells, others, symbols) {
-  let next = 0;
-  const same = (/** @type {string} */ text) => text.replace(/\s+/gu, "");
-  return grids.map(({ rows, columns }) =>
+function cellTable({ rows, columns, look }, cells, others, symbols) {
+  const isMatrix = look === "matrix";
+  const same = (/** @type {string} */ text = "") => text.replace(/\s+/gu, "");
+  const heads = columns.map(({ head }) => h("th", { scope: "col" }, h("i", {}, ...typeset(visible(head ?? "")))));
+  const entry = (/** @type {number} */ at) =>
     h(
-      "div",
-      { class: "choice-table" },
-      h(
-        "table",
-        {},
-        h("tr", {}, h("td"), ...columns.map(({ head }) => h("th", { scope: "col" }, visible(head ?? "")))),
-        ...rows.map(({ head }) =>
-          h(
-            "tr",
-            {},
-            h("th", { scope: "row" }, visible(head ?? "")),
-            ...columns.map(() => {
-              const [mine, theirs] = [cells[next] ?? "", others[next] ?? ""];
-              next += 1;
-              return h(
-                "td",
-                { class: same(mine) === same(theirs) ? null : "changed" },
-                ...typesetMessage(visible(mine), symbols),
-              );
-            }),
-          )
-        ),
+      "td",
+      { class: same(cells[at]) === same(others[at]) ? null : "changed" },
+      ...typesetMessage(visible(cells[at] ?? ""), symbols),
+    );
+  return h(
+    "div",
+    { class: isMatrix ? "choice-table bracketed" : "choice-table" },
+    h(
+      "table",
+      {},
+      isMatrix ? null : h("tr", {}, h("td"), ...heads),
+      ...rows.map(({ head }, i) =>
+        h(
+          "tr",
+          {},
+          isMatrix ? null : h("th", { scope: "row" }, ...typeset(visible(head ?? ""))),
+          ...columns.map((_, j) => entry(i * columns.length + j)),
+        )
       ),
-    )
+    ),
   );
 }
