@@ -35,7 +35,7 @@ def test_the_solution_opens_in_the_page_with_named_matrices(
     beside = page.locator("section.solution-beside")
     expect(beside.get_by_role("heading", level=3).first).to_be_focused()
     expect(page.locator(".bar .solution-beside")).to_have_count(0)
-    heads = [text.replace("\n", "") for text in beside.locator("h4").all_inner_texts()]
+    heads = beside.locator("h4").all_text_contents()
     assert heads[:6] == [
         "Your answer", "Model solution", "A1, yours", "A1, model", "A2, yours", "A2, model",
     ]  # fmt: skip

@@ -9,6 +9,7 @@ import { keepProgress } from "../catalogue/progress.js";
 import { about, source } from "./about.js";
 import { CheckBar } from "./check_bar.js";
 import { PageColours } from "./embedding/page_colours.js";
+import { conventionLine } from "./convention_line.js";
 import { Form } from "./form/form.js";
 import { textsOf } from "./handin/cell_texts.js";
 import { HandIn } from "./handin/hand_in.js";
@@ -267,7 +268,7 @@ export class DhExercise extends HTMLElement {
     this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
     this.store = handIn?.store ?? new Store(this.service.base, exercise.id);
     const wanted = this.getAttribute("parts")?.trim().split(/[\s,]+/);
-    // On the service's own page, the exercise's title is the title of the page.
+    // Its title is that of the page.
     const isOwn = this.hasAttribute("linked");
     this.bar = new CheckBar(() => this.check());
     this.form = new Form(this, () => this.#clear());
@@ -278,8 +279,7 @@ export class DhExercise extends HTMLElement {
       .map((part) => new PartView(part, this, isOwn ? "h2" : "h3"));
     this.form.begin(this.#parts);
     this.bar.total.after(this.form.rail.element);
-    const elements = this.#parts.map((part) => part.element);
-    for (const each of elements) each.part.add("part");
+    for (const { element } of this.#parts) element.part.add("part");
     const task = about(exercise, this.#parts.map(({ part }) => part), isOwn ? "h1" : "h2", this.robot);
     new ResizeObserver(() => task.style.setProperty("--about-height", `${task.offsetHeight}px`)).observe(task);
     this.main.replaceChildren(
@@ -288,9 +288,10 @@ export class DhExercise extends HTMLElement {
         "div",
         { class: "parts" },
         handIn?.status,
+        conventionLine(exercise),
         this.form.tools.element,
         this.received,
-        ...elements,
+        ...this.#parts.map((part) => part.element),
         this.bar.element,
       ),
       source(exercise),
@@ -381,9 +382,8 @@ export class DhExercise extends HTMLElement {
   /** Show a report on the answers in the cells, which may be an attempt's. @param {Api.Report} report @param {string} [attempt] */
   showReport(report, attempt) {
     const filled = this.#parts.filter((part) => !part.isEmpty);
-    const shown = new Map(report.parts.map((part) => [part.part, part]));
     for (const part of this.#parts) {
-      const told = filled.includes(part) ? shown.get(part.part.id) : null;
+      const told = filled.includes(part) ? report.parts.find((each) => each.part === part.part.id) : null;
       if (told) part.showReport(told);
       else part.clearReport();
     }
