@@ -105,3 +105,26 @@ def test_forced_colours_show_which_matrix_is_open(visit: Opening, service: str) 
         .evaluate_all("tabs => tabs.map(each => getComputedStyle(each).borderBottomColor)")
     )
     assert len(lines) == len(set(lines)) == 2
+
+
+def test_a_number_that_looks_like_degrees_is_said_to_be_read_in_radians(
+    visit: Opening, service: str
+) -> None:
+    page = visit().page
+    open_exercise(page, service, "planar-rr")
+    alpha = cells(page).nth(1)
+    alpha.fill("-90")
+    shown = page.locator(f"#{alpha.get_attribute('id')}-shown")
+    expect(shown).to_contain_text("rad")
+    line = part(page, 0).locator(".notes").first
+    expect(line).to_contain_text("90 is read as 90 rad. For degrees, write 90°")
+    line.get_by_role("button", name="Read angles as degrees").click()
+    expect(page.get_by_label("Angles without a unit")).to_have_value("degrees")
+    expect(shown).not_to_contain_text("rad")
+    expect(line).to_be_hidden()
+    expect(page.locator("dh-exercise .aloud[role=status]")).to_have_text(
+        "Angles without a unit are read as degrees."
+    )
+    expect(alpha).to_be_focused()
+    # Nothing was checked.
+    expect(page.locator(".total")).to_be_empty()

@@ -165,6 +165,18 @@ export class RowView {
     this.notes.hidden = items.length === 0;
   }
 
+  /** Add a message that is of no report. @param {HTMLElement} item */
+  addNote(item) {
+    this.list.append(item);
+    this.notes.hidden = false;
+  }
+
+  /** @param {HTMLElement} item */
+  removeNote(item) {
+    item.remove();
+    this.notes.hidden = !this.list.childElementCount;
+  }
+
   get verdict() {
     return /** @type {Api.Verdict | undefined} */ (this.element.dataset.verdict) ?? null;
   }

@@ -7,6 +7,7 @@ import { lostItems } from "./report/lost_points.js";
 import { followedItems, item, messagesOf, outdate } from "./messages.js";
 import { PartResult } from "./report/part_result.js";
 import { cellsInWords } from "./report/places.js";
+import { RadiansWarning } from "./form/bare_radians.js";
 import { PartGrids } from "./form/part_grids.js";
 import { pasteBox } from "./form/paste_box.js";
 import { Pasting } from "./form/pasting.js";
@@ -46,6 +47,7 @@ export class PartView {
     this.result = new PartResult(part);
     this.list = h("ul", { class: "messages", hidden: true });
     this.line = new ReadingLine(part, this.symbols, (text, pause) => host.announce(text, pause));
+    this.warning = host.form ? new RadiansWarning(host.form, (text, pause) => host.announce(text, pause)) : null;
     this.reading = this.line.element;
     const id = `part-${part.id}-title`;
     this.body = h(
@@ -242,6 +244,7 @@ export class PartView {
   /** @param {Front.PartCell} cell */
   understood(cell) {
     this.line.understood(cell);
+    this.warning?.understood(cell);
   }
 
   /** @param {Front.PartCell} cell @param {string} suggestion */

@@ -33,9 +33,14 @@ export class Form {
 
   /** Read angles without a unit in another one, and check again. @param {Api.AngleUnit} unit */
   useUnit(unit) {
+    this.readIn(unit);
+    this.host.check();
+  }
+
+  /** Read angles without a unit in another one. @param {Api.AngleUnit} unit */
+  readIn(unit) {
     this.tools.unit.value = unit;
     this.#unitChanged();
-    this.host.check();
   }
 
   #unitChanged() {
