@@ -17,7 +17,10 @@ PART: Final = "part"
 
 # The sentence of each code of a loss without a row, as it follows "−0.5: ".
 _SENTENCES: Final = {
-    WHOLE: template("mistakes that run through the answer, each counted once"),
+    WHOLE: template(
+        "mistakes that run through the answer, charged once for the whole part (its rows share "
+        "the loss)"
+    ),
     OUTSIDE: template("an extra row, or rows that do not lead to the end effector"),
     NO_JOINT_MOVES: template("no joint moves this answer"),
     ALL_OR_NOTHING: template("only a right answer earns points here"),

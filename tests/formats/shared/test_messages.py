@@ -21,7 +21,8 @@ GERMAN = {
     "(with {values}, yours gives {yours}, not {right})": "({yours} statt {right} bei {values})",
     "Nothing was handed in.": "Es wurde nichts abgegeben.",
     "{cells} in row {row}": "{cells} in Zeile {row}",
-    "mistakes that run through the answer, each counted once": "durchgehende Fehler",
+    "mistakes that run through the answer, charged once for the whole part (its rows "
+    "share the loss)": "durchgehende Fehler",
 }
 
 

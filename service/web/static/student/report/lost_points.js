@@ -16,13 +16,26 @@ const NOTHING_READ = new Set(["no_answer", "not_read"]);
  * @param {Set<string>} [symbols] that the exercise declares
  */
 export function lostItems({ lost = [], little_worth: little }, symbols) {
-  const told = lost.filter(({ code }) => !NOTHING_READ.has(code));
-  const entries = byMatrix(told);
-  const places = entries.length === 1 ? entries[0].message : entries.map(lostAt).join("; ");
   return [
-    ...(told.length ? [note(`−${number(sum(told))}`, places, symbols)] : []),
+    ...lostLines(lost).map(([badge, text]) => note(badge, text, symbols)),
     ...(little ? [note(severityName("info"), little.message, symbols)] : []),
   ];
+}
+
+/**
+ * Return the lines of lost points, each as the sum and the places. A loss of the whole part is a line of its own.
+ *
+ * @param {Api.LostPoints[]} lost
+ * @returns {[string, string][]}
+ */
+export function lostLines(lost) {
+  const told = lost.filter(({ code }) => !NOTHING_READ.has(code));
+  const [whole, others] = [true, false].map((isWhole) => told.filter(({ code }) => (code === "whole") === isWhole));
+  return [whole, others].filter(({ length }) => length).map((losses) => {
+    const entries = byMatrix(losses);
+    const places = entries.length === 1 ? entries[0].message : entries.map(lostAt).join("; ");
+    return [`−${number(sum(losses))}`, places];
+  });
 }
 
 /**
