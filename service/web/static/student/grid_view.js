@@ -2,6 +2,7 @@
 
 import { h, points } from "../shared/dom.js";
 import { Cell, SIGNS } from "../shared/cell.js";
+import { withScrollSign } from "./form/scroll_sign.js";
 import { typeset } from "../typeset/names.js";
 import { verdictName } from "../shared/words/phrases.js";
 import { worded } from "../shared/words/words.js";
@@ -56,7 +57,7 @@ function gridElement(grid, part, owner, id, rows) {
   );
   const look = `${grid.look}${isWide(grid) ? " wide" : ""}`;
   const table = h("table", { class: look }, caption, h("thead", { class: isMatrix ? "aloud" : null }, head), body);
-  return h("div", { class: "scroll" }, table);
+  return withScrollSign(h("div", { class: "scroll" }, table));
 }
 
 /** True if a phone shows each row of the table as two lines. @param {Front.Grid} grid */

@@ -3,6 +3,7 @@
 import { h, visible } from "../../shared/dom.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { tableWords } from "../robot_figure.js";
+import { withScrollSign } from "../form/scroll_sign.js";
 import { worded } from "../../shared/words/words.js";
 
 const COLUMNS = /** @type {const} */ (["a", "alpha", "d", "theta"]);
@@ -104,7 +105,13 @@ class ChoicesBox {
       { type: "button", class: "quiet-button", "aria-expanded": "false" },
       worded("Show it in 3D"),
     );
-    const item = h("li", {}, h("p", {}, ...maths(change)), h("div", { class: "choice-table" }, table), button);
+    const item = h(
+      "li",
+      {},
+      h("p", {}, ...maths(change)),
+      withScrollSign(h("div", { class: "choice-table" }, table)),
+      button,
+    );
     button.onclick = () => this.#toggle(button, item, rows);
     return item;
   }

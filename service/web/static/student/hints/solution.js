@@ -4,6 +4,7 @@ import { h, visible } from "../../shared/dom.js";
 import { typeset, typesetMessage } from "../../typeset/names.js";
 import { cellsOf } from "../handin/answer_cells.js";
 import { layoutOf } from "../kinds.js";
+import { withScrollSign } from "../form/scroll_sign.js";
 import { placed, worded } from "../../shared/words/words.js";
 
 const NOTE = worded(
@@ -140,14 +141,14 @@ function pairs({ grids }, mine, theirs, symbols) {
 function cellTable({ rows, columns, look }, cells, others, symbols) {
   const isMatrix = look === "matrix";
   const same = (/** @type {string} */ text = "") => text.replace(/\s+/gu, "");
-  const heads = columns.map(({ head }) => h("th", { scope: "col" }, h("i", {}, ...typeset(visible(head ?? "")))));
+  const heads = columns.map(({ head }) => h("th", { scope: "col" }, h("i", {}, visible(head ?? ""))));
   const entry = (/** @type {number} */ at) =>
     h(
       "td",
       { class: same(cells[at]) === same(others[at]) ? null : "changed" },
       ...typesetMessage(visible(cells[at] ?? ""), symbols),
     );
-  return h(
+  const box = h(
     "div",
     { class: isMatrix ? "choice-table bracketed" : "choice-table" },
     h(
@@ -158,10 +159,11 @@ function cellTable({ rows, columns, look }, cells, others, symbols) {
         h(
           "tr",
           {},
-          isMatrix ? null : h("th", { scope: "row" }, ...typeset(visible(head ?? ""))),
+          isMatrix ? null : h("th", { scope: "row" }, visible(head ?? "")),
           ...columns.map((_, j) => entry(i * columns.length + j)),
         )
       ),
     ),
   );
+  return withScrollSign(box);
 }

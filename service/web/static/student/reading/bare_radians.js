@@ -32,7 +32,7 @@ export class RadiansWarning {
   #cell = null;
 
   /**
-   * @param {import("./form.js").Form} form
+   * @param {NonNullable<Front.PartHost["form"]>} form
    * @param {Front.PartHost["announce"]} announce
    */
   constructor(form, announce) {
