@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import CDPSession, Page, expect
 
 from service.web.assets import FOLDER
 from tests.browser.fixtures import Visit
@@ -43,6 +43,13 @@ PLAY = """async (button) => {
   // Two calls for each picture: one moves the ghost, one draws it.
   return [count, floor, 2 * script / calls];
 }"""
+
+
+def style_passes(metrics: CDPSession) -> int:
+    """Return how often the page has computed styles so far."""
+    found = metrics.send("Performance.getMetrics")["metrics"]
+    [count] = [each["value"] for each in found if each["name"] == "RecalcStyleCount"]
+    return int(count)
 
 
 def text(page: Page, name: str) -> str:
@@ -133,7 +140,12 @@ def test_a_row_of_seven_joints_moves_smoothly(
     page.get_by_label("Row", exact=True).select_option("3")
     picture(page)
     play = page.get_by_role("button", name="Play", exact=True)
+    metrics = page.context.new_cdp_session(page)
+    metrics.send("Performance.enable")
+    before = style_passes(metrics)
     drawn, floor, script = play.evaluate(PLAY)
+    # Each picture used to write texts and ask for a size, which took two passes over the page.
+    assert style_passes(metrics) - before <= drawn + 8
     figure(f"a row: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each")
     # At 60 pictures a second there are 16 ms for one, and the browser needs most of them.
     assert script < 16

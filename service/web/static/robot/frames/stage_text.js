@@ -8,13 +8,18 @@ export class StageText {
   constructor(stage, name) {
     this.element = h("output", { class: `stage-text ${name}`, "aria-hidden": "true", hidden: true });
     this.point = new Vector3();
+    /** @type {{ width: number, height: number } | null} */
+    this.size = null;
     stage.append(this.element);
   }
 
   /** @param {string} text; empty to hide it @param {Vector3} [point] */
   put(text, point) {
-    this.element.hidden = !text;
-    if (this.element.textContent !== text) this.element.textContent = text;
+    if (this.element.hidden === Boolean(text)) this.element.hidden = !text;
+    if (this.element.textContent !== text) {
+      this.element.textContent = text;
+      this.size = null;
+    }
     if (point) this.point.copy(point);
   }
 
@@ -27,7 +32,9 @@ export class StageText {
   follow(camera, stage) {
     if (this.element.hidden) return [];
     const at = this.point.clone().project(camera);
-    const { offsetWidth: width, offsetHeight: height } = this.element;
+    // To ask for the size makes the browser lay the page out: once for each text, not for each picture.
+    this.size ??= { width: this.element.offsetWidth, height: this.element.offsetHeight };
+    const { width, height } = this.size;
     const left = Math.max(0, Math.min(stage.x - width, ((at.x + 1) / 2) * stage.x + 8));
     const top = Math.max(0, Math.min(stage.y - height, ((1 - at.y) / 2) * stage.y - height / 2));
     this.element.style.translate = `${left}px ${top}px`;

@@ -240,11 +240,17 @@ export class RowPlayer {
     this.view.host.announce([this.caption, this.told].map((each) => each.dataset.text).join(" "));
   }
 
-  /** Show a text with its names typeset, if it has changed. @param {HTMLElement} element @param {string} text */
+  /**
+   * Show a text with its names typeset. Return true if it has changed.
+   *
+   * @param {HTMLElement} element
+   * @param {string} text
+   */
   #say(element, text) {
-    if (element.dataset.text === text) return;
+    if (element.dataset.text === text) return false;
     element.dataset.text = text;
     element.replaceChildren(...typeset(text));
+    return true;
   }
 
   #write() {
@@ -252,10 +258,11 @@ export class RowPlayer {
     const [row, convention, unit] = [this.#row, this.#convention, this.unit];
     const moves = this.#moves(row);
     const caption = captionText({ row, at, moves, convention, unit });
-    this.#say(this.caption, caption);
+    // While a move is played, only the bar changes: whatever else is written makes the browser lay the page out.
+    if (this.#say(this.caption, caption)) this.bar.setAttribute("aria-valuetext", caption);
     if (!this.bar.matches(":active")) this.bar.value = String(at);
-    this.bar.setAttribute("aria-valuetext", caption);
-    this.run.textContent = this.playback.isRunning ? worded("Pause") : worded("Play");
+    const run = this.playback.isRunning ? worded("Pause") : worded("Play");
+    if (this.run.textContent !== run) this.run.textContent = run;
     this.back.disabled = at <= 0;
     this.next.disabled = at >= MOVES;
     const texts = moves.map((move) => moveText(move, row, convention, unit));
@@ -265,8 +272,8 @@ export class RowPlayer {
     }
     const current = at > 0 ? this.#current : -1;
     [...this.list.children].forEach((item, i) => {
-      if (i === current) item.setAttribute("aria-current", "step");
-      else item.removeAttribute("aria-current");
+      if (i !== current) item.removeAttribute("aria-current");
+      else if (!item.hasAttribute("aria-current")) item.setAttribute("aria-current", "step");
     });
     this.#tell(moves);
     this.#mark(this.element.hidden || current < 0 ? null : moves[current].parameter);
