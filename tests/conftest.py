@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import typer.rich_utils
 from hypothesis import HealthCheck, settings
 
 from service.catalogue import Exercise, load_exercise
@@ -22,6 +23,13 @@ pytest_plugins = ["tests.browser.fixtures", "tests.attempts.databases"]
 # The suite starts this program a hundred times: without bytecode it would be compiled each time.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+
+# The command line speaks the language of the environment, and tests read English. The words of
+# typer are those of the moment when its module is loaded.
+for _variable in ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "DH_GRADER_LANGUAGE"):
+    os.environ.pop(_variable, None)
+os.environ["LANG"] = "C.UTF-8"
+assert typer.rich_utils.OPTIONS_PANEL_TITLE == "Options"
 
 # No deadline: the time of an example depends more on the machine than on the code.
 for profile, examples in (("suite", 30), ("thorough", 500)):

@@ -9,6 +9,8 @@ from typing import Annotated, Any, Final
 import typer
 from typer.core import TyperGroup
 
+from service.cli.language import translate_help
+
 # The help of each command. Each is a file of ``commands/``, which is imported when the command is
 # called: the help of the program needs neither the grader nor the web framework.
 COMMANDS: Final = {
@@ -42,13 +44,17 @@ def commands_of(name: str | None) -> typer.Typer:
 class _Commands(TyperGroup):
     """Loads and runs commands; prints the reason of an error and ends with its exit code."""
 
+    def main(self, *args: Any, **extra: Any) -> Any:
+        translate_help(self)
+        return super().main(*args, **extra)
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name, _, rest = super().resolve_command(ctx, args)
         commands = commands_of(name)
         if not gc.isenabled():
             gc.freeze()
             gc.enable()
-        return name, typer.main.get_command(commands), rest
+        return name, translate_help(typer.main.get_command(commands)), rest
 
     def invoke(self, ctx: Any) -> Any:
         # Import here: the help of the program needs none of this.

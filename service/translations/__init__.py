@@ -1,7 +1,8 @@
 """Sentences and their translations.
 
 ``sentence`` makes sentences, ``languages`` has the catalogues. Each language is a folder with the
-sentences of reports (``sentences.po``) and of pages (``pages.po``). This is the lowest package: it
+sentences of reports (``sentences.po``), of pages (``pages.po``) and of the command line
+(``commands.po``). This is the lowest package: it
 imports no other.
 """
 

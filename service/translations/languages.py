@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final
 
 _FOLDER: Final = Path(__file__).parent
-# The catalogues of a language: the sentences of reports, and those of pages.
-DOMAINS: Final = ("sentences", "pages")
+# The catalogues of a language: the sentences of reports, those of pages, and the command line's.
+DOMAINS: Final = ("sentences", "pages", "commands")
 
 
 @dataclass(frozen=True)
@@ -27,12 +27,17 @@ class Language:
     @cached_property
     def translation(self) -> NullTranslations | None:
         """The catalogue of the language; None for English, the language of the templates."""
-        return self._catalogue(DOMAINS)
+        return self._catalogue(("sentences", "pages"))
 
     @cached_property
     def translation_of_scripts(self) -> NullTranslations | None:
         """The catalogue for scripts: of a text that reports also have, the words of pages."""
-        return self._catalogue(DOMAINS[::-1])
+        return self._catalogue(("pages", "sentences"))
+
+    @cached_property
+    def translation_of_commands(self) -> NullTranslations | None:
+        """The catalogue for the command line, which also prints sentences of reports."""
+        return self._catalogue(("commands", "sentences"))
 
     def _catalogue(self, domains: Sequence[str]) -> NullTranslations | None:
         """Return the texts of these domains; the first one with a text counts."""

@@ -21,10 +21,15 @@ from pathlib import Path
 from string import Formatter
 from typing import Any, Final
 
+import typer
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
+
+from service.cli.language import paragraphs, with_help
+from service.cli.program import COMMANDS, commands_of, program
+from service.translations.languages import DOMAINS
 
 ROOT: Final = Path(__file__).parents[2]
 FOLDER: Final = ROOT / "service" / "translations"
@@ -35,7 +40,6 @@ _KEYWORDS: Final[dict[str, dict[str, Any]]] = {
     "jinja2.ext:babel_extract": {"gettext": None, "_": None, "ngettext": (1, 2)},
     "javascript": {"worded": None, "wordedFor": (1, 2)},
 }
-DOMAINS: Final = ("sentences", "pages")
 # The sentences without a translation. Git ignores this file.
 UNTRANSLATED: Final = ROOT / "untranslated.json"
 _NO_DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)
@@ -48,7 +52,8 @@ _QUOTED: Final = re.compile(r"`[^`]+`")
 def extracted(domain: str) -> Catalog:
     """Return the sentences of a domain in the source, with their files.
 
-    The sentences below ``service/web`` are those of pages; all others are those of reports.
+    The sentences below ``service/web`` are those of pages, and those below ``service/cli`` with
+    the help texts are those of the command line; all others are those of reports.
     """
     found = Catalog(charset="utf-8", fuzzy=False)
     for file, method in _files(domain):
@@ -63,20 +68,45 @@ def extracted(domain: str) -> Catalog:
             ):
                 name = file.relative_to(ROOT).as_posix()
                 found.add(message, locations=[(name, 0)], auto_comments=comments, context=context)
+    if domain == "commands":
+        for text, name in help_texts():
+            found.add(text, locations=[(name, 0)])
     return found
+
+
+def help_texts() -> Iterator[tuple[str, str]]:
+    """Yield the paragraphs of the help of all commands and options, with their files."""
+    file = "service/cli/program.py"
+    yield from _help_texts(program, file)
+    for name in COMMANDS:
+        yield from _help_texts(commands_of(name), file)
+
+
+def _help_texts(commands: typer.Typer, file: str) -> Iterator[tuple[str, str]]:
+    for each in with_help(typer.main.get_command(commands)):
+        called = getattr(getattr(each, "callback", None), "__wrapped__", None)
+        if called is not None and called.__module__.startswith("service."):
+            file = f"{called.__module__.replace('.', '/')}.py"
+        for text in filter(None, paragraphs(getattr(each, "help", None) or "")):
+            yield text, file
 
 
 def _files(domain: str) -> Iterator[tuple[Path, str]]:
     for file in sorted((ROOT / "service").rglob("*.py")):
-        if (ROOT / "service" / "web" in file.parents) == (domain == "pages"):
+        if _domain(file) == domain:
             yield file, "python"
     for file in sorted((ROOT / "service").rglob("*.html")):
-        if (ROOT / "service" / "web" in file.parents) == (domain == "pages"):
+        if _domain(file) == domain:
             yield file, "jinja2.ext:babel_extract"
     if domain == "pages":
         for file in sorted((ROOT / "service" / "web" / "static").rglob("*.js")):
             if "vendor" not in file.parts:
                 yield file, "javascript"
+
+
+def _domain(file: Path) -> str:
+    room = file.relative_to(ROOT / "service").parts[0]
+    return {"web": "pages", "cli": "commands"}.get(room, "sentences")
 
 
 def catalogue(code: str, domain: str) -> Catalog:

@@ -15,7 +15,7 @@ _ACCENTED: Final = str.maketrans(
     "aceinosuyzACEINOSUYZ", "áćéíñóśúýźÁĆÉÍÑÓŚÚÝŹ"
 )  # Latin letters that all fonts have
 # Places of values, tags, entities, code and escapes stay as they are.
-_KEPT: Final = re.compile(r"(%\(\w+\)\w|\{\{|\}\}|\{\w*\}|<[^>]+>|&\w+;|`[^`]*`)")
+_KEPT: Final = re.compile(r"(%\(\w+\)\w|\{\{|\}\}|\{\w*\}|<[^>]+>|&\w+;|`[^`]*`|\\?\[[^\]]*\])")
 _MORE: Final = " ťéxť"
 
 
@@ -37,7 +37,11 @@ class PseudoTranslation(NullTranslations):
 
 
 PSEUDO: Final = Language("qps", "Þśéúđó", "qps-Ploc")
-vars(PSEUDO).update(translation=PseudoTranslation(), translation_of_scripts=PseudoTranslation())
+vars(PSEUDO).update(
+    translation=PseudoTranslation(),
+    translation_of_scripts=PseudoTranslation(),
+    translation_of_commands=PseudoTranslation(),
+)
 
 
 def offer_pseudo() -> None:

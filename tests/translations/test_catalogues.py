@@ -6,9 +6,9 @@ import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.pofile import read_po
 
+from service.translations.languages import DOMAINS
 from tests.translations.catalogues import (
     CODES,
-    DOMAINS,
     FOLDER,
     as_mo,
     as_po,

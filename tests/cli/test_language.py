@@ -1,0 +1,134 @@
+"""The command line speaks the language of the user."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from service.cli.language import user_language
+from tests.translations.catalogues import CODES, catalogue, help_texts
+
+ROOT = Path(__file__).parents[2]
+VARIABLES = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG", "DH_GRADER_LANGUAGE")
+# Prints the help of every command, in one process for each language.
+ALL_HELP = """
+import sys, typer
+from typer.testing import CliRunner
+from service.cli.program import COMMANDS, program
+from service.cli.program import commands_of
+if sys.argv[1] == "qps":
+    from tests.translations.pseudo import offer_pseudo
+    offer_pseudo()
+def paths(found, *path):
+    yield path
+    for name, each in getattr(found, "commands", {}).items():
+        yield from paths(each, *path, name)
+runner = CliRunner()
+print(runner.invoke(program, ["--help"]).output)
+for name in COMMANDS:
+    for path in paths(typer.main.get_command(commands_of(name)), name):
+        print(runner.invoke(program, [*path, "--help"]).output)
+"""
+# What is the same in all languages.
+SAME = re.compile(r"\\?\[[^\]]*\]")
+
+
+def process(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run Python in an environment without any other locale."""
+    kept = {name: value for name, value in os.environ.items() if name not in VARIABLES}
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=ROOT,
+        env=kept | {"PYTHONIOENCODING": "utf-8"} | environment,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+
+
+def all_help(code: str) -> str:
+    """Return the help of all commands in a language, as one line without frames."""
+    # Wide enough for each text to stay on one line.
+    wide = {"COLUMNS": "2000", "DH_GRADER_LANGUAGE": code}
+    result = process("-c", ALL_HELP, code, **wide)
+    assert result.returncode == 0, result.stderr
+    return " ".join(result.stdout.split())
+
+
+def shown(text: str) -> str:
+    """Return a text as help shows it: without the escapes of markup."""
+    return " ".join(text.replace("\\[", "[").split())
+
+
+@pytest.mark.parametrize(
+    ("variables", "code"),
+    [
+        ({}, "en"),
+        ({"LANG": "de_AT.UTF-8"}, "de"),
+        ({"LANG": "de.UTF-8"}, "de"),
+        ({"LANG": "zh_CN.GB18030"}, "zh"),
+        ({"LANG": "fr_BE@euro"}, "fr"),
+        ({"LANG": "C"}, "en"),
+        ({"LANG": "C.UTF-8", "LANGUAGE": "de"}, "en"),
+        ({"LC_ALL": "POSIX", "LANG": "de_DE"}, "en"),
+        ({"LANG": "xx"}, "en"),
+        ({"LC_ALL": "", "LC_MESSAGES": "es_MX.UTF-8", "LANG": "de_DE"}, "es"),
+        ({"LANGUAGE": "it:fr:de", "LANG": "de_DE.UTF-8"}, "fr"),
+        ({"LANGUAGE": "en:de", "LANG": "de_DE.UTF-8"}, "en"),
+        ({"DH_GRADER_LANGUAGE": "es", "LC_ALL": "de_DE"}, "es"),
+        ({"DH_GRADER_LANGUAGE": "en", "LC_ALL": "de_DE"}, "en"),
+    ],
+)
+def test_the_environment_names_the_language(variables: Mapping[str, str], code: str) -> None:
+    assert user_language(variables).code == code
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_all_help_is_in_the_language(code: str) -> None:
+    printed = all_help(code)
+    words = catalogue(code, "commands")
+    texts = {text for text, _ in help_texts()}
+    assert len(texts) > 150
+    told = {text: str(words[text].string) for text in texts}
+    assert [text for text, by in told.items() if shown(by) not in printed] == []
+    # A text in English may be part of one in the language, if it is a word or two.
+    left = [text for text, by in told.items() if text not in by and shown(text) in printed]
+    assert [text for text in left if len(text.split()) > 2] == []
+    for typer_word in ("Usage:", "Show this message and exit.", "[required]", "─ Commands ─"):
+        assert typer_word not in printed
+
+
+def test_the_pseudo_language_covers_all_help() -> None:
+    printed = all_help("qps")
+    texts = {SAME.sub("", text) for text, _ in help_texts()}
+    left = [text for text in texts if len(text.split()) > 2 and shown(text) in printed]
+    assert left == []
+
+
+@pytest.mark.parametrize("locale", ["C", "C.UTF-8", "xx", "it_IT.UTF-8", ""])
+def test_other_locales_give_english(locale: str) -> None:
+    arguments = ("-m", "service", "exercises", "check", "--help")
+    printed = process(*arguments, LANG=locale).stdout
+    assert printed == process(*arguments).stdout
+    assert "Check exercise files: their fields" in printed
+    assert "Usage: dh-grader" in printed
+
+
+def test_names_of_commands_and_options_stay() -> None:
+    english, german = all_help("en"), all_help("de")
+    options = [set(re.findall(r"--[a-z-]+", text)) for text in (english, german)]
+    assert options[0] == options[1]
+
+
+def test_json_is_the_same_in_every_locale(tmp_path: Path) -> None:
+    file = tmp_path / "a.json"
+    file.write_text(json.dumps({"answers": {"table": "nonsense"}}), encoding="utf-8")
+    grade = ("-m", "service", "grade", file, "--exercise", "planar-rrr", "--format", "json")
+    german, english = process(*grade, LANG="de_DE.UTF-8"), process(*grade)
+    assert german.stdout == english.stdout
+    assert german.returncode == english.returncode
