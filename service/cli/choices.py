@@ -6,9 +6,11 @@ from typing import TypeVar
 
 import typer
 
+from service.cli.language import spoken, user_language
 from service.cli.terminal import give_up
+from service.settings import Settings
 from service.submissions.lookup import nearest
-from service.translations import LANGUAGES, Language, language_named
+from service.translations import LANGUAGES, Language, language_named, paragraph, say
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -19,8 +21,9 @@ def one_of(name: str, known: Iterable[str]) -> str:
     if name in names:
         return name
     meant = nearest(name, names)
-    hint = f" Did you mean {meant}?" if meant else ""
-    raise typer.BadParameter(f"{name!r} is not one of {', '.join(names)}.{hint}")
+    unknown = say("{name!r} is not one of {names}.", name=name, names=", ".join(names))
+    hint = say("Did you mean {meant}?", meant=meant) if meant else ""
+    raise typer.BadParameter(spoken(paragraph(unknown, hint)))
 
 
 def choice(of: type[_Choice]) -> Callable[[str], _Choice]:
@@ -33,9 +36,21 @@ def listed(of: type[StrEnum]) -> str:
     return f"[{'|'.join(each.value for each in of)}]"
 
 
-def report_language(tag: str) -> Language:
-    """Return the language of this tag; end the program if reports are not in this language."""
-    found = language_named(tag)
+def report_language(settings: Settings, output_format: str) -> Language:
+    """Return the language of reports; end the program if reports are not in this language.
+
+    Without a setting, only the format for the screen follows the locale.
+    """
+    if output_format == "text" and "language" not in settings.model_fields_set:
+        return user_language()
+    found = language_named(settings.language)
     if found is None:
-        give_up(f"{tag!r} is no language of the reports: write one of {', '.join(LANGUAGES)}.")
+        known = ", ".join(LANGUAGES)
+        give_up(
+            say(
+                "{tag!r} is no language of the reports: write one of {known}.",
+                tag=settings.language,
+                known=known,
+            )
+        )
     return found

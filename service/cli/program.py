@@ -9,7 +9,8 @@ from typing import Annotated, Any, Final
 import typer
 from typer.core import TyperGroup
 
-from service.cli.language import translate_help
+from service.cli.language import spoken, translate_help
+from service.translations import paragraph, say
 
 # The help of each command. Each is a file of ``commands/``, which is imported when the command is
 # called: the help of the program needs neither the grader nor the web framework.
@@ -69,11 +70,12 @@ class _Commands(TyperGroup):
         try:
             return super().invoke(ctx)
         except UnknownExerciseError as error:
-            give_up(f"{error} Known are: {', '.join(error.known)}.")
+            known = say("Known are: {names}.", names=", ".join(error.known))
+            give_up(paragraph(error.args[0], known))
         except (SettingsError, CatalogueError) as error:
-            give_up(str(error))
+            give_up(error)
         except KeyboardInterrupt:
-            complain("Interrupted.")
+            complain(say("Interrupted."))
             raise SystemExit(INTERRUPTED) from None
         except BrokenPipeError:
             _discard_output()
@@ -139,7 +141,7 @@ def run() -> None:
     try:
         program(prog_name="dh-grader")
     except OSError as error:  # of a full disk, or of a name that no file can have
-        from service.cli.terminal import give_up
+        from service.cli.terminal import give_up, unwritable
 
         _discard_output()
-        give_up(f"{error.filename or 'The output'}: cannot be written: {error.strerror}")
+        give_up(unwritable(error.filename or spoken(say("The output")), error))

@@ -9,8 +9,10 @@ from typing import NoReturn
 from rich.console import Console
 
 from service.catalogue import Exercise, exercise_files, load_catalogue, load_exercise
+from service.cli.language import spoken
 from service.settings import load_settings
 from service.submissions.lookup import find_exercise
+from service.translations import Sentence, say
 
 BELOW_PASS_MARK = 1
 UNUSABLE = 2
@@ -40,12 +42,26 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def complain(message: str) -> None:
-    """Write a message to standard error."""
-    print(message, file=sys.stderr)  # noqa: T201 - a program's own error output
+def unwritable(file: Path | str, error: OSError) -> Sentence:
+    """Return the message that a file cannot be written."""
+    return say("{file}: cannot be written: {reason}", file=str(file), reason=str(error.strerror))
 
 
-def give_up(message: str) -> NoReturn:
+def unreadable(file: Path | str, error: OSError) -> Sentence:
+    """Return the message that a file cannot be read."""
+    return say("{file}: cannot be read: {reason}", file=str(file), reason=str(error.strerror))
+
+
+def complain(message: str | Exception) -> None:
+    """Write a message to standard error, in the language of the user."""
+    text = str(message)
+    # The ``str`` of an error forgets the template of its sentence.
+    if isinstance(message, Exception) and message.args and message.args[0] == text:
+        text = message.args[0]
+    print(spoken(text if isinstance(message, Exception) else message), file=sys.stderr)  # noqa: T201 - a program's own error output
+
+
+def give_up(message: str | Exception) -> NoReturn:
     """Write a message to standard error and end with the exit code for unusable input."""
     complain(message)
     raise SystemExit(UNUSABLE)

@@ -132,3 +132,51 @@ def test_json_is_the_same_in_every_locale(tmp_path: Path) -> None:
     german, english = process(*grade, LANG="de_DE.UTF-8"), process(*grade)
     assert german.stdout == english.stdout
     assert german.returncode == english.returncode
+
+
+def wrong_table(folder: Path) -> tuple[object, ...]:
+    """Return the command that grades a wrong table and an unreadable pose."""
+    rows = [[0, 0, 0, "q1"], ["l1 +", "90deg", 0, "q2"], ["l2", 0, 0, "-q3"], ["l3", 0, 0, 0]]
+    named = [dict(zip(("a", "alpha", "d", "theta"), map(str, row), strict=True)) for row in rows]
+    file = folder / "a.json"
+    answers = {"table": {"rows": named}, "pose": "[[1]]"}
+    file.write_text(json.dumps({"answers": answers}), encoding="utf-8")
+    return "-m", "service", "grade", file, "--exercise", "planar-rrr"
+
+
+def test_a_report_on_the_screen_is_in_the_language_throughout(tmp_path: Path) -> None:
+    grade = wrong_table(tmp_path)
+    english = process(*grade, LANG="C").stdout.splitlines()
+    german = process(*grade, LANG="de_AT.UTF-8").stdout.splitlines()
+    assert "Nicht bestanden: Die Bestehensgrenze ist 80 %." in german
+    assert process(*grade, "--lang", "de").stdout.splitlines() == german
+    assert process(*grade, LANG="xx").stdout.splitlines() == english
+    assert [line for line in german if line in english and line.strip()] == []
+
+
+@pytest.mark.parametrize("form", ["json", "jsonl", "csv", "markdown", "junit"])
+def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> None:
+    grade = (*wrong_table(tmp_path), "--format", form)
+    assert process(*grade, LANG="de_AT.UTF-8").stdout == process(*grade, LANG="C").stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "german"),
+    [
+        ("grade a.json", "Nennen Sie, was beantwortet wird: --exercise ID"),
+        ("grade a.json --exercise planar-rx", "Eine Aufgabe 'planar-rx' gibt es nicht. Meinten"),
+        ("grade a.json --exercise scara --format xml", "'xml' ist keines von text"),
+        ("exercises check scara --seeds 3 --output", "Hilfe: 'dh-grader exercises check --help'"),
+        ("exercises show scara --figure /nowhere/a.svg", "/nowhere/a.svg: kann nicht geschrieben"),
+        ("attempts list", "Hier werden keine Versuche aufgezeichnet"),
+    ],
+)
+def test_errors_are_in_the_language(arguments: str, german: str) -> None:
+    result = process("-m", "service", *arguments.split(), LANG="de_DE.UTF-8")
+    assert result.returncode == 2
+    assert german in result.stderr
+
+
+def test_the_list_of_exercises_is_in_the_language() -> None:
+    result = process("-m", "service", "exercises", "list", LANG="de_DE.UTF-8")
+    assert "Gelenke  Titel und Teilaufgaben (Punkte)\nHier beginnen\n" in result.stdout

@@ -31,9 +31,11 @@ from service.attempts.tutoring import (
     override,
 )
 from service.cli.files.output import write
+from service.cli.language import spoken
 from service.cli.terminal import complain, give_up, installed, installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible, whole_percent
 from service.settings import load_settings
+from service.translations import paragraph, say
 
 commands = typer.Typer(
     help="Recorded attempts: read, export, regrade, forget.",
@@ -56,7 +58,8 @@ def encodable(value: str | None) -> str | None:
         try:
             value.encode()
         except UnicodeEncodeError:
-            give_up(f"{value.encode(errors='replace').decode()}: this is not UTF-8 text.")
+            shown = value.encode(errors="replace").decode()
+            give_up(say("{text}: this is not UTF-8 text.", text=shown))
     return value
 
 
@@ -75,7 +78,7 @@ def database(*, create: bool = False) -> Iterator[Engine]:
     """
     url = load_settings().database
     if url is None:
-        give_up("No attempts are recorded here: DH_GRADER_DATABASE names no database.")
+        give_up(say("No attempts are recorded here: DH_GRADER_DATABASE names no database."))
     try:
         engine = open_database(url.get_secret_value(), create=create)
     except UnusableDatabaseError as error:
@@ -83,7 +86,7 @@ def database(*, create: bool = False) -> Iterator[Engine]:
     try:
         yield engine
     except SQLAlchemyError as error:
-        give_up(f"The database does not answer: {reason(error)}")
+        give_up(say("The database does not answer: {reason}", reason=reason(error)))
     finally:
         engine.dispose()
 
@@ -92,7 +95,7 @@ def database(*, create: bool = False) -> Iterator[Engine]:
 def migrate() -> None:
     """Create or update the tables. The service does so, too, when it starts."""
     with database(create=True):
-        typer.echo("The tables are those of this version.")
+        typer.echo(spoken(say("The tables are those of this version.")))
 
 
 @commands.command("list")
@@ -118,14 +121,17 @@ def list_attempts(
             f"{each.at:%Y-%m-%d %H:%M}",
             each.exercise,
             visible(each.learner),
-            "does not count" if each.ordinal is None else f"no. {each.ordinal}",
-            f"{number(each.earned)} of {number(each.max_points)}",
-            "by a tutor" if each.awarded is not None else "",
-            "late" if each.is_late else "",
+            say("does not count")
+            if each.ordinal is None
+            else say("no. {number}", number=each.ordinal),
+            say("{earned} of {most}", earned=number(each.earned), most=number(each.max_points)),
+            say("by a tutor") if each.awarded is not None else "",
+            say("late") if each.is_late else "",
         )
-        screen.print("  ".join(filter(None, told)), soft_wrap=True)
+        screen.print("  ".join(map(spoken, filter(None, told))), soft_wrap=True)
     if following is not None:
-        screen.print(f"There are more; --limit {2 * limit} shows twice as many.")
+        more = say("There are more; --limit {limit} shows twice as many.", limit=2 * limit)
+        screen.print(spoken(more))
 
 
 @commands.command("statistics")
@@ -137,12 +143,19 @@ def show_statistics(exercise: ExerciseArgument) -> None:
     if not told.attempts:
         screen.print(_nothing(exercise))
         return
-    screen.print(f"{exercise}: {told.attempts} attempts of {told.learners} learners")
+    counts = say(
+        "{exercise}: {attempts} attempts of {learners} learners",
+        exercise=exercise,
+        attempts=told.attempts,
+        learners=told.learners,
+    )
+    screen.print(spoken(counts))
     for part in told.parts:
-        right = "nobody answered"
+        right = say("nobody answered")
         if part.share is not None:
-            right = f"{whole_percent(part.share)} right of {part.answered}"
-        screen.print(f"{part.part}: {right}")
+            share = whole_percent(part.share)
+            right = say("{share} right of {answered}", share=share, answered=part.answered)
+        screen.print(f"{part.part}: {spoken(right)}")
         for row in part.rows:
             cells = "  ".join(f"{cell.label} {_share(cell.share)}" for cell in row.cells)
             screen.print(f"  {row.label}: {cells}")
@@ -150,15 +163,25 @@ def show_statistics(exercise: ExerciseArgument) -> None:
         screen.print(f"{slip.attempts:>6} {slip.code} ({slip.part})")
     for group in told.identical[:_MOST_SLIPS]:
         among = ", ".join(visible(each) for each in group.among)
-        screen.print(f"{group.learners} learners sent the same wrong answers: {among}")
+        same = say(
+            "{learners} learners sent the same wrong answers: {among}",
+            learners=group.learners,
+            among=among,
+        )
+        screen.print(spoken(same))
 
 
 def _nothing(exercise: str | None) -> str:
     """The message that no attempts are recorded; it lists the exercises if the id is unknown."""
-    found = "No attempts are recorded."
+    found = say("No attempts are recorded.")
     if exercise is None or exercise in (known := installed()):
-        return found
-    return f"{found} No exercise is called {visible(exercise)}; there are {', '.join(known)}."
+        return spoken(found)
+    unknown = say(
+        "No exercise is called {exercise}; there are {known}.",
+        exercise=visible(exercise),
+        known=", ".join(known),
+    )
+    return spoken(paragraph(found, unknown))
 
 
 def _share(share: float | None) -> str:
@@ -180,7 +203,12 @@ def export(
 ) -> None:
     """Export attempts, for a spreadsheet or a gradebook."""
     if form.is_gradebook and exercise is None:
-        give_up(f"A gradebook has one column for one exercise: --format {form} needs --exercise.")
+        give_up(
+            say(
+                "A gradebook has one column for one exercise: --format {format} needs --exercise.",
+                format=form.value,
+            )
+        )
     rules = counting_rules(installed())
     with database() as engine, engine.connect() as connection:
         graded = graded_attempts(connection, AttemptFilter(exercise), rules)
@@ -221,7 +249,7 @@ def regrade(
             show_what_would_change(engine, corrected, course)
             return
         if jobs > 1 and engine.dialect.name != "postgresql":
-            give_up("SQLite has one writer at a time: leave --jobs out, or use PostgreSQL.")
+            give_up(say("SQLite has one writer at a time: leave --jobs out, or use PostgreSQL."))
         regrade_all(engine, corrected, course, jobs)
 
 
@@ -240,7 +268,7 @@ def override_points(
 ) -> None:
     """Override the points of an attempt, with a reason."""
     if not reason_given.strip():
-        give_up("Give a reason: --reason.")
+        give_up(say("Give a reason: --reason."))
     by = author or getpass.getuser()
     now = datetime.now(UTC)
     with database() as engine:
@@ -250,10 +278,15 @@ def override_points(
                 lambda connection: override(connection, attempt, points, reason_given, by, now),
             )
         except UnknownAttemptError:
-            give_up(f"No attempt has the id {attempt}; dh-grader attempts list shows them.")
+            give_up(
+                say("No attempt has the id {id}; dh-grader attempts list shows them.", id=attempt)
+            )
         except UnusablePointsError as error:
-            give_up(str(error))
-    typer.echo("Withdrawn." if points is None else f"The attempt has {number(points)} points.")
+            give_up(error)
+    done = say("Withdrawn.")
+    if points is not None:
+        done = say("The attempt has {points} points.", points=number(points))
+    typer.echo(spoken(done))
 
 
 @commands.command("expire")
@@ -268,7 +301,9 @@ def expire(
     """Delete the attempts that are older than some months."""
     kept = months or load_settings().keep_months
     if kept is None:
-        give_up("Say for how many months attempts are kept: --months, or DH_GRADER_KEEP_MONTHS.")
+        give_up(
+            say("Say for how many months attempts are kept: --months, or DH_GRADER_KEEP_MONTHS.")
+        )
     before = months_before(datetime.now(UTC), kept)
     with database() as engine:
         if not apply:

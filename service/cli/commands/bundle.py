@@ -12,8 +12,9 @@ from service.bundles import BUNDLES, BundleError, content_of, zipped
 from service.catalogue import exercise_files
 from service.cli.commands.grade import chosen_assignment
 from service.cli.files.output import write
-from service.cli.terminal import give_up, installed_exercise
+from service.cli.terminal import give_up, installed_exercise, unwritable
 from service.settings import load_settings
+from service.translations import say
 from service.variants.variant import NoVariantError
 
 _SECRET: Final = re.compile(r"[0-9a-f]{64}")
@@ -96,7 +97,7 @@ def _write(
         content = content_of(chosen, file, catalogue, image, secret)
         files = BUNDLES[platform](content)
     except (BundleError, NoVariantError) as error:
-        give_up(str(error))
+        give_up(error)
     write([zipped(files)], output, at_once=True)
 
 
@@ -104,8 +105,11 @@ def _secret(file: Path | None) -> str:
     """Return the secret in a file; write a new one if there is no such file."""
     if file is None:
         give_up(
-            "The assignment has variants: name a file for their secret, --secret F. It is written "
-            "if it is missing; keep it, or students get other variants with the next bundle."
+            say(
+                "The assignment has variants: name a file for their secret, --secret F. It is "
+                "written if it is missing; keep it, or students get other variants with the next "
+                "bundle."
+            )
         )
     try:
         # Nobody else may read it.
@@ -115,11 +119,13 @@ def _secret(file: Path | None) -> str:
     except FileExistsError:
         pass
     except OSError as error:
-        give_up(f"{file}: cannot be written: {error.strerror}")
+        give_up(unwritable(file, error))
     try:
         found = file.read_text(encoding="utf-8").strip()
     except (OSError, ValueError):
         found = ""
     if not _SECRET.fullmatch(found):
-        give_up(f"{file}: contains no secret; name another file, and it is written.")
+        give_up(
+            say("{file}: contains no secret; name another file, and it is written.", file=str(file))
+        )
     return found

@@ -97,7 +97,7 @@ def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
         try:
             return in_transaction(engine, work)
         except CourseError as error:
-            give_up(str(error))
+            give_up(error)
 
 
 def deleted(

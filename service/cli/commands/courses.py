@@ -37,6 +37,7 @@ from service.courses.results.gradebook import gradebook, missing, written_gradeb
 from service.courses.results.workbook import gradebook_workbook
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
+from service.translations import say
 
 commands = typer.Typer(
     help="Courses: learners, links, assignments, gradebook.",
@@ -185,7 +186,7 @@ def links(
         return
     secret = load_settings().known_secret()
     if secret is None:
-        give_up("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE.")
+        give_up(say("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE."))
     if address == _LOCAL:
         complain(
             f"The links lead to {_LOCAL}, which only this machine can open. "
@@ -209,7 +210,7 @@ def show_gradebook(
     """Write the points that count, of each learner at each exercise."""
     if form == "xlsx":
         if output is None and stdout().is_terminal:
-            give_up("A workbook is not for the screen: give a file with --output.")
+            give_up(say("A workbook is not for the screen: give a file with --output."))
         workbook = changed(lambda it: gradebook_workbook(it, course, assignment))
         write([workbook], output, at_once=True)
         return

@@ -12,15 +12,24 @@ from rich.table import Table
 from rich.text import Text
 
 from service.authoring import UnusableIdError, template
-from service.catalogue import Exercise, by_level
+from service.catalogue import Exercise, by_level, in_language
 from service.catalogue.robots.robot import Robot
 from service.cli.exercises import check, export_robot, import_robot, variants
 from service.cli.exercises.new_file import write_new
-from service.cli.terminal import give_up, installed, installed_file, named_exercise, stdout
+from service.cli.language import spoken, user_language
+from service.cli.terminal import (
+    give_up,
+    installed,
+    installed_file,
+    named_exercise,
+    stdout,
+    unwritable,
+)
 from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, reference_figure
 from service.grading.kinds.find_slip import shown_shape
 from service.solutions import ModelSolution, Shown, solve
+from service.translations import say
 
 _NARROWEST = 24
 
@@ -33,7 +42,9 @@ commands = typer.Typer(
 def list_exercises() -> None:
     """List the exercises."""
     console = stdout()
-    for line in _list(list(installed().values()), console.width):
+    language = user_language()
+    exercises = [in_language(each, language) for each in installed().values()]
+    for line in _list(exercises, console.width):
         console.print(line, soft_wrap=True)
 
 
@@ -58,7 +69,7 @@ def show_exercise(
     ] = False,
 ) -> None:
     """Show an exercise: its statement, symbols and parts, or its solution."""
-    exercise = named_exercise(exercise_id)
+    exercise = in_language(named_exercise(exercise_id), user_language())
     console = stdout()
     if figure is not None:
         _write_figure(exercise, figure, theme, frames=frames)
@@ -72,31 +83,34 @@ def show_exercise(
     # Line breaks within a paragraph are left to the terminal.
     paragraphs = (" ".join(block.split()) for block in exercise.statement.split("\n\n"))
     console.print(Text("\n" + "\n\n".join(paragraphs) + "\n"))
-    console.print(Text("Symbols", "bold"))
+    console.print(Text(spoken(say("Symbols")), "bold"))
     symbols = Table.grid(padding=(0, 2, 0, 0))
     for variable in exercise.variables:
         symbols.add_row(variable.name, variable.unit, variable.description)
     console.print(Padding(symbols, (0, 0, 0, 2), expand=False))
     console.print()
-    console.print(Text("Parts", "bold"))
+    console.print(Text(spoken(say("Parts")), "bold"))
     for part in exercise.parts:
-        heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
+        points = spoken(say("{points} points", points=f"{part.points:g}"))
+        heading = f"{part.id}: {part.title} ({part.kind}, {points})"
         console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
-        answer = f"Answer: {shown_shape(part, exercise).in_words()}."
+        answer = spoken(say("Answer: {shape}.", shape=shown_shape(part, exercise).in_words()))
         for text in filter(None, (part.prompt, answer)):
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
 
 def _write_figure(exercise: Exercise, file: Path, theme: Theme, *, frames: bool) -> None:
     if exercise.reference is None:
-        give_up(f"the exercise {exercise.id} has no robot to draw")
+        give_up(say("the exercise {id} has no robot to draw", id=exercise.id))
     if frames and not isinstance(exercise.reference, Robot):
-        give_up(f"the robot of {exercise.id} is given by screw axes, without frames to draw")
+        give_up(
+            say("the robot of {id} is given by screw axes, without frames to draw", id=exercise.id)
+        )
     draw = reference_figure if frames else exercise_figure
     try:
         file.write_text(draw(exercise, theme), encoding="utf-8")
     except OSError as error:
-        give_up(f"{file}: cannot be written: {error.strerror}")
+        give_up(unwritable(file, error))
 
 
 commands.command("check")(check.command)
@@ -122,21 +136,24 @@ def new_exercise(
     try:
         text = template(exercise_id, None if like is None else installed_file(like))
     except UnusableIdError as error:
-        give_up(str(error))
+        give_up(error)
     file = write_new(output, exercise_id, text)
-    stdout().print(
-        f"{file} is written. Edit it, then: dh-grader exercises check {file}", soft_wrap=True
+    written = say(
+        "{file} is written. Edit it, then: dh-grader exercises check {file}", file=str(file)
     )
+    stdout().print(spoken(written), soft_wrap=True)
 
 
 def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
     """Yield each level, and the id, joints and title of its exercises, with the parts below."""
     ids = max(len(exercise.id) for exercise in exercises)
-    joints = max(len("joints"), *(len(exercise.structure or "") for exercise in exercises))
+    heading = spoken(say("joints"))
+    joints = max(len(heading), *(len(exercise.structure or "") for exercise in exercises))
     room = max(width - ids - joints - 4, _NARROWEST)
-    yield Text(f"{'id':{ids}}  {'joints':{joints}}  title, and parts (points)", "dim")
-    for heading, group in by_level(exercises):
-        yield Text(heading, "bold")
+    columns = spoken(say("title, and parts (points)"))
+    yield Text(f"{'id':{ids}}  {heading:{joints}}  {columns}", "dim")
+    for level, group in by_level(exercises):
+        yield Text(spoken(level), "bold")
         for exercise in group:
             yield from _lines(exercise, ids, joints, room)
 
@@ -164,7 +181,7 @@ def _write_solution(exercise: Exercise, console: Console, *, latex: bool) -> Non
         console.print(Text(shown.latex if latex else shown.text), soft_wrap=True)
         console.print()
     if solution.notation:
-        console.print(Text("Shorthand", "bold"))
+        console.print(Text(spoken(say("Shorthand")), "bold"))
         for name, meaning in solution.notation.items():
             console.print(Text(f"{name} = {meaning}"))
 
@@ -173,7 +190,10 @@ def _sections(solution: ModelSolution, *, links: bool) -> Iterator[tuple[str, Sh
     for part in solution.parts:
         yield f"{part.part}: {part.title} ({part.kind})", part
     if links:
-        yield from ((f"Link transform A{link.label}", link) for link in solution.links)
+        yield from (
+            (spoken(say("Link transform {name}", name=f"A{link.label}")), link)
+            for link in solution.links
+        )
     answered = [part.text for part in solution.parts]
     if solution.pose is not None and solution.pose.text not in answered:
-        yield "Pose of the tool in the base frame", solution.pose
+        yield spoken(say("Pose of the tool in the base frame")), solution.pose

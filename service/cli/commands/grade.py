@@ -13,7 +13,8 @@ import typer
 from service.cli.choices import choice, listed, one_of, report_language
 from service.cli.files.output import console_of, write
 from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
-from service.cli.files.written_files import remember, require_own
+from service.cli.files.written_files import remember, require_no_input, require_own
+from service.cli.language import spoken
 from service.cli.remote.server import (
     REQUESTS,
     graded_by,
@@ -42,6 +43,7 @@ from service.submissions.assignment import (
 )
 from service.submissions.handed_in import HandedIn, all_handed_in
 from service.submissions.outline import SetExercise
+from service.translations import say
 from service.variants.variant import NoVariantError
 
 if TYPE_CHECKING:
@@ -202,7 +204,7 @@ def command(
     """
     settings = load_settings(server=server, key=key, language=language)
     if key is not None and settings.server is None:
-        give_up("--key goes with --server URL.")
+        give_up(say("--key goes with --server URL."))
     grader = context.with_resource(server_of(settings))
     chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
     if grader is not None:
@@ -211,7 +213,7 @@ def command(
     taken = _format(output_format, paths, shard)
     folders = [path for path in paths if path.is_dir()]
     if output is not None:
-        _require_no_input(output, [*paths, *filter(None, [assignment])])
+        require_no_input(output, [*paths, *filter(None, [assignment])])
         require_own(output, folders)
     terms = GradingTerms(
         chosen,
@@ -219,7 +221,7 @@ def command(
         feedback,
         for_students=taken.for_students,
         echo=echo or taken.shows_entries,
-        language=report_language(settings.language),
+        language=report_language(settings, output_format),
     )
     found = list(
         all_handed_in(
@@ -230,7 +232,7 @@ def command(
         )
     )
     if not found:
-        give_up(f"{', '.join(map(str, paths))}: holds no submission")
+        give_up(say("{paths}: holds no submission", paths=", ".join(map(str, paths))))
     own = found if shard is None else shard.of(found)
     is_class = bool(folders) and not one_student
     setting = Setting(
@@ -254,7 +256,8 @@ def command(
             else:
                 pieces = taken.pieces(run.submissions(), setting)
                 if shard is not None:
-                    pieces = with_header(pieces, shard, *_names(found, terms))
+                    names = [each.name for each in found]
+                    pieces = with_header(pieces, shard, names, [it.id for it in terms.answered])
                 at_once = shown.is_shown or not taken.is_stream
                 write(pieces, output, at_once=at_once, quiet=quiet)
             remember(output, folders)
@@ -263,7 +266,7 @@ def command(
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
     except WorkerLostError:
-        give_up("A grading process was killed, perhaps for lack of memory; try fewer --jobs.")
+        give_up(say("A grading process was killed, perhaps for lack of memory; try fewer --jobs."))
     _explain_one_student(output_format, () if one_student else folders, run.exit_code)
     raise SystemExit(run.exit_code)
 
@@ -273,15 +276,17 @@ def chosen_assignment(
 ) -> Assignment:
     """Return the assignment that the options name; end the program if they are inconsistent."""
     if (exercise is None) == (file is None):
-        give_up("Name what is answered: --exercise ID, or --assignment F instead.")
+        give_up(say("Name what is answered: --exercise ID, or --assignment F instead."))
     if file is not None:
         if part is not None:
-            give_up("--part goes with --exercise; an assignment says itself which parts are set.")
+            give_up(
+                say("--part goes with --exercise; an assignment says itself which parts are set.")
+            )
         return load_assignment(file, find)
     try:
         return of_one(find(exercise or ""), part)
     except UnknownPartNameError as error:
-        give_up(str(error))
+        give_up(error)
 
 
 def _variants_of_student(
@@ -299,13 +304,15 @@ def _variants_of_student(
 
     if platform_data is None:
         give_up(
-            "Each student has variants of their own in this assignment. Grade it in a course or by "
-            "a bundle, or name a single variant: --exercise ID~SEED."
+            say(
+                "Each student has variants of their own in this assignment. Grade it in a course "
+                "or by a bundle, or name a single variant: --exercise ID~SEED."
+            )
         )
     try:
         return with_seeds(assignment, platform_seeds(platform_data, variants))
     except (UnknownStudentError, NoVariantError) as error:
-        give_up(str(error))
+        give_up(error)
 
 
 def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportFormat:
@@ -313,32 +320,28 @@ def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportForm
     taken = report_format(name)
     if taken.is_single and len(paths) > 1:
         give_up(
-            f"{name} holds one submission, and {len(paths)} files are given: grade them one by "
-            "one, or take a format for several."
+            say(
+                "{format} holds one submission, and {files} files are given: grade them one by "
+                "one, or take a format for several.",
+                format=name,
+                files=len(paths),
+            )
         )
     if shard is not None and name != "jsonl":
-        give_up("--shard writes shards as JSON lines: add --format jsonl.")
+        give_up(say("--shard writes shards as JSON lines: add --format jsonl."))
     return taken
-
-
-def _names(found: Iterable[HandedIn], terms: GradingTerms) -> tuple[list[str], list[str]]:
-    """The names of all submissions and exercises of the run to which a shard belongs."""
-    return [each.name for each in found], [each.id for each in terms.answered]
-
-
-def _require_no_input(output: Path, read: Iterable[Path]) -> None:
-    """End the program if the output would replace a file that is read."""
-    for path in read:
-        if path.is_file() and output.exists() and path.samefile(output):
-            give_up(f"{output}: is read, and would be overwritten; name another --output")
 
 
 def _explain_one_student(output_format: str, folders: Sequence[Path], exit_code: int) -> None:
     """Explain the failure if a class was graded in a format for one submission."""
     if folders and exit_code == UNUSABLE and report_format(output_format).is_single:
         complain(
-            f"{output_format} holds one submission, so the folder {folders[0]} was taken for that "
-            "of one student; for a class take another --format, such as csv or html."
+            say(
+                "{format} holds one submission, so the folder {folder} was taken for that of one "
+                "student; for a class take another --format, such as csv or html.",
+                format=output_format,
+                folder=str(folders[0]),
+            )
         )
 
 
@@ -386,7 +389,7 @@ class _Run:
 
 def _complaints(submission: GradedSubmission) -> list[str]:
     """The distinct problems of files of a submission; one file may affect several exercises."""
-    told = (f"{file.file}: {file.problem}" for file in submission.files if file.problem)
+    told = (f"{file.file}: {spoken(file.problem)}" for file in submission.files if file.problem)
     return [visible(line) for line in dict.fromkeys(told)]
 
 

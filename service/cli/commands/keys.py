@@ -17,6 +17,7 @@ from service.courses import roll
 from service.courses.errors import CourseError
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
+from service.translations import say
 
 commands = typer.Typer(
     help="API keys of the service: create, list, revoke.",
@@ -54,7 +55,7 @@ def create(
             "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
         )
     if course is not None and exercise:
-        give_up("A key is for a course or for exercises: leave out --course or --exercise.")
+        give_up(say("A key is for a course or for exercises: leave out --course or --exercise."))
     bound = [installed_exercise(each).id for each in exercise] if exercise else None
     text = new_key_text()
     digest = secret.key_digest(text)
@@ -73,7 +74,7 @@ def create(
         try:
             key = in_transaction(engine, added)
         except CourseError as error:
-            give_up(str(error))
+            give_up(error)
     if key is None:
         give_up(WRONG_SECRET)
     # Only the key goes to standard output, for scripts.
@@ -114,7 +115,12 @@ def revoke(
     with database() as engine:
         now = datetime.now(UTC)
         if not in_transaction(engine, lambda connection: revoke_key(connection, key, now)):
-            give_up(f"There is no key {key} that could be revoked; dh-grader keys list shows them.")
+            give_up(
+                say(
+                    "There is no key {key} that could be revoked; dh-grader keys list shows them.",
+                    key=key,
+                )
+            )
     typer.echo("Revoked. Each running service knows it within seconds.")
 
 

@@ -36,7 +36,7 @@ def command(
     try:
         write(run.lines(), output, at_once=True)
     except UnusableShardsError as error:
-        give_up(str(error))
+        give_up(error)
     raise SystemExit(run.exit_code)
 
 

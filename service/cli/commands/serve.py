@@ -7,6 +7,7 @@ import typer
 
 from service.cli.terminal import give_up
 from service.settings import load_settings
+from service.translations import say
 
 commands = typer.Typer(add_completion=False)
 
@@ -32,6 +33,10 @@ def command(
 
     if not serve(settings):
         give_up(
-            f"The service cannot listen on {settings.host}, port {settings.port}. Choose another "
-            "with --host and --port, or with DH_GRADER_HOST and DH_GRADER_PORT."
+            say(
+                "The service cannot listen on {host}, port {port}. Choose another with --host and "
+                "--port, or with DH_GRADER_HOST and DH_GRADER_PORT.",
+                host=settings.host,
+                port=settings.port,
+            )
         )

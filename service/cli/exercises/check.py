@@ -22,6 +22,7 @@ from service.catalogue.files.lines import line_of, value_lines
 from service.cli.exercises.variants import check_seeds
 from service.cli.terminal import UNUSABLE, complain, give_up, installed_file, stdout
 from service.settings import load_settings
+from service.translations import say
 
 FAILED = 1
 
@@ -52,7 +53,7 @@ def command(
         path = installed_file(str(path))
     if seeds is not None:
         if path is None or path.is_dir():
-            give_up("--seeds is for one exercise: name its file or its id.")
+            give_up(say("--seeds is for one exercise: name its file or its id."))
         raise SystemExit(FAILED if check_seeds(load_exercise(path), seeds, console) else 0)
     if path is None:
         files = exercise_files(*load_settings().exercises_dir)

@@ -12,6 +12,7 @@ from service.figures.geometry.symbol_numbers import drawing_numbers
 from service.importing.export import toolbox_text, urdf_text
 from service.importing.home_statement import HomeRobot
 from service.kinematics.dh import Convention
+from service.translations import say
 
 
 class ExportFormat(StrEnum):
@@ -35,10 +36,10 @@ def command(
     exercise = named_exercise(exercise_id)
     robot = exercise.reference
     if not isinstance(robot, Robot):
-        give_up(f"the exercise {exercise.id} has no robot with a DH table")
+        give_up(say("the exercise {id} has no robot with a DH table", id=exercise.id))
     table = robot.tables.get(Convention.STANDARD)
     if table is None:
-        give_up(f"the robot of {exercise.id} has no standard DH table")
+        give_up(say("the robot of {id} has no standard DH table", id=exercise.id))
     numbers = drawing_numbers(exercise.variables)
     numbers |= {joint.variable: 0.0 for joint in robot.joints}
     values = table.values({name: np.array([number]) for name, number in numbers.items()}, 1)

@@ -8,7 +8,8 @@ import typer
 from service.authoring import UnusableIdError, template
 from service.catalogue.files.regular_file import read_regular
 from service.cli.exercises.new_file import write_new
-from service.cli.terminal import give_up, stdout
+from service.cli.language import spoken
+from service.cli.terminal import give_up, stdout, unreadable
 from service.importing.robot_import import (
     ImportOptions,
     RefusedRobotError,
@@ -18,6 +19,7 @@ from service.importing.robot_import import (
 )
 from service.importing.urdf import MOST_BYTES
 from service.kinematics.dh import Convention
+from service.translations import say
 
 
 def command(
@@ -54,11 +56,11 @@ def command(
         template(name)
         data = read_regular(file, MOST_BYTES)
     except UnusableIdError as error:
-        give_up(str(error))
+        give_up(error)
     except OSError as error:
-        give_up(f"{file}: cannot be read: {error.strerror}")
+        give_up(unreadable(file, error))
     if not data:
-        give_up(f"{file}: the file is empty")
+        give_up(say("{file}: the file is empty", file=str(file)))
     options = ImportOptions(
         title=title or name,
         source=source or f"Imported from {file.name}",
@@ -78,8 +80,9 @@ def command(
         give_up(f"{file}: {error}")
     made = write_new(output, name, found.text)
     for remark in found.remarks:
-        stdout().print(remark, soft_wrap=True)
-    stdout().print(
-        f"{made} is written. Read its statement, then: dh-grader exercises check {made}",
-        soft_wrap=True,
+        stdout().print(spoken(remark), soft_wrap=True)
+    written = say(
+        "{file} is written. Read its statement, then: dh-grader exercises check {file}",
+        file=str(made),
     )
+    stdout().print(spoken(written), soft_wrap=True)

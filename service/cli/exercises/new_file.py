@@ -4,8 +4,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from service.catalogue import shipped_folder
-from service.cli.terminal import complain, give_up
+from service.cli.terminal import complain, give_up, unwritable
 from service.settings import load_settings
+from service.translations import say
 
 
 def write_new(folder: Path, exercise_id: str, text: str) -> Path:
@@ -16,9 +17,14 @@ def write_new(folder: Path, exercise_id: str, text: str) -> Path:
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
-        give_up(f"{file} already exists and was not changed; choose another id or folder")
+        give_up(
+            say(
+                "{file} already exists and was not changed; choose another id or folder",
+                file=str(file),
+            )
+        )
     except OSError as error:
-        give_up(f"{file}: cannot be written: {error.strerror}")
+        give_up(unwritable(file, error))
     return file
 
 

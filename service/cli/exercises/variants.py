@@ -13,8 +13,9 @@ from rich.text import Text
 
 from service.authoring import Level
 from service.catalogue import Exercise, load_exercise
-from service.cli.terminal import give_up, installed_file, stdout
+from service.cli.terminal import give_up, installed_file, stdout, unwritable
 from service.figures.figure import exercise_figure
+from service.translations import say
 from service.variants.deployment import (
     CheckedVariant,
     TooFewVariantsError,
@@ -35,7 +36,7 @@ def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
     try:
         checked = [checked_variant(exercise, str(seed)) for seed in range(1, count + 1)]
     except NoVariantError as error:
-        give_up(str(error))
+        give_up(error)
     faults: dict[str, list[str]] = defaultdict(list)
     for each in checked:
         for remark in each.remarks:
@@ -101,12 +102,12 @@ def deploy_command(
     file = installed_file(exercise_id) if not Path(exercise_id).is_file() else Path(exercise_id)
     exercise = load_exercise(file)
     if exercise.vary is None:
-        give_up(f"The exercise {exercise.id} has no variants: its file has no [vary].")
+        give_up(say("The exercise {id} has no variants: its file has no [vary].", id=exercise.id))
     try:
         seeds = deploy(exercise, count, without or ())
         checked = [checked_variant(exercise, seed) for seed in seeds]
     except (TooFewVariantsError, NoVariantError) as error:
-        give_up(str(error))
+        give_up(error)
     console = stdout()
     for each in checked:
         faults = [remark.text for remark in each.remarks if remark.level is Level.FAILED]
@@ -123,17 +124,17 @@ def deploy_command(
     try:
         file.write_text(text, encoding="utf-8")
     except OSError as error:
-        give_up(f"{file}: cannot be written: {error.strerror}")
+        give_up(unwritable(file, error))
     console.print(f"{file}: deployed = {len(seeds)} seeds", soft_wrap=True)
 
 
 def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:
     if exercise.reference is None:
-        give_up(f"the exercise {exercise.id} has no robot to draw")
+        give_up(say("the exercise {id} has no robot to draw", id=exercise.id))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for seed in seeds:
             variant = built(exercise, seed)
             (folder / f"{variant.id}.svg").write_text(exercise_figure(variant), encoding="utf-8")
     except OSError as error:
-        give_up(f"{folder}: cannot be written: {error.strerror}")
+        give_up(unwritable(folder, error))

@@ -10,7 +10,7 @@ from typing import Final
 import typer
 from rich.console import Console
 
-from service.cli.terminal import give_up, stdout
+from service.cli.terminal import give_up, stdout, unwritable
 
 # Larger documents are buffered on the disk (bytes).
 _IN_MEMORY: Final = 1024 * 1024
@@ -61,7 +61,7 @@ def _write_file(pieces: Iterable[bytes], output: Path) -> None:
         if is_replaced:
             written.replace(output)
     except OSError as error:
-        give_up(f"{output}: cannot be written: {error.strerror}")
+        give_up(unwritable(output, error))
     finally:
         if is_replaced:
             # After a failure the file may be missing, or its folder is not a folder.

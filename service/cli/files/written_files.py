@@ -5,6 +5,19 @@ from pathlib import Path
 
 from service.cli.files.output_folder import WRITTEN
 from service.cli.terminal import give_up
+from service.translations import say
+
+
+def require_no_input(output: Path, read: Iterable[Path]) -> None:
+    """End the program if the output would replace a file that is read."""
+    for path in read:
+        if path.is_file() and output.exists() and path.samefile(output):
+            give_up(
+                say(
+                    "{file}: is read, and would be overwritten; name another --output",
+                    file=str(output),
+                )
+            )
 
 
 def require_own(output: Path, folders: Iterable[Path]) -> None:
@@ -14,8 +27,11 @@ def require_own(output: Path, folders: Iterable[Path]) -> None:
     """
     if output.is_file() and _holds(folders, output) and output.name not in _written(output):
         give_up(
-            f"{output}: is among the submissions, and no earlier run has written it; "
-            "name another --output"
+            say(
+                "{file}: is among the submissions, and no earlier run has written it; name another "
+                "--output",
+                file=str(output),
+            )
         )
 
 

@@ -34,7 +34,7 @@ def invite_platform(
                 lambda it: invite(it, name[:200], address, zone, now, days=days, waits=hold),
             )
         except RegistrationError as error:
-            give_up(str(error))
+            give_up(error)
     stdout().print(link, soft_wrap=True)
 
 
@@ -48,7 +48,7 @@ def allow_platform(
         try:
             in_transaction(engine, lambda it: allow(it, registration))
         except RegistrationError as error:
-            give_up(str(error))
+            give_up(error)
     typer.echo("Allowed.")
 
 

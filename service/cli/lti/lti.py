@@ -168,7 +168,7 @@ def roster(
     try:
         members = read_roster(asked)
     except RosterError as error:
-        give_up(str(error))
+        give_up(error)
     change = _done(lambda it: enrol_members(it, asked, members, secret, shows_names=names))
     typer.echo(
         f"{change.learners} learners: {change.added} new, {change.removed} removed, "
@@ -204,7 +204,7 @@ def _done(work: Callable[[Connection], R], *, create: bool = False) -> R:
         try:
             return in_transaction(engine, work)
         except (RegistrationError, RosterError, LtiError) as error:
-            give_up(str(error))
+            give_up(error)
 
 
 def _values_in(file: Path) -> dict[str, Any]:

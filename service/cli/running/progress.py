@@ -6,7 +6,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final
 
+from service.cli.language import spoken
 from service.cli.terminal import complain
+from service.translations import say
 
 # With fewer submissions the bar would vanish before anybody could read it.
 _LEAST: Final = 10
@@ -33,7 +35,12 @@ def progress(total: int) -> Iterator[Progress]:
     from rich.progress import Progress as Bar
 
     console = Console(stderr=True, highlight=False, markup=False)
-    columns = (TextColumn("Grading"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    columns = (
+        TextColumn(spoken(say("Grading"))),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
     with Bar(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=total)
         yield Progress(

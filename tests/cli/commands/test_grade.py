@@ -91,11 +91,14 @@ def test_a_report_in_german(run: Run, save: Save, monkeypatch: pytest.MonkeyPatc
         assert "Summe für planar-rrr: 8 / 8 Punkte, 100 %\n" in german.stdout
         assert "Bestanden: zum Bestehen braucht es 80 %.\n" in german.stdout
     monkeypatch.setenv("LANG", "de_DE.UTF-8")
+    assert table_only(run, file).stdout == german.stdout
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "en")
     assert table_only(run, file).stdout == english.stdout
     monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
     assert table_only(run, file).stdout == german.stdout
     [entry] = json.loads(run("grade", "--exercise", "planar-rrr", file, "--format", "json").stdout)
     assert messages_in(entry["report"]) == ["keine Antwort"]
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "en")
     unknown = table_only(run, file, "--lang", "xx")
     assert unknown.exit_code == 2
     assert "'xx' is no language of the reports: write one of en, de" in unknown.stderr
