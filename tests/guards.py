@@ -10,4 +10,4 @@ from typing import Final
 # and the long fuzz.
 STALL: Final = 10.0
 # Seconds for one answer of a server process, or for its end.
-ANSWER: Final = 60.0
+ANSWER: Final = 150.0

@@ -25,7 +25,7 @@ from service.contract.courses import (
     NewAssignment,
     NewLearner,
 )
-from service.courses import roll
+from service.courses import learner_view, roll
 from service.courses.assignments import add_assignment, assignments_of, change_assignment, extend
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links
@@ -157,6 +157,7 @@ def test_an_exercise_whose_file_is_not_there_is_named_to_learner_and_tutor(
     fields = {"id": "homework", "title": "Homework", "exercises": exercises}
     new = NewAssignment.model_validate(fields)
     class_.do(lambda it: add_assignment(it, "robots", new, {"scara", "brand-new"}))
+    learner_view._log_missing.cache_clear()
     class_.own()
     [course] = class_.ask("GET", "/v1/me").json()["courses"]
     found = course["assignments"][0]["exercises"]

@@ -111,7 +111,8 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
 def _has_heading(lines: list[SourceText]) -> bool:
     """True if the first line is a word above rows of several values, or two above brackets."""
     first, *others = (line.text.strip() for line in lines)
-    if not _is_few_words(first) or not _WORD.search(first):
+    # A comment of a program is removed with the other comments.
+    if first[0] in "%#" or not _is_few_words(first) or not _WORD.search(first):
         return False
     return "[" in others[0] or (" " not in first and all(map(_SEVERAL.search, others)))
 

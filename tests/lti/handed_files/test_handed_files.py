@@ -400,7 +400,7 @@ FORGED: list[tuple[Callable[[dict[str, Any]], None], str]] = [
     (without("exp"), "no-expiry"),
     (put("exp", NOW - 60), "expired"),
     (without("iat"), "no-issue-time"),
-    (put("iat", NOW + 600), "issued-later"),
+    (put("iat", NOW + 86_400), "issued-later"),
     (put("iat", NOW - 7200), "issued-before"),
     (put(f"{LTI}version", "1.1"), "wrong-version"),
     (without(f"{LTI}notice"), "wrong-notice"),
