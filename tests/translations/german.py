@@ -24,7 +24,8 @@ class _Words(NullTranslations):
 
 def german(words: Mapping[str, str]) -> Language:
     """Return German with these translations of templates."""
-    made = Language("de", "Deutsch", "de")
+    # Another name: templates are cached by language, and later tests need the whole German.
+    made = Language("de", "Deutsch in Tests", "de")
     made.__dict__["translation"] = _Words(words)
     return made
 
