@@ -31,8 +31,8 @@ DEBT: Final = SLICE
 # request waits for ever.
 PACE: Final = 0.4
 # Allowance in seconds: of the first request; what each later request adds (about three times the
-# mean of wrong tables on a slow processor); and the most that a connection can save, or owe.
-FIRST, ALLOWANCE, SAVED = 0.02, 0.05, 0.2
+# mean of wrong tables); and the most that a connection can save, or owe.
+FIRST, ALLOWANCE, SAVED = 0.006, 0.03, 0.1
 # The number of accounts kept for connections that have no request.
 _ACCOUNTS: Final = 1000
 
