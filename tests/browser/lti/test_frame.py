@@ -54,8 +54,9 @@ DRAWN = """async () => {
 SIZES = {"wide": (1280, 900), "narrow": (375, 800)}
 
 
+# Narrow as a campaign: Chromium sometimes never shows the frame to the test.
 @pytest.mark.long
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("size", ["wide", pytest.param("narrow", marks=pytest.mark.campaign)])
 def test_a_tutor_picks_exercises_in_a_frame(course: Course, axe: str, size: str) -> None:
     platform = course.platform
     platform.habits.append(deep_linking(f"{platform.address}/return?course=1"))
