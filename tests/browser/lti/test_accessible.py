@@ -40,8 +40,7 @@ def framed(page: Page, text: str) -> Frame:
         page.wait_for_timeout(100)
 
 
-# A campaign: beside other tests, Chromium sometimes never shows one of the many frames to the test.
-@pytest.mark.campaign
+@pytest.mark.long
 @checked
 def test_the_pages_in_frames_are_accessible(course: Course, axe: str) -> None:
     course.context.add_init_script(axe)

@@ -11,8 +11,7 @@ from tests.lti.platform import DL, deep_linking
 KEPT = "() => { try { return sessionStorage.length; } catch { return 0; } }"
 
 
-# A campaign: beside other tests, a script in the frame sometimes never answers the test.
-@pytest.mark.campaign
+@pytest.mark.long
 def test_a_learner_gets_in_by_the_storage_of_the_platform(course: Course) -> None:
     page = course.opened("ada")
     frame = page.frame_locator("iframe")
@@ -54,9 +53,8 @@ DRAWN = """async () => {
 SIZES = {"wide": (1280, 900), "narrow": (375, 800)}
 
 
-# Narrow as a campaign: Chromium sometimes never shows the frame to the test.
 @pytest.mark.long
-@pytest.mark.parametrize("size", ["wide", pytest.param("narrow", marks=pytest.mark.campaign)])
+@pytest.mark.parametrize("size", ["wide", "narrow"])
 def test_a_tutor_picks_exercises_in_a_frame(course: Course, axe: str, size: str) -> None:
     platform = course.platform
     platform.habits.append(deep_linking(f"{platform.address}/return?course=1"))
