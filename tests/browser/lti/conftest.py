@@ -19,7 +19,7 @@ from tests.lti.platform import Platform, running
 
 SECRET = "0123456789abcdef" * 4
 OURS = [
-    # All frames in one process. Playwright sometimes never hears of a frame in a process of its own.
+    # All frames in one process: Playwright sometimes never hears of a frame that has its own.
     "--disable-site-isolation-trials",
     *(each for each in OPTIONS if "resolver" not in each),
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
