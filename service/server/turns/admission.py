@@ -25,6 +25,7 @@ from service.api.turns import ARRIVED, CLIENT, ONE_ADDRESS, TURN, Client
 from service.server.limits import HEALTH
 from service.server.refusals import too_busy, too_many
 from service.server.turns.fair_queue import FairQueue, Ticket
+from service.server.turns.speed import Speed
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.time_slices import SLICE
 
@@ -86,7 +87,8 @@ class FairAdmission:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self._queue = FairQueue()
+        self._speed = Speed()
+        self._queue = FairQueue(self._speed.ordinary)
         # Processor time since the sockets were read; True if the next reading is scheduled.
         self._spent = 0.0
         self._reading = False
@@ -143,6 +145,7 @@ class FairAdmission:
             await metered
         finally:
             self._charge(ticket, metered.spent - charged)
+            self._queue.ordinary = self._speed.after_request()
             self._mean += _RECENT * (metered.spent - self._mean)
 
     @property

@@ -30,9 +30,9 @@ DEBT: Final = SLICE
 # that are always busy get no credit and are served in the order of their requests; above 0, no
 # request waits for ever.
 PACE: Final = 0.4
-# Allowance in seconds: of the first request; what each later request adds (about three times the
-# mean of wrong tables); and the most that a connection can save, or owe.
-FIRST, ALLOWANCE, SAVED = 0.006, 0.03, 0.1
+# Allowances, as multiples of the time of an ordinary request: of the first request; what each later
+# request adds; and the most that a connection can save, or owe.
+FIRST, ALLOWANCE, SAVED = 1.0, 2.0, 9.0
 # The number of accounts kept for connections that have no request.
 _ACCOUNTS: Final = 1000
 
@@ -74,7 +74,7 @@ class _Account:
     """
 
     used: float
-    allowed: float = FIRST
+    allowed: float
     spent: float = 0.0
     excess: float = 1.0
     present: int = 0
@@ -85,10 +85,12 @@ class FairQueue:
     """The requests present, and the order of the waiting ones.
 
     Times are on a common clock that advances with the time that all connections use. A connection
-    that was idle has a small credit, and a new one has none.
+    that was idle has a small credit, and a new one has none. ``ordinary`` is the time in seconds of
+    an ordinary request on this machine.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, ordinary: float) -> None:
+        self.ordinary = ordinary
         self._now = 0.0
         self._accounts: dict[tuple[str, int], _Account] = {}
         self._clients: dict[str, _Requests] = {}
@@ -112,7 +114,7 @@ class FairQueue:
             # Many new connections of a client that come at once start one after the other, as many
             # at a time as the client has shares.
             later = SLICE * requests.waiting / ticket.client.most_shares
-            account = _Account(self._now + later)
+            account = _Account(self._now + later, FIRST * self.ordinary)
         elif not account.present:
             self._settle(account)
         # The latest at the end.
@@ -128,7 +130,9 @@ class FairQueue:
         due = min(account.spent, max(0.0, account.allowed))
         used = max(account.used + due * account.excess, self._now - CREDIT)
         account.used = min(used, self._now + DEBT * account.excess)
-        account.allowed = min(max(account.allowed - account.spent, -SAVED) + ALLOWANCE, SAVED)
+        most = SAVED * self.ordinary
+        left = max(account.allowed - account.spent, -most)
+        account.allowed = min(left + ALLOWANCE * self.ordinary, most)
         account.spent = 0.0
 
     def leave(self, ticket: Ticket) -> None:

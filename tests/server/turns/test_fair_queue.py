@@ -6,10 +6,12 @@ from collections import Counter
 import pytest
 
 from service.api.turns import Client
-from service.server.turns.fair_queue import ALLOWANCE, CREDIT, FairQueue, Ticket
+from service.server.turns.fair_queue import ALLOWANCE, CREDIT, FIRST, FairQueue, Ticket
 
 SHARES = 8.0
 STEP = 0.004
+# The time of an ordinary request.
+ORDINARY = 0.015
 
 
 def come(
@@ -34,14 +36,14 @@ def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
 
 
 def test_clients_with_equal_costs_take_turns() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     for client in "abc":
         come(queue, client)
     assert "".join(serve(queue, dict.fromkeys("abc", STEP), 9)) == "abcabcabc"
 
 
 def test_clients_have_the_same_time_and_not_the_same_number_of_turns() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     for client in "ab":
         come(queue, client)
     served = Counter(serve(queue, {"a": 0.010, "b": 0.001}, 1100))
@@ -56,7 +58,7 @@ def test_clients_have_the_same_time_and_not_the_same_number_of_turns() -> None:
 def test_a_client_has_a_share_for_each_connection_up_to_a_number(
     shares: float, connections: int, expected: int
 ) -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     for connection in range(1, connections + 1):
         come(queue, "many", connection, shares=shares)
     come(queue, "one")
@@ -65,7 +67,7 @@ def test_a_client_has_a_share_for_each_connection_up_to_a_number(
 
 
 def test_indistinguishable_connections_share_their_shares() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     for _ in range(4):
         come(queue, "behind a proxy", 0)
     come(queue, "one")
@@ -74,7 +76,7 @@ def test_indistinguishable_connections_share_their_shares() -> None:
 
 
 def test_a_connection_that_was_idle_has_a_limited_credit() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     away = come(queue, "away")
     queue.pop()
     queue.charge(away, STEP)
@@ -85,16 +87,17 @@ def test_a_connection_that_was_idle_has_a_limited_credit() -> None:
     served = serve(queue, {"here": STEP, "away": STEP}, 100)
     assert set(served[:20]) == {"away"}
     first = served.index("here")
-    # Work within the allowance is not charged before the next request.
-    assert first * STEP == pytest.approx(CREDIT + ALLOWANCE, rel=0.1)
+    # Work within the allowance is not charged before the next request; the first one left a part.
+    allowed = (FIRST + ALLOWANCE) * ORDINARY - STEP
+    assert first * STEP == pytest.approx(CREDIT + allowed, rel=0.1)
     assert Counter(served[first:])["away"] == pytest.approx((100 - first) / 2, abs=2)
 
 
 def test_ordinary_requests_run_in_the_order_in_which_they_came() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     served = []
     for _ in range(4):
-        left = dict.fromkeys("abc", 3)
+        left = dict.fromkeys("abc", 5)
         order = ""
         tickets = []
         for client in left:
@@ -112,12 +115,12 @@ def test_ordinary_requests_run_in_the_order_in_which_they_came() -> None:
             queue.leave(ticket)
         served.append(order)
     # For its first request, a connection has a smaller allowance.
-    assert served[0] != "aaabbbccc"
-    assert served[-1] == "aaabbbccc"
+    assert served[0] != "aaaaabbbbbccccc"
+    assert served[-1] == "aaaaabbbbbccccc"
 
 
 def test_costly_requests_one_after_the_other_give_way_after_each_step() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     for _ in range(3):
         come(queue, "costly")
         ticket = queue.pop()
@@ -126,11 +129,12 @@ def test_costly_requests_one_after_the_other_give_way_after_each_step() -> None:
     come(queue, "costly")
     come(queue, "other")
     served = serve(queue, {"costly": STEP, "other": STEP}, 20)
-    assert 8 <= served.count("other") <= 12
+    # The first request of the other one is ordinary.
+    assert served.count("other") == pytest.approx((20 + ORDINARY / STEP) / 2, abs=2)
 
 
 def test_no_request_waits_for_ever_for_new_connections() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     long = come(queue, "long")
     queue.charge(queue.pop(), 0.050)
     queue.push(long)
@@ -145,7 +149,7 @@ def test_no_request_waits_for_ever_for_new_connections() -> None:
 
 
 def test_requests_of_one_connection_are_served_in_order() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     tickets = [come(queue, "a") for _ in range(3)]
     assert [queue.pop() for _ in range(3)] == tickets
     with pytest.raises(ValueError, match="empty"):
@@ -153,7 +157,7 @@ def test_requests_of_one_connection_are_served_in_order() -> None:
 
 
 def test_a_request_that_is_given_up_leaves_the_others() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     tickets = [come(queue, client) for client in "abc"]
     queue.remove(tickets[0])
     queue.leave(tickets[0])
@@ -162,7 +166,7 @@ def test_a_request_that_is_given_up_leaves_the_others() -> None:
 
 
 def test_requests_and_bytes_are_counted_by_client() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     tickets = [come(queue, "a", 1, 100), come(queue, "a", 2, 50), come(queue, "b", 1, 7)]
     of = [queue.waiting(Client(name, SHARES)) for name in "abc"]
     assert of == [(2, 150), (1, 7), (0, 0)]
@@ -173,10 +177,23 @@ def test_requests_and_bytes_are_counted_by_client() -> None:
 
 
 def test_the_number_of_accounts_is_bounded() -> None:
-    queue = FairQueue()
+    queue = FairQueue(ORDINARY)
     for number in range(5_000):
         ticket = come(queue, f"client {number}", number)
         queue.charge(queue.pop(), 0.001)
         queue.leave(ticket)
     assert len(queue._accounts) <= 2_001
     assert not queue._clients
+
+
+def test_a_slow_machine_lets_the_same_requests_run_to_their_end() -> None:
+    orders = []
+    for slower in (1, 3):
+        queue = FairQueue(slower * ORDINARY)
+        for client in "ab":
+            come(queue, client)
+            # Time passes between two arrivals.
+            queue._now += 0.001
+        orders.append("".join(serve(queue, dict.fromkeys("ab", slower * STEP), 12)))
+    assert orders[0] == orders[1]
+    assert orders[0].startswith("aaa")
