@@ -13,12 +13,19 @@ import pytest
 from starlette.requests import Request
 
 from service.api.turns import CLIENT, COURSE_SITE, Client, give_way
-from service.server.turns import admission
+from service.server.turns import admission, speed
 from service.server.turns.admission import FairAdmission
 from service.time_slices import FIRST_SLICE, SLICE
 
 # Seconds from an answer to the client's next request: the wire, and the client's own work.
 WIRE = 0.0003
+# Seconds that an ordinary wrong table takes on the simulated machine.
+ORDINARY = 0.0075
+
+
+def simulate_speed(monkeypatch: pytest.MonkeyPatch, slower: float = 1.0) -> None:
+    """Let the service find the speed of the simulated machine, not that of this one."""
+    monkeypatch.setattr(speed, "_measured", lambda: slower * ORDINARY / speed.ORDINARY)
 
 
 class _Clock(selectors.SelectSelector):
@@ -36,15 +43,19 @@ class _Clock(selectors.SelectSelector):
 class Process:
     """A simulated process with fair admission; each request says how long it takes.
 
-    A grading has a checkpoint every ``step`` seconds, at which it may be suspended.
+    A grading has a checkpoint every ``step`` seconds, at which it may be suspended. ``slower`` says
+    how many times as long this machine takes for the same work.
     """
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, step: float = 0.001) -> None:
+    def __init__(
+        self, monkeypatch: pytest.MonkeyPatch, step: float = 0.001, slower: float = 1.0
+    ) -> None:
         self._step = step
         self._clock = _Clock()
         self.loop = asyncio.SelectorEventLoop(self._clock)
         monkeypatch.setattr(self.loop, "time", lambda: self._clock.now)
         monkeypatch.setattr(admission, "thread_time", lambda: self._clock.now)
+        simulate_speed(monkeypatch, slower)
         self._app = FairAdmission(self._work)
 
     def run(self, seconds: float, *clients: Coroutine[Any, Any, None]) -> None:

@@ -16,7 +16,7 @@ from service.kinematics.chain import pose
 from service.kinematics.dh import Convention
 
 # The mean of wrong tables, in multiples of the computation.
-_ORDINARY: Final = 190
+ORDINARY: Final = 190
 # The number of measurements that count, and of requests between two of them.
 _KEPT, _BETWEEN = 31, 50
 _LINKS: Final = np.random.default_rng(0).uniform(-1, 1, (6, 4, 64))
@@ -28,14 +28,14 @@ class Speed:
     def __init__(self) -> None:
         self._measured = deque((_measured() for _ in range(_KEPT)), maxlen=_KEPT)
         self._requests = 0
-        self.ordinary = _ORDINARY * median(self._measured)
+        self.ordinary = ORDINARY * median(self._measured)
 
     def after_request(self) -> float:
         """Return the time of an ordinary request; measure again after some requests."""
         self._requests += 1
         if self._requests % _BETWEEN == 0:
             self._measured.append(_measured())
-            self.ordinary = _ORDINARY * median(self._measured)
+            self.ordinary = ORDINARY * median(self._measured)
         return self.ordinary
 
 

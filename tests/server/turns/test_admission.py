@@ -17,6 +17,7 @@ from service.server.turns import admission
 from service.server.turns.admission import OF_ALL, OF_ONE, FairAdmission, Metered
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.time_slices import SLICE
+from tests.server.simulated import simulate_speed
 
 Messages = list[dict[str, Any]]
 
@@ -197,7 +198,11 @@ class ManyGradings(Application):
 
 
 @pytest.mark.long
-def test_small_requests_go_before_the_next_grading_of_a_large_one() -> None:
+def test_small_requests_go_before_the_next_grading_of_a_large_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    simulate_speed(monkeypatch)
+
     async def story() -> None:
         inner = ManyGradings()
         app = FairAdmission(inner)
