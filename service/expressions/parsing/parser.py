@@ -124,8 +124,13 @@ class _Parser:
         return self.power(pending)
 
     def signs(self, pending: _Pending) -> None:
+        """Parse signs. Raises UnreadableError for +-90°, which may be ±."""
+        end = -1
         while True:
-            terminal, _, start, _ = self.tokens[self.at]
+            terminal, _, start, stop = self.tokens[self.at]
+            if start == end and {terminal, self.tokens[self.at - 1][0]} == {"PLUS", "MINUS"}:
+                raise UnreadableError("plus_minus", (start - 1, stop))
+            end = stop
             if terminal == "MINUS":
                 pending.append(partial(self.builder.negate, start))
             elif terminal == "PLUS":

@@ -8,6 +8,7 @@ from typing import Final
 
 from service.expressions.errors import Note, UnreadableError, shortened
 from service.expressions.limits import LIMITS
+from service.expressions.parsing.ambiguous_units import check_divisor, check_unit
 from service.expressions.parsing.built import build_function
 from service.expressions.parsing.lexing.literal_notes import (
     on_call,
@@ -16,6 +17,7 @@ from service.expressions.parsing.lexing.literal_notes import (
     on_sum,
 )
 from service.expressions.parsing.lexing.tokens import Token
+from service.expressions.parsing.values_in_brackets import check_product
 from service.expressions.tree import (
     Binary,
     Call,
@@ -80,7 +82,12 @@ class Builder:
         return Binary("*", left, right, left.start, right.end)
 
     def divide(self, left: Node, right: Node) -> Node:
-        """Build left / right, with a note on ``sin q1/2``, but not on √2/2."""
+        """Build left / right, with a note on ``sin q1/2``, but not on √2/2.
+
+        Raises UnreadableError for 180/2°.
+        """
+        if type(right) is Unit and self._is_open(right):
+            check_divisor(left, right)
         if not (
             type(left) is Call and left.function == "sqrt" and type(left.arguments[0]) is Number
         ):
@@ -88,7 +95,11 @@ class Builder:
         return Binary("/", left, right, left.start, right.end)
 
     def join(self, left: Node, right: Node) -> Node:
-        """Build a product without a sign, with a note on ``1/2q1``."""
+        """Build a product without a sign, with a note on ``1/2q1``.
+
+        Raises UnreadableError for two values, such as 90° (π/2).
+        """
+        check_product(self.source, left, right)
         if type(left) is Binary and left.operator == "/" and self._is_open(left):
             message = say(
                 "This was read from left to right, as ({quotient})*{factor}. "
@@ -125,8 +136,11 @@ class Builder:
             raise UnreadableError("raised_zero", (caret, exponent.end), power=True)
         return Binary("^", base, exponent, base.start, exponent.end)
 
-    def unit(self, operand: Node, unit: UnitName, end: int) -> Node:
-        """Build an operand with a unit. Raises UnreadableError for an angle or a length."""
+    def unit(self, operand: Node, unit: UnitName, end: int, start: int | None = None) -> Node:
+        """Build an operand with a unit; ``start`` is that of deg2rad(…).
+
+        Raises UnreadableError for an angle or a length, also for π°, but not for (π)deg.
+        """
         span = (operand.start, end)
         for node in _outside_calls(operand):
             if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
@@ -134,6 +148,11 @@ class Builder:
             if type(node) is SymbolNode and node.symbol.kind != "number":
                 name, place = node.symbol.name, (node.start, node.end)
                 raise UnreadableError("unit_on_variable", span, name=name, variable=place)
+        if start is not None:
+            span = (start, end)
+        in_words = self.source[operand.end : end].strip().isalpha()
+        if unit == "deg" and not (in_words and id(operand) in self.grouped):
+            check_unit(operand, span)
         return Unit(operand, unit, *span)
 
     def group(self, start: int, inner: Node, end: int) -> Node:
@@ -163,9 +182,7 @@ class Builder:
         if len(arguments) != _arity(name, arguments):
             raise _wrong_number(function, arguments, end)
         if name == "deg" or name == "rad":
-            node = self.unit(arguments[0], name, end)
-            node.start = start
-            return node
+            return self.unit(arguments[0], name, end, start)
         if name == "atan2":
             self._note_order(arguments[0], arguments[1], start, end)
         return self._called(function, tuple(arguments), end)

@@ -8,7 +8,16 @@ consist of several signs.
 
 from typing import Final
 
-from service.expressions.tree import Binary, Negation, Node, Number, Unit
+from service.expressions.tree import (
+    Binary,
+    Negation,
+    Node,
+    Number,
+    Pi,
+    SymbolNode,
+    Unit,
+    children,
+)
 
 # How tightly a node binds, and how tightly an operand must bind in a place.
 SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
@@ -36,6 +45,24 @@ def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) 
 def is_power_of_ten(node: Node) -> bool:
     """True if ``node`` is a number that is drawn as a product: ``1e-3``."""
     return type(node) is Number and "e" in node.literal.lower()
+
+
+def needs_dot(left: Node, right: Node) -> bool:
+    """True if a drawn product needs a dot: 2·3, and θ1·(π + 1), which might be two values."""
+    if begins_with_digit(right):
+        return True
+    if type(right) is Pi:
+        return not _has_symbol(left) and _has_unit(left)
+    is_in_brackets = type(right) is Negation or (type(right) is Binary and right.operator in "+-*")
+    return is_in_brackets and not _has_symbol(right)
+
+
+def _has_unit(node: Node) -> bool:
+    return type(node) is Unit or any(map(_has_unit, children(node)))
+
+
+def _has_symbol(node: Node) -> bool:
+    return type(node) is SymbolNode or any(map(_has_symbol, children(node)))
 
 
 def begins_with_digit(node: Node) -> bool:

@@ -6,8 +6,8 @@ from service.expressions.printing.brackets import (
     ATOM,
     POWER,
     PRODUCT,
-    begins_with_digit,
     needs_brackets,
+    needs_dot,
 )
 from service.expressions.printing.symbol_names import symbol_latex
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
@@ -46,7 +46,7 @@ def _binary(node: Binary) -> str:
         sign, upper = ("-", left.operand) if isinstance(left, Negation) else ("", left)
         return rf"{sign}\frac{{{to_latex(upper)}}}{{{to_latex(right)}}}"
     if operator == "*":
-        times = r" \cdot " if begins_with_digit(right) else " "
+        times = r" \cdot " if needs_dot(left, right) else " "
         return f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}"
     return f"{to_latex(left)} {operator} {_at(right, PRODUCT)}"
 

@@ -9,8 +9,8 @@ from service.expressions.printing.brackets import (
     ATOM,
     POWER,
     PRODUCT,
-    begins_with_digit,
     needs_brackets,
+    needs_dot,
 )
 from service.expressions.printing.symbol_names import stem_and_index
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
@@ -71,7 +71,7 @@ def _binary(node: Binary) -> str:
     if operator == "*":
         is_function = type(right) is Call or (type(right) is Binary and type(right.left) is Call)
         invisible = _THIN_TIMES if is_function else _INVISIBLE_TIMES
-        times = "<mo>⋅</mo>" if begins_with_digit(right) else invisible
+        times = "<mo>⋅</mo>" if needs_dot(left, right) else invisible
         return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
     return _mrow(f"{row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
 

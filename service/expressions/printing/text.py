@@ -19,6 +19,9 @@ def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
             return spelling.in_shorthand(node) or f"{function}({inside})"
         case Unit(operand, unit):
             sign = spelling.degree if unit == "deg" else unit
+            if unit == "deg" and isinstance(operand, Pi | Call):
+                # π° has two readings.
+                return f"({to_text(operand, spelling)}){sign}"
             # A name and its unit would run together into one word.
             gap = " " if sign.isalpha() and isinstance(operand, Pi | SymbolNode) else ""
             return f"{_at(operand, ATOM, spelling)}{gap}{sign}"
@@ -32,6 +35,9 @@ def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
             return f"{to_text(left, spelling)} {operator} {_at(right, PRODUCT, spelling)}"
         case Binary(operator, left, right):
             first = _at(left, PRODUCT, spelling, first=True)
+            if operator == "/" and isinstance(right, Unit) and right.unit == "deg":
+                # 180/2° has two readings.
+                return f"{first}/({to_text(right, spelling)})"
             return f"{first}{operator}{_at(right, POWER, spelling)}"
 
 

@@ -1,4 +1,4 @@
-"""A unit before a bracket: 2deg(q1), degrees(90)."""
+"""A unit with two readings: 2deg(q1), degrees(90), π/2°, 180/2°."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 from service.translations import say
@@ -7,6 +7,8 @@ from service.translations import say
 @for_causes("ambiguous_unit")
 def repair(failure: Failure) -> Repair:
     """Ask for the unit after the number."""
+    if "inside" in failure.details:
+        return _inside(failure)
     if not failure.details["opens"]:
         return None
     message = say(
@@ -14,3 +16,16 @@ def repair(failure: Failure) -> Repair:
         "as in 2deg*(3), or the unit after the bracket, as in (180/2)deg."
     )
     return error(failure, "ambiguous_unit", message)
+
+
+def _inside(failure: Failure) -> Repair:
+    """Suggest π/2 for π/2°, and (180/2)° for 180/2°."""
+    (start, end), inside = failure.span, failure.details["inside"]
+    value = failure.source[slice(*inside)]
+    if failure.details["of_pi"]:
+        message = say("With π, a unit of degrees has two readings: π/2 is already 90°.")
+        value = value if start == inside[0] else f"({value})"
+        return error(failure, "ambiguous_unit", message, failure.replaced(value))
+    message = say("A unit after a quotient has two readings. Write brackets, as in (180/2)°.")
+    unit = failure.source[inside[1] : end]
+    return error(failure, "ambiguous_unit", message, failure.replaced(f"({value}){unit}"))

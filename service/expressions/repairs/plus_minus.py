@@ -1,4 +1,4 @@
-"""± and +/-, which mean two values."""
+"""±, +/- and +-, which mean two values."""
 
 import re
 

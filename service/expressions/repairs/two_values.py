@@ -1,4 +1,4 @@
-"""Two values instead of one: ``2 3``, ``q1, q2``, or a second line."""
+"""Two values instead of one: ``2 3``, ``q1, q2``, ``90° (π/2)``, or a second line."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 from service.translations import say
@@ -11,4 +11,4 @@ def repair(failure: Failure) -> Repair:
     if failure.terminal(1) and failure.terminal() != "COMMA":
         start = failure.place(1)[0]
     message = say("Two values stand side by side. Write one value, or an operator between them.")
-    return error(failure, "two_values", message, span=(start, end))
+    return error(failure, "two_values", message, failure.details.get("instead"), (start, end))

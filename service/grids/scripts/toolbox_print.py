@@ -34,7 +34,12 @@ _HEADERS: Final[Mapping[str, str]] = {
 _CONVENTIONS: Final = {"std": "standard", "sta": "standard", "mod": "modified"}
 _INDEX: Final = " ⱼ₋₁"
 _COLUMNS: Final = ("a", "alpha", "d", "theta")
-_VARIABLE: Final = re.compile(r"q\d{1,2}")
+# A line below the headers without values, as Markdown draws it.
+_RULE: Final = re.compile(r"[\s|│┃║:=\-]+")
+_INDEXED: Final = r"[ _]?\{?[\d₁-₉]"
+# The joint variable, as the toolbox prints it or as a student writes it into the table.
+_VARIABLE: Final = re.compile(rf"[$\\]{{0,2}}(?:q|th|theta|θ|ϑ){_INDEXED}", re.IGNORECASE)
+_SLIDING: Final = re.compile(rf"\$?q{_INDEXED}", re.IGNORECASE)
 _ZERO: Final = re.compile(r"-?0(?:\.0*)?°?")
 _FRAME: Final = re.compile(r"(?<![^\W\d_])(?:tool|base)(?![^\W\d_])")
 _NUMBER: Final = re.compile(r"(?<![\w.])-?\d{1,12}(?:\.\d{0,12})?(?![\w.])")
@@ -90,6 +95,8 @@ def _table(source: SourceText) -> tuple[list[list[SourceText]], str]:
     lines = source.lines()
     for i, line in enumerate(lines):
         plain = line.strip()
+        if _BARS.match(plain.text) and _RULE.fullmatch(plain.text):
+            continue
         if _BARS.match(plain.text):
             rows.append([cell.strip() for cell in plain.split(_BARS)[1:-1]])
         elif rows and plain.text[:1] not in {"+", "├", "┣", "╠"}:
@@ -103,6 +110,9 @@ def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]
     offset = named.get("offset")
     if offset is not None and not _ZERO.fullmatch(offset.text):
         variable = "theta" if _VARIABLE.match(named["theta"].text) else "d"
+        if variable == "d" and not _SLIDING.match(named["d"].text):
+            message = say("Does this offset belong to θ or to d? Add it there, without a column.")
+            raise unread_script(message, offset)
         cell = named[variable]
         parts = [cell, cell.spelled(" + ("), offset, offset.spelled(")")]
         named[variable] = joined(parts, cell.at)

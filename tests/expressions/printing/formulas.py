@@ -13,7 +13,7 @@ FORMULAS = [
      r"\operatorname{atan2}\left(\sin\left(\theta_{1}\right), \cos\left(\theta_{1}\right)\right)"),
     ("1e-3", "1e-3", r"1 \cdot 10^{-3}"),
     ("2*3", "2*3", r"2 \cdot 3"),
-    ("k*-2", "k*(-2)", r"k \left(-2\right)"),
+    ("k*-2", "k*(-2)", r"k \cdot \left(-2\right)"),
     ("k-(l1-l2)", "k - (l1 - l2)", r"k - \left(l_{1} - l_{2}\right)"),
     ("k*(-l1/2)", "k*(-l1/2)", r"k \left(-\frac{l_{1}}{2}\right)"),
     ("k-(-l1*2)", "k - (-l1*2)", r"k - \left(-l_{1} \cdot 2\right)"),

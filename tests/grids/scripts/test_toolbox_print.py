@@ -22,6 +22,20 @@ def test_an_offset_is_added_to_the_joint_variable() -> None:
     assert rows(HEAD + ROWS) == expected
 
 
+@pytest.mark.parametrize("variable", ["q2", "θ2", "θ₂", "theta_2", "Theta2", r"$\theta_{2}$"])
+def test_a_markdown_table_with_the_same_headers(variable: str) -> None:
+    table = "| j | theta | d | a | alpha | offset |\n|---|:-:|---|---|---|---|\n"
+    table += f"| 1 | q1 | d1 | 0 | 90° | 0 |\n| 2 | {variable} | 0 | a2 | 0 | pi/2 |\n"
+    assert rows(table) == ["0 | 90° | d1 | q1", f"a2 | 0 | 0 | {variable} + (pi/2)"]
+
+
+@pytest.mark.parametrize("d", ["0", "d2"])
+def test_an_offset_of_no_joint_variable_is_refused(d: str) -> None:
+    table = HEAD + f"| 1 | 0 | {d} | 0 | 0 | pi/2 |\n"
+    with pytest.raises(GridError, match="belong to θ or to d"):
+        read_robot(table)
+
+
 @pytest.mark.parametrize(("first", "convention"), [(FIRST, "modified"), ("", None)])
 def test_the_first_line_names_the_convention(first: str, convention: str | None) -> None:
     robot = read_robot(first + HEAD + ROWS)
