@@ -2,7 +2,17 @@
 
 from service.expressions.printing.brackets import ATOM, POWER, PRODUCT, needs_brackets
 from service.expressions.printing.spelling import PLAIN, Spelling
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Operator,
+    Pi,
+    SymbolNode,
+    Unit,
+)
 
 
 def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
@@ -17,14 +27,8 @@ def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
         case Call(function, arguments):
             inside = ", ".join(to_text(argument, spelling) for argument in arguments)
             return spelling.in_shorthand(node) or f"{function}({inside})"
-        case Unit(operand, unit):
-            sign = spelling.degree if unit == "deg" else unit
-            if unit == "deg" and isinstance(operand, Pi | Call):
-                # π° has two readings.
-                return f"({to_text(operand, spelling)}){sign}"
-            # A name and its unit would run together into one word.
-            gap = " " if sign.isalpha() and isinstance(operand, Pi | SymbolNode) else ""
-            return f"{_at(operand, ATOM, spelling)}{gap}{sign}"
+        case Unit():
+            return _unit(node, spelling)
         case Negation(operand):
             return f"-{_at(operand, POWER, spelling)}"
         case Binary("^", base, exponent):
@@ -35,10 +39,25 @@ def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
             return f"{to_text(left, spelling)} {operator} {_at(right, PRODUCT, spelling)}"
         case Binary(operator, left, right):
             first = _at(left, PRODUCT, spelling, first=True)
-            if operator == "/" and isinstance(right, Unit) and right.unit == "deg":
-                # 180/2° has two readings.
-                return f"{first}/({to_text(right, spelling)})"
-            return f"{first}{operator}{_at(right, POWER, spelling)}"
+            return f"{first}{operator}{_factor(operator, right, spelling)}"
+
+
+def _unit(node: Unit, spelling: Spelling) -> str:
+    operand, unit = node.operand, node.unit
+    sign = spelling.degree if unit == "deg" else unit
+    if unit == "deg" and isinstance(operand, Pi | Call):
+        # π° has two readings.
+        return f"({to_text(operand, spelling)}){sign}"
+    # A name and its unit would run together into one word.
+    gap = " " if sign.isalpha() and isinstance(operand, Pi | SymbolNode) else ""
+    return f"{_at(operand, ATOM, spelling)}{gap}{sign}"
+
+
+def _factor(operator: Operator, node: Node, spelling: Spelling) -> str:
+    if operator == "/" and isinstance(node, Unit) and node.unit == "deg":
+        # 180/2° has two readings.
+        return f"({to_text(node, spelling)})"
+    return _at(node, POWER, spelling)
 
 
 def _at(node: Node, place: int, spelling: Spelling, *, first: bool = False) -> str:

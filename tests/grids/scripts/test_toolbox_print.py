@@ -22,7 +22,7 @@ def test_an_offset_is_added_to_the_joint_variable() -> None:
     assert rows(HEAD + ROWS) == expected
 
 
-@pytest.mark.parametrize("variable", ["q2", "θ2", "θ₂", "theta_2", "Theta2", r"$\theta_{2}$"])
+@pytest.mark.parametrize("variable", ["q2", "θ2", "θ₂", "theta_2", "Theta2", r"\theta_{2}"])
 def test_a_markdown_table_with_the_same_headers(variable: str) -> None:
     table = "| j | theta | d | a | alpha | offset |\n|---|:-:|---|---|---|---|\n"
     table += f"| 1 | q1 | d1 | 0 | 90° | 0 |\n| 2 | {variable} | 0 | a2 | 0 | pi/2 |\n"

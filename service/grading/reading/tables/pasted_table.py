@@ -1,13 +1,9 @@
 """Read a pasted DH table as rows of entries. Spans count in the whole pasted text."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import islice
-from typing import Final
 
-from service.expressions.errors import Span
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.pasted import (
@@ -20,6 +16,7 @@ from service.grading.reading.pasted import (
 )
 from service.grading.reading.tables import column_headers
 from service.grading.reading.tables.cell_names import arranged_row, first_number, row_entries
+from service.grading.reading.tables.column_comments import columns_in_comments
 from service.grading.reading.tables.column_headers import (
     QUANTITIES,
     SHOWN,
@@ -35,11 +32,6 @@ from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.kinematics.chain import COLUMNS
 from service.translations import listed, say
-
-# A comment of a program, and the separators between the names in it.
-_COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//)[ \t]{0,40}([^\n%#]{7,80})")
-_MOST_COMMENTS: Final = 40
-_BETWEEN_NAMES: Final = re.compile(r"[\s,;|&:]+")
 
 ColumnOrder = tuple[int | None, Header]
 
@@ -66,8 +58,8 @@ class PastedRow:
 class PastedTable:
     """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
 
-    ``is_named`` is true if the columns have headers, or names in a script. ``convention`` is the
-    one in a script.
+    ``is_named`` is true if the columns have headers, or names in a script or a comment.
+    ``convention`` is the one in a script.
     """
 
     rows: tuple[PastedRow, ...]
@@ -82,42 +74,26 @@ def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     robot = pasted_robot(text, reader)
     if robot:
         return table_of_robot(robot, reader)
-    return table_of(pasted_grid(text, reader), reader, order_in_comments(text) or COLUMNS)
+    return table_of(pasted_grid(text, reader), reader, comments=text)
 
 
-def order_in_comments(text: str) -> Sequence[str] | None:
-    """Return the order of the columns in a comment such as ``% theta d a alpha``, or None.
-
-    Raises GridError if two comments name two orders.
-    """
-    found: dict[tuple[str, ...], Span] = {}
-    for comment in islice(_COMMENT.finditer(text), _MOST_COMMENTS):
-        headers = [read_header(word) for word in _BETWEEN_NAMES.split(comment[1].strip(" \t[]()"))]
-        names = [header.column if header and not header.unit else "" for header in headers]
-        for i in range(len(names) - len(COLUMNS) + 1):
-            order = tuple(names[i : i + len(COLUMNS)])
-            if sorted(order) == sorted(COLUMNS):
-                found[order] = comment.span(1)
-    if len(found) > 1:
-        message = say("Two comments name the columns in two orders. Put headers above the columns.")
-        raise GridError("unknown_header", message, [*found.values()][1])
-    return next(iter(found), None)
-
-
-def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
+def table_of(
+    grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS, comments: str = ""
+) -> PastedTable:
     """Read the rows of a pasted DH table.
 
-    Columns are identified by their headers. Without headers there must be four columns in
-    ``order``, or five with the row numbers first. Rows are ordered by their labels, if they have
-    any. Raises GridError if the columns cannot be identified.
+    Columns are identified by their headers. Without headers there must be four columns in the order
+    that ``comments`` name, else in ``order``, or five with the row numbers first. Rows are ordered
+    by their labels, if they have any. Raises GridError if the columns cannot be identified.
     """
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
     grid = with_units_in_headers(grid)
     found = _found_headers(grid.rows[0], reader)
+    named = None if found is not None else columns_in_comments(comments, reader)
     if found is None:
-        columns, labels, more = _columns_in_order(grid, order)
+        columns, labels, more = _columns_in_order(grid, named or [*map(Header, order)])
         body = grid.rows
     else:
         columns, labels, more = _columns_by_headers(grid.rows[0], found)
@@ -137,7 +113,7 @@ def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> Past
         findings = (*findings, *more)
     notes = tuple(map(from_note, grid.notes))
     heads = tuple(header for _, header in columns)
-    return PastedTable(rows, heads, (*notes, *findings), found is not None)
+    return PastedTable(rows, heads, (*notes, *findings), bool(found or named))
 
 
 def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
@@ -342,7 +318,7 @@ def _convention_hint(
 
 
 def _columns_in_order(
-    grid: Grid, order: Sequence[str]
+    grid: Grid, order: Sequence[Header]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
     """Return the columns of a table without headers, the column of labels if any, and findings."""
     width = max(map(len, grid.rows))
@@ -358,19 +334,27 @@ def _columns_in_order(
             place_of(grid.rows[0]),
         )
     first = 1 if has_labels else 0
-    columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
+    names = [header.column for header in order]
+    places = [names.index(column) for column in COLUMNS]
+    columns = tuple((first + place, order[place]) for place in places)
+    for (_, header), column in zip(columns, COLUMNS, strict=True):
+        _check_unit(header, column, grid.rows[0][0])
     message = say(
         "The columns have no headers and were read in the order a, α, d, θ. If yours "
         "is different, such as θ, d, a, α in the Robotics Toolbox, put headers above "
         "them."
     )
-    if tuple(order) != tuple(COLUMNS):
-        shown = ", ".join(SHOWN[column] for column in order)
+    if tuple(names) != tuple(COLUMNS) or any(header.unit for header in order):
+        shown = ", ".join(map(_shown, order))
         message = say(
             "The columns were read in the order of your comment: {parameters}.", parameters=shown
         )
     finding = _note("column_order", message, grid.rows[0][0])
     return columns, 0 if has_labels else None, (finding,)
+
+
+def _shown(header: Header) -> str:
+    return f"{SHOWN[header.column]} [{header.unit}]" if header.unit else SHOWN[header.column]
 
 
 def _row(

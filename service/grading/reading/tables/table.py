@@ -23,7 +23,6 @@ from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.reading.tables.pasted_table import (
     PastedTable,
     entries_of,
-    order_in_comments,
     table_of,
     table_of_robot,
 )
@@ -205,10 +204,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
     try:
         robot = pasted_robot(text, reader)
         grid = robot.grid if robot else pasted_grid(text, reader)
-        order = None if robot else order_in_comments(text)
-        pasted = (
-            table_of_robot(robot, reader) if robot else table_of(grid, reader, order or COLUMNS)
-        )
+        pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader, comments=text)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
@@ -227,7 +223,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
             return StudentTable((), _NO_ROWS, None)
 
     table = read(pasted, reader)
-    return table if pasted.is_named or order else replace(table, reread=reread)
+    return table if pasted.is_named else replace(table, reread=reread)
 
 
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:

@@ -1,0 +1,61 @@
+"""Comments of a program name the columns of a table, and their units."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading.reading.preview import PastedPreview, preview_pasted
+
+ROWS = "[q1 400 300 90; q2 0 0 0; q3 0 0 0]"
+
+
+@pytest.fixture
+def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
+    """An arm whose lengths are in metres."""
+    return catalogue["rrrp"]
+
+
+def first_row(shown: PastedPreview) -> list[str]:
+    return [cell.text for cell in shown.rows[0]]
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "% theta [deg], d [mm], a [mm], alpha [deg]",
+        "# theta(deg) d(mm) a(mm) alpha(deg)",
+        "// theta_deg | d/mm | a/mm | alpha/deg",
+    ],
+)
+def test_a_comment_names_the_columns_and_their_units(comment: str, arm: Exercise) -> None:
+    shown = preview_pasted(f"{comment}\nDH = {ROWS};", arm, "table")
+    assert first_row(shown) == ["300/1000", "90deg", "400/1000", "q1"]
+
+
+@pytest.mark.parametrize(
+    "comment", ["% lengths in mm", "% angles in degrees", "# Winkel in Grad", "% [mm, deg]"]
+)
+def test_a_unit_without_columns_is_refused(comment: str, arm: Exercise) -> None:
+    problem = preview_pasted(f"{comment}\nDH = {ROWS};", arm, "table").problem
+    assert problem is not None
+    assert problem.code == "text_around"
+
+
+@pytest.mark.parametrize("comment", ["% angles in rad", "% in m", "% joint 1 turns by 90 deg"])
+def test_other_comments_are_ignored(comment: str, arm: Exercise) -> None:
+    shown = preview_pasted(f"{comment}\nDH = [0 0 0.4 q1; 0 0 0 q2];", arm, "table")
+    assert first_row(shown) == ["0", "0", "0.4", "q1"]
+
+
+def test_headers_in_the_table_count_more_than_a_comment(arm: Exercise) -> None:
+    shown = preview_pasted(
+        "#, d (mm), theta, a (mm), alpha (deg)\n1, 400, q1, 300, 90", arm, "table"
+    )
+    assert first_row(shown) == ["300/1000", "90deg", "400/1000", "q1"]
+
+
+def test_a_unit_of_the_other_kind_is_refused(arm: Exercise) -> None:
+    shown = preview_pasted(f"% theta [mm], d, a, alpha\nDH = {ROWS};", arm, "table")
+    assert shown.problem is not None
+    assert shown.problem.code == "header_unit"
