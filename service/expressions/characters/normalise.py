@@ -198,7 +198,7 @@ class _Normaliser(CharacterWriter):
             if plain is None:
                 raise UnreadableError("command", named.span(), name="")
             return self._emit(plain, at, named.end())
-        if symbol in "{}_":
+        if symbol in "{}_*":
             return self._emit(symbol, at, after)
         if symbol in latex_commands.BLANK_SYMBOLS:
             return self._emit(" ", at, after)

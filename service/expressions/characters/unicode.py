@@ -16,9 +16,14 @@ MARKER: Final = "\ue002"
 _OPERATORS: Final = {
     **dict.fromkeys("×·⋅∙∗•⁎✕✖⨯⨉", "*"),
     **dict.fromkeys("÷∕⁄", "/"),
-    **dict.fromkeys("−–—‐‑‒―˗", "-"),
+    **dict.fromkeys("−–—‐‑‒―˗﹣", "-"),
     **dict.fromkeys("º˚∘◦°", "°"),
     "√": "√",
+    "﹢": "+",
+    "﹙": "(",
+    "﹚": ")",
+    # The accent in 90 degrés.
+    "é": "e",
     "ˆ": "^",
     "ℓ": "l",
     "度": "°",
@@ -42,8 +47,8 @@ SUBSCRIPTS: Final = dict(
 )
 LOOK_ALIKES: Final = dict(
     zip(
-        "аеорсухіјѕԁԛӏһԝАВЕКМНОРСТХІЅЈΑΒΕΖΗΙΚΜΝΟΡΤΥΧοßɑ∝ɵѳӨөп",
-        "aeopcyxijsdqlhwABEKMHOPCTXISJABEZHIKMNOPTYXoβααθθθθπ",
+        "аеорсухіјѕԁԛӏһԝАВЕКМНОРСТХІЅЈΑΒΕΖΗΙΚΜΝΟΡΤΥΧοßɑ∝ɵѳӨөϴп∏ℼᴨ",
+        "aeopcyxijsdqlhwABEKMHOPCTXISJABEZHIKMNOPTYXoβααθθθθθππππ",
         strict=True,
     )
 )

@@ -11,8 +11,9 @@ from service.expressions.limits import LIMITS
 
 from service.expressions.repairs import (  # isort: skip
     ambiguous_number, ambiguous_shorthand, ambiguous_star, ambiguous_unit, beyond_limits,
-    braced_stem, chained_power, comment, cube_root, dash, decimal_comma, degrees_function,
-    detached_index, empty, equation, euler_and_imaginary, function_of_time, function_power,
+    braced_stem, bracketed_unit, chained_power, comment, cube_root, dash, decimal_comma,
+    degrees_function, detached_index, empty, equation, euler_and_imaginary, function_of_time,
+    function_power,
     function_without_argument, index, interval, invisible_character, length_unit, letter_x,
     look_alike_character, malformed_number, mismatched_bracket, missing_operand, mixed_number,
     not_a_number, not_finite, not_revolute, plus_minus, prose, quotes, raised_zero, repeated_joint,
@@ -30,8 +31,9 @@ RULES: Final[tuple[RepairRule, ...]] = (
     transpose, cube_root, unknown_command, subscript, braced_stem, raised_zero, function_of_time,
     length_unit, letter_x, detached_index, unknown_joint, index, wrong_case, euler_and_imaginary,
     tan_of_two, unknown_function, unknown_symbol, not_revolute, repeated_joint, ambiguous_shorthand,
-    ambiguous_number, ambiguous_star, ambiguous_unit, degrees_function, unit_on_variable, two_units,
-    function_power, wrong_number_of_arguments, mismatched_bracket, function_without_argument,
+    ambiguous_number, ambiguous_star, bracketed_unit, ambiguous_unit, degrees_function,
+    unit_on_variable, two_units, function_power, wrong_number_of_arguments, mismatched_bracket,
+    function_without_argument,
     trailing_punctuation, trailing_operator, unbalanced_bracket, chained_power, missing_operand,
     malformed_number, two_values, unexpected_character,
 )  # fmt: skip
@@ -40,7 +42,8 @@ RULES: Final[tuple[RepairRule, ...]] = (
 # Rules that search the whole text for slips of short texts.
 _SHORT_TEXT_RULES: Final = frozenset({
     dash, comment, quotes, equation, plus_minus, prose, interval, transpose, braced_stem,
-    function_of_time, raised_zero, letter_x, tan_of_two, decimal_comma, trailing_punctuation,
+    bracketed_unit, function_of_time, raised_zero, letter_x, tan_of_two, decimal_comma,
+    trailing_punctuation,
 })  # fmt: skip
 _LONG_TEXT_RULES: Final = tuple(rule for rule in RULES if rule not in _SHORT_TEXT_RULES)
 

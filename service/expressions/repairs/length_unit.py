@@ -1,7 +1,9 @@
 r"""Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}."""
 
 import re
+import unicodedata
 
+from service.expressions.errors import Span
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 from service.translations import say
@@ -14,6 +16,8 @@ _QUANTITY = re.compile(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([
 # In l2 s(q1), s is the sine and not the second.
 _FUNCTIONS = frozenset({"s", "C"})
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
+_OPENING = re.compile(r"(?<=[\w.)}])\s{0,4}[(\[]\s{0,4}\Z")
+_CLOSING = re.compile(r"\s{0,4}[)\]]")
 _WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise.")
 
 
@@ -22,19 +26,30 @@ def repair(failure: Failure) -> Repair:
     """Ask for the bare number. Suggest it only for metres, because cm and mm change its value."""
     if failure.cause == "quantity":
         return _quantity(failure)
-    if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
+    written = unicodedata.normalize("NFKC", failure.written)
+    brackets = _brackets(failure)
+    is_after_value = failure.details["before"] in _OPERANDS or brackets != failure.span
+    if not is_after_value or not _UNIT.fullmatch(written):
         return None
     if failure.details["called"] and failure.written in _FUNCTIONS:
         return None
-    if failure.written not in _METRES:
+    if written not in _METRES:
         message = say(
             "Write lengths without a unit, in the unit of the exercise. Convert {unit} first.",
-            unit=failure.written,
+            unit=written,
         )
         return error(failure, "length_unit", message)
-    start, end = failure.span
+    start, end = brackets
     number = failure.source[:start].rstrip() + failure.source[end:]
     return error(failure, "length_unit", _WITHOUT_UNIT, number)
+
+
+def _brackets(failure: Failure) -> Span:
+    """Return the place of the unit with the brackets around it, as in 0.4 [m]."""
+    start, end = failure.span
+    opening = _OPENING.search(failure.source, 0, start)
+    closing = _CLOSING.match(failure.source, end)
+    return (opening.start(), closing.end()) if opening and closing else failure.span
 
 
 def _quantity(failure: Failure) -> Repair:

@@ -72,7 +72,7 @@ ALONE: Final[dict[str, tuple[PieceKind, str]]] = {
     },
     # In spreadsheets, these make radians of a number of degrees.
     **dict.fromkeys(("RADIANS", "BOGENMASS", "RADIANES", "RADIANTI"), ("function", "deg")),
-    **dict.fromkeys(("Grad", "grados", "gradi", "graus"), ("unit", "deg")),
+    **dict.fromkeys(("Grad", "grados", "gradi", "graus", "degre", "degres"), ("unit", "deg")),
     **{name: ("constant", name) for name in CONSTANTS},
     "M_PI": ("pi", "pi"), "kPi": ("pi", "pi"), "Degree": ("unit", "deg"),
 }  # fmt: skip

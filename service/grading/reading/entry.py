@@ -1,7 +1,7 @@
 """Read a submitted cell as an entry, and evaluate entries at the samples."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Self
 
@@ -23,6 +23,7 @@ from service.expressions import (
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.reading.absent_variables import with_absent_variables
+from service.grading.reading.converted_lengths import converted
 from service.grading.report import Verdict
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
@@ -117,13 +118,21 @@ class Reader:
             is_unknown = is_unknown and budget.charge_reading(symbols)
             absent = self._in_absent_variables(raw, quantity) if is_unknown else None
             if absent is None:
-                return unreadable(_from_error(error))
+                return unreadable(self._finding(error, raw))
             expression = absent
         if not expression.notes:
             return Entry(expression)
         hidden = self._hidden_notes(expression) if in_table else frozenset()
         shown = (note for note in expression.notes if note.code not in hidden)
         return Entry(expression, findings=tuple(map(from_note, shown)))
+
+    def _finding(self, error: ExpressionError, raw: str | int | float) -> Finding:
+        """Return the error as a finding; a repaired length is in the unit of the exercise."""
+        finding = _from_error(error)
+        if error.code == "length_unit" and self.length_unit:
+            kept = error.suggestion if self.length_unit == "m" else None
+            return replace(finding, suggestion=converted(str(raw), self.length_unit) or kept)
+        return finding
 
     def _in_absent_variables(self, raw: str | int | float, quantity: Kind) -> Expression | None:
         """Read a text that may contain absent joint variables; return None if that fails, too."""
