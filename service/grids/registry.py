@@ -1,5 +1,6 @@
 """All formats, in the order in which they are tried."""
 
+import re
 from dataclasses import replace
 from typing import Final
 
@@ -9,7 +10,7 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.formats import columns, csv, html, latex, markdown, semicolons, tsv
 from service.grids.formats.data_frame import without_frame
 from service.grids.matrices import bracketed, drawn_matrix, matlab_rows, word
-from service.grids.scripts.given_values import without_given_values
+from service.grids.scripts.given_values import without_definitions, without_given_values
 from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
@@ -28,7 +29,10 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
 # Separators and signs of Chinese keyboards.
-FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］｛｝＆＠　", ",;()|=-+:[]{}&@ ")
+FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］【】｛｝＆＠　", ",;()|=-+:[][]{}&@ ")
+
+# The first line of a CSV file that names its separator to a spreadsheet.
+_SEPARATOR_LINE: Final = re.compile(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"
@@ -39,9 +43,10 @@ def read_grid(text: str) -> Grid:
 
     Takes linear time. The length of the text is bounded by ``GRID_LIMITS``.
     """
-    source, titles = without_titles(without_frame(without_title(pasted_source(text))))
+    source, defined = without_definitions(pasted_source(text))
+    source, titles = without_titles(without_frame(without_title(source)))
     source, values = without_given_values(source)
-    notes = (*titles, *values)
+    notes = (*defined, *titles, *values)
     found = grid_of(source)
     return replace(found, notes=(*notes, *found.notes)) if notes else found
 
@@ -81,6 +86,8 @@ def _limited(text: str) -> SourceText:
     plain = SourceText.of(text)
     plain = SourceText(text.translate(FULL_WIDTH), plain.starts, plain.ends)
     source = without_fence(plain.strip("\ufeff"))
+    if separator := _SEPARATOR_LINE.match(source.text):
+        source = source.cut(separator.end(), len(source.text))
     if not source.text.strip():
         raise GridError("empty", say("Nothing is written here."), (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:

@@ -20,6 +20,7 @@ from service.grading.reading.matrices.screw_list import screw_grid
 from service.grading.reading.pasted import pasted_grid, placed
 from service.grading.reading.tables.column_headers import Header
 from service.grading.reading.tables.pasted_table import entries_of, read_pasted_table
+from service.grading.reading.tables.words import METRES
 from service.grading.work_budget import WorkBudget
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
@@ -163,20 +164,24 @@ def _table(text: str, reader: Reader) -> PastedPreview:
         )
         rows.append(
             tuple(
-                replace(cell, entry=_alone(cell.text, header, reader))
-                if header.unit and cell.text
-                else cell
+                replace(cell, entry=_alone(cell, header, reader)) if header.unit else cell
                 for cell, header in zip(cells, table.headers, strict=True)
             )
         )
     return PastedPreview(tuple(rows), _notes(table.findings))
 
 
-def _alone(text: str, header: Header, reader: Reader) -> str:
-    """Return the text that is read alone as ``text`` is read below a header with a unit."""
-    if header.angle_unit == "radians" and reader.angle_unit == "degrees":
-        return _TERM.sub(r"\1rad", text)
-    return text
+def _alone(cell: CellPreview, header: Header, reader: Reader) -> str:
+    """Return the text that is read alone as the cell is read below a header with a unit."""
+    if cell.problem and _DECIMAL_COMMA.fullmatch(cell.typed):
+        # The repair of 135,0 would lose the unit.
+        if header.angle_unit and header.angle_unit != reader.angle_unit:
+            return f"{cell.typed}{'°' if header.angle_unit == 'degrees' else ' rad'}"
+        if header.metres and header.metres != METRES.get(reader.length_unit or ""):
+            return f"{cell.typed} {header.unit}"
+    if header.angle_unit == "radians" and reader.angle_unit == "degrees" and cell.text:
+        return _TERM.sub(r"\1rad", cell.text)
+    return cell.text or cell.entry
 
 
 def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
@@ -262,6 +267,7 @@ def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
 
 
 # A number, other than 0, that is a whole term of a sum.
+_DECIMAL_COMMA: Final = re.compile(r"[-+−–]?\s{0,4}\d{1,12},\d{1,12}")
 _TERM: Final = re.compile(
     r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
 )

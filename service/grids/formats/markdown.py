@@ -4,6 +4,7 @@ import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.markup import without_tags
 from service.grids.cutting.source_text import SourceText
 from service.translations import say
 
@@ -46,7 +47,7 @@ def _cells(line: SourceText) -> list[SourceText]:
         pieces = pieces[1:]
     if len(pieces) > 1 and not pieces[-1].text:
         pieces = pieces[:-1]
-    return pieces
+    return [without_tags(piece) for piece in pieces]
 
 
 FORMAT: Final = GridFormat(_matches, _parse)

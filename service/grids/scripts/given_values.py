@@ -25,6 +25,17 @@ _HARMLESS: Final = re.compile(
     r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load)\b[^;\n]*)?(?:[;,\n]|\Z)"
 )
 # A name that is not the left side of an assignment.
+# A line above or below a table: "where d1 = 0.135 m, a2 = 0.4 m".
+_DEFINITION: Final = (
+    r"(?:[^\W\d_]{1,5}_?\d{1,2}|[^\W\d_]_\{\d\}|[^\W\d_][₀-₉])\s{0,4}[=:]\s{0,4}"
+    r"[-+−]?(?:\d{1,9}(?:[.,]\d{1,9})?)(?:\s{0,4}(?:°|[^\W\d_]{1,8}))?"
+)
+_DEFINITIONS: Final = re.compile(
+    r"\s{0,9}(?:(?:where|with|wobei|mit|donde|con|où|avec|其中)\s{0,4}:?\s{0,4})?"
+    rf"{_DEFINITION}(?:\s{{0,4}}(?:[,;、]|and|und|y|et|和)\s{{0,4}}{_DEFINITION}){{0,20}}[\s.,;]{{0,9}}",
+    re.IGNORECASE,
+)
+_DEFINED: Final = re.compile(r"[^\W\d]\w*(?=\s{0,4}[=:])")
 _READ: Final = re.compile(r"[A-Za-z]\w*(?!\w|[ \t]*=(?!=))")
 _SHOWS: Final = re.compile(r"(?:disp|display|pretty)\(\w{1,60}\)\Z")
 _TAIL: Final = " \t\r\n;,"
@@ -63,6 +74,30 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
     if (shown is plain and not given) or not begins_as_matrix(rest.text):
         return source, ()
     return rest, given_numbers_note(given, set(_READ.findall(rest.text)))
+
+
+def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
+    """Return a table without lines such as ``d1 = 0.135 m`` around it, and a note on them.
+
+    Any other text is returned unchanged.
+    """
+    lines = [line for line in source.lines() if line.text.strip()]
+    is_definition = [_DEFINITIONS.fullmatch(line.text) is not None for line in lines]
+    rows = [line for line, defines in zip(lines, is_definition, strict=True) if not defines]
+    if len(rows) < 2 or len(rows) == len(lines) or any("=" in row.text for row in rows):
+        return source, ()
+    first = is_definition.index(False)
+    if any(is_definition[first : first + len(rows)]):
+        return source, ()
+    around = [line for line, defines in zip(lines, is_definition, strict=True) if defines]
+    names = [name for line in around for name in _DEFINED.findall(line.text)]
+    message = say(
+        "The numbers of {letters} were not used. The letters were read as the exercise's symbols.",
+        letters=", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else ""),
+    )
+    note = Note("given_numbers", message, around[0].whole)
+    start, end = source.starts.index(rows[0].starts[0]), source.starts.index(rows[-1].starts[-1])
+    return source.cut(start, end + 1), (note,)
 
 
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:

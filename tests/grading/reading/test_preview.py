@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from service.grading.reading.preview import preview_pasted
+from service.expressions import Kind
+from service.grading.reading.preview import preview_entries, preview_pasted
 from service.translations import Sentence
 
 TABLE = "\n".join(
@@ -121,3 +122,26 @@ def test_the_messages_can_be_translated(part: str, text: str, arm: Exercise) -> 
     messages = [each.message for each in (*problems, *notes) if each]
     assert messages
     assert all(isinstance(message, Sentence) for message in messages)
+
+
+@pytest.mark.parametrize(
+    ("unit", "typed", "entry", "repaired"),
+    [
+        ("d [mm]", "135,0", "135,0 mm", "0.135"),
+        ("d [m]", "0,135", "0,135", "0.135"),
+        ("alpha [deg]", "-90,0", "-90,0°", "-90.0°"),
+        ("alpha [rad]", "1,57", "1,57", "1.57"),
+    ],
+)
+def test_an_unreadable_number_keeps_the_unit_of_its_header(
+    unit: str, typed: str, entry: str, repaired: str, arm: Exercise
+) -> None:
+    """So its repair in a field of its own means the same."""
+    headers = [unit, *(name for name in ("a", "alpha", "d", "theta") if name not in unit.split())]
+    text = f"{';'.join(headers)}\n{typed};0;0;q1"
+    [cell] = [cell for cell in preview_pasted(text, arm, "table").rows[0] if cell.typed == typed]
+    assert cell.entry == entry
+    quantity: Kind = "length" if unit.startswith("d") else "angle"
+    [alone] = preview_entries([(entry, quantity)], arm, "table")
+    assert alone.problem is not None
+    assert alone.problem.suggestion == repaired

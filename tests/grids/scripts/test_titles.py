@@ -73,7 +73,31 @@ def test_a_sentence_with_a_unit_is_refused(unit: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ["theta d", "3", "l3 0 0 q3", "where l1 = 0.4", "Joint theta alpha", "pi"]
+    "line", ["theta d", "3", "l3 0 0 q3", "where l1 = l2", "Joint theta alpha", "pi"]
 )
 def test_a_line_that_may_be_a_row_stays(line: str) -> None:
     assert len(cells(f"{line}\n{TABLE}")) == 4
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "where l1 = 0.4",
+        "mit l_1 = 0,4 m; l_2 = 0,3 m und d1 = 1 m.",
+        "其中 l1＝400mm，l2＝300mm",
+        "l1: 0.4\nl2: 0.3",
+    ],
+)
+def test_numbers_of_letters_around_a_table_are_ignored_with_a_note(line: str) -> None:
+    for text in (f"{line}\n{TABLE}", f"{TABLE}\n\n{line}"):
+        assert cells(text) == cells(TABLE)
+        assert [note.code for note in read_grid(text).notes] == ["given_numbers"]
+
+
+@pytest.mark.parametrize("line", ["l1 = l2", "l1 = 0.4 + l2", "z = 0"])
+def test_other_equations_around_a_table_stay(line: str) -> None:
+    assert len(cells(f"{line}\n{TABLE}")) == 4
+
+
+def test_equations_that_are_all_rows_stay() -> None:
+    assert cells("p_x = l1, 1\np_y = l2, 2\np1 = 0, 3")[-1][0] == "p1 = 0"

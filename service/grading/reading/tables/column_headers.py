@@ -41,6 +41,8 @@ _STYLE: Final = re.compile(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf"
     r"|makecell|thead)(?![a-z])|\\[,;:! ]"
 )
+# A unit of the package siunitx: \si{\milli\metre}.
+_SIUNITX: Final = re.compile(r"\\(?:si|unit)\s?\{([\\a-z ]{1,30})\}")
 _CIRCLE: Final = re.compile(r"\^\s?\(?\s?\{?\s?(?:\\circ|∘|°|o)\s?\}?\)?(?![a-z])|\\degree|∘")
 _MARKER: Final = re.compile(r"\^\s?\{?\s?\*\s?\}?")
 _SHIFTED: Final = re.compile(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\s?-\s?1(?!\d)")
@@ -155,6 +157,7 @@ def _plain(text: str) -> tuple[str, str]:
     """Return a header in small plain letters, and its unit; ``~`` replaces -1."""
     plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS)
     plain = _OF.sub(" ", _NUMERO.sub("no", _ACCENT.sub("", in_plain_words(plain))))
+    plain = _SIUNITX.sub(lambda unit: unit[1].replace("\\", "").replace(" ", ""), plain)
     plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
     plain = plain.replace("α", " alpha ").replace("θ", " theta ")
     for mark in "\\$`*":

@@ -8,6 +8,7 @@ from service.expressions import Expression
 from service.expressions.tree import Binary, Node, Number
 from service.grading.feedback import reading_error, reading_note
 from service.grading.numerics.tolerances import EXACT_VALUE, SAME_FACTOR
+from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.entry import Entry, Reader, unreadable
 from service.grading.reading.tables.column_headers import Header
 from service.grading.reading.tables.words import METRES
@@ -65,10 +66,12 @@ def _checked_formula(entry: Entry, expression: Expression, header: Header, reade
 
     An entry that does not double contains a length in numbers.
     """
-    values = reader.samples.values
-    lengths = [symbol.name for symbol in reader.vocabulary.symbols if symbol.kind == "length"]
-    doubled = {**values, **{name: 2 * values[name] for name in lengths if name in values}}
-    once, twice = expression.evaluate(values, reader.samples.memo), expression.evaluate(doubled)
+    known = with_absent_variables(reader.vocabulary).by_name
+    lengths = {name for name in expression.symbols if known[name].kind == "length"}
+    values = reader.samples.values_for(expression)
+    values = {name: values[name] for name in expression.symbols}
+    doubled = {name: numbers * (2 if name in lengths else 1) for name, numbers in values.items()}
+    once, twice = expression.evaluate(values), expression.evaluate(doubled)
     with np.errstate(all="ignore"):
         expected = 2 * np.asarray(once)
     if np.allclose(twice, expected, rtol=EXACT_VALUE, atol=EXACT_VALUE, equal_nan=True):

@@ -147,7 +147,11 @@ def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
     """Return the transposed table, and the note on that."""
     message = say("The parameters stand in rows, so each column was read as the row of a joint.")
     note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
-    return replace(grid, rows=tuple(zip(*grid.rows, strict=True))), (note,)
+    first, *others = zip(*grid.rows, strict=True)
+    if len(first) > len(COLUMNS) and read_header(first[0].text) is None and is_wordy(first[0].text):
+        # "Parameter" in the corner names the row of names.
+        first = (first[0].cut(0, 0), *first[1:])
+    return replace(grid, rows=(first, *others)), (note,)
 
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:

@@ -44,6 +44,8 @@ FILLERS: Final = frozenset(
 )
 ASIDES: Final = re.compile(
     r"(?:joint )?(?:type|variables?|range|limits?)|comments?|notes?|remarks?|home(?: position)?"
+    # The joint type of Khalil and the Robotics Toolbox: 0 turns, 1 slides.
+    r"|sigma(?: [ijn])?|σ(?: ?[ijn])?"
     r"|(?:gelenk)?(?:typ|variable|art)|(?:bemerkung|anmerkung|kommentar|hinweis)(?:en|e)?"
     r"|tipo(?: de articulacion| di giunto)?|observacion(?:es)?|comentarios?|notas?|rango|limites?"
     r"|type (?:d'articulation|de liaison)|remarques?|commentaires?|variable articulaire"
@@ -70,10 +72,10 @@ METRES: Final[Mapping[str, float]] = {
 # Chinese has no blanks between words: each word becomes the English word of the tables above.
 _CHINESE: Final = {
     **dict.fromkeys(("连杆长度", "杆件长度", "杆长", "长度"), "length"),
-    **dict.fromkeys(("连杆扭角", "连杆扭转角", "杆件扭角", "扭转角", "扭角"), "twist"),
+    **dict.fromkeys(("连杆扭角", "连杆扭转角", "连杆转角", "杆件扭角", "扭转角", "扭角"), "twist"),
     **dict.fromkeys(("连杆偏距", "连杆偏置", "关节偏距", "关节偏置", "偏距", "偏置"), "offset"),
     **dict.fromkeys(("连杆偏移", "关节偏移", "偏移量", "偏移"), "offset"),
-    **dict.fromkeys(("关节角度", "关节转角", "关节角"), "angle"),
+    **dict.fromkeys(("关节角度", "关节转角", "关节角", "连杆夹角"), "angle"),
     **dict.fromkeys(("关节", "连杆", "杆件", "坐标系", "序号", "编号", "关节号", "轴"), "joint"),
     **dict.fromkeys(("连杆号", "轴号", "行号", "行"), "row"),
     **dict.fromkeys(("末端执行器", "末端", "工具"), "tool"),

@@ -1,6 +1,6 @@
 """Units in the headers of a pasted table: converted if that is safe, else refused."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import pytest
 
@@ -160,3 +160,11 @@ def test_a_name_may_be_a_header_or_a_declared_length(make_exercise: Maker) -> No
     with pytest.raises(UnreadableAnswerError) as caught:
         read(exercise, "a, d, foo, bar\n0, 0, 0, 0")
     assert caught.value.finding.code == "unknown_header"
+
+
+def test_a_joint_variable_that_the_robot_lacks_is_wrong_below_a_unit(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    text = "a [mm], alpha, d [mm], theta\n300, 0, d1, q1"
+    report = part(handed_in(catalogue["rrrp"], {"table": text}), "table")
+    assert report.rows[0].cells[2].verdict is Verdict.INCORRECT
