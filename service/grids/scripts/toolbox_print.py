@@ -111,7 +111,9 @@ def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]
     if offset is not None and not _ZERO.fullmatch(offset.text):
         variable = "theta" if _VARIABLE.match(named["theta"].text) else "d"
         if variable == "d" and not _SLIDING.match(named["d"].text):
-            message = say("Does this offset belong to θ or to d? Add it there, without a column.")
+            message = say(
+                "This offset may belong to θ or to d. Add it to the value in one of them."
+            )
             raise unread_script(message, offset)
         cell = named[variable]
         parts = [cell, cell.spelled(" + ("), offset, offset.spelled(")")]
