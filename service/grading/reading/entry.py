@@ -130,7 +130,8 @@ class Reader:
         """Return the error as a finding; a repaired length is in the unit of the exercise."""
         finding = _from_error(error)
         if error.code == "length_unit" and self.length_unit:
-            kept = error.suggestion if self.length_unit == "m" else None
+            in_metres = converted("1 m", self.length_unit) == "1"
+            kept = error.suggestion if in_metres else None
             return replace(finding, suggestion=converted(str(raw), self.length_unit) or kept)
         return finding
 

@@ -16,7 +16,7 @@ from service.grading.reading.pasted import (
 )
 from service.grading.reading.tables import column_headers
 from service.grading.reading.tables.cell_names import arranged_row, first_number, row_entries
-from service.grading.reading.tables.column_comments import columns_in_comments
+from service.grading.reading.tables.column_comments import columns_in_comments, refuse_other_units
 from service.grading.reading.tables.column_headers import (
     QUANTITIES,
     SHOWN,
@@ -73,8 +73,11 @@ def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     """Read the rows of a pasted DH table; see ``table_of``. Raises GridError if there is none."""
     robot = pasted_robot(text, reader)
     if robot:
-        return table_of_robot(robot, reader)
-    return table_of(pasted_grid(text, reader), reader, comments=text)
+        table = table_of_robot(robot, reader)
+    else:
+        table = table_of(pasted_grid(text, reader), reader, comments=text)
+    refuse_other_units(text, table.headers, reader)
+    return table
 
 
 def table_of(
@@ -91,7 +94,7 @@ def table_of(
         grid, findings = _turned(grid)
     grid = with_units_in_headers(grid)
     found = _found_headers(grid.rows[0], reader)
-    named = None if found is not None else columns_in_comments(comments, reader)
+    named = None if found is not None else columns_in_comments(comments)
     if found is None:
         columns, labels, more = _columns_in_order(grid, named or [*map(Header, order)])
         body = grid.rows
@@ -112,8 +115,8 @@ def table_of(
         rows = tuple(rows[i] for i in labelled)
         findings = (*findings, *more)
     notes = tuple(map(from_note, grid.notes))
-    heads = tuple(header for _, header in columns)
-    return PastedTable(rows, heads, (*notes, *findings), bool(found or named))
+    headers = tuple(header for _, header in columns)
+    return PastedTable(rows, headers, (*notes, *findings), bool(found or named))
 
 
 def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
@@ -183,7 +186,9 @@ def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry
     """Return the entry of one cell, which is in the unit of its header."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
-    entry = reader.read(cell.text, QUANTITIES[column], in_table=True)
+    # A repaired length is in the unit of the header.
+    own = replace(reader, length_unit=header.unit) if header.metres else reader
+    entry = own.read(cell.text, QUANTITIES[column], in_table=True)
     if header.metres and header.metres != METRES.get(reader.length_unit or ""):
         entry = in_unit(entry, header, reader)
     return placed(entry, cell)

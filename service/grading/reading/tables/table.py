@@ -19,6 +19,7 @@ from service.grading.reading.tables.cells import (
     memoized_row,
     read_row,
 )
+from service.grading.reading.tables.column_comments import refuse_other_units
 from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.reading.tables.pasted_table import (
     PastedTable,
@@ -205,6 +206,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
         robot = pasted_robot(text, reader)
         grid = robot.grid if robot else pasted_grid(text, reader)
         pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader, comments=text)
+        refuse_other_units(text, pasted.headers, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:

@@ -5,8 +5,16 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
+from service.grading import Verdict
 from service.grading.reading.preview import PastedPreview, preview_pasted
+from tests.grading.support.submitting import handed_in, part
 
+CAPTION = r"""\caption{Parameters (mm)}
+\begin{tabular}{cccc} a & $\alpha$ & d & $\theta$ \\ 400 & 0 & 0 & $q_1$ \\ 0 & 0 & 0 & $q_2$
+\end{tabular}"""
+HTML = """<table><caption>lengths in mm</caption>
+<tr><th>a</th><th>alpha</th><th>d</th><th>theta</th></tr>
+<tr><td>400</td><td>0</td><td>0</td><td>q1</td></tr></table>"""
 ROWS = "[q1 400 300 90; q2 0 0 0; q3 0 0 0]"
 
 
@@ -59,3 +67,30 @@ def test_a_unit_of_the_other_kind_is_refused(arm: Exercise) -> None:
     shown = preview_pasted(f"% theta [mm], d, a, alpha\nDH = {ROWS};", arm, "table")
     assert shown.problem is not None
     assert shown.problem.code == "header_unit"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "% all dimensions in mm\nL(1) = Link('d', 135, 'a', 0, 'alpha', 0);",
+        "# angles in degrees\nDHRobot([RevoluteDH(d=0.135, alpha=90), RevoluteDH(a=0.4)])",
+        "a = [0, 400]  # mm\nalpha = [0, 0]\nd = [135, 0]\ntheta = [q1, q2]",
+        CAPTION,
+        HTML,
+    ],
+)
+def test_a_unit_in_a_script_or_a_caption_is_refused(text: str, arm: Exercise) -> None:
+    problem = preview_pasted(text, arm, "table").problem
+    assert problem is not None
+    assert problem.code == "text_around"
+    graded = part(handed_in(arm, {"table": text}), "table")
+    assert graded.verdict is Verdict.UNREADABLE
+    assert [message.code for message in graded.feedback] == ["text_around"]
+
+
+@pytest.mark.parametrize(
+    "comment", ["% angles in degrees", "% limits in deg", "% all lengths in metres"]
+)
+def test_a_script_that_converts_its_angles_is_read(comment: str, arm: Exercise) -> None:
+    script = f"{comment}\nL(1) = Link('d', 0.4, 'a', 0, 'alpha', deg2rad(90));"
+    assert first_row(preview_pasted(script, arm, "table")) == ["0", "90deg", "0.4", "q1"]

@@ -168,3 +168,13 @@ def test_a_joint_variable_that_the_robot_lacks_is_wrong_below_a_unit(
     text = "a [mm], alpha, d [mm], theta\n300, 0, d1, q1"
     report = part(handed_in(catalogue["rrrp"], {"table": text}), "table")
     assert report.rows[0].cells[2].verdict is Verdict.INCORRECT
+
+
+@pytest.mark.parametrize(
+    ("head", "suggestion"), [("a [mm]", "250"), ("a", "0.25"), ("a [m]", "0.25")]
+)
+def test_the_repair_of_a_length_with_a_unit_is_in_the_unit_of_its_header(
+    head: str, suggestion: str, arm: Exercise
+) -> None:
+    [finding] = read(arm, table(head, "0.25 m")).rows[0].entries[0].findings
+    assert finding.suggestion == suggestion
