@@ -1,8 +1,9 @@
 """The readings of a wrong table, of which the best counts.
 
 The first reading is the table as written. The others are the table with other joint numbers, with
-its columns in another order, or with a and d of one row exchanged. Each is judged alike; one that
-explains enough wrong cells counts, with the finding on its slip.
+its columns in another order, with its lengths in another unit, or with a and d of one row
+exchanged. Each is judged alike; one that explains enough wrong cells counts, with the finding on
+its slip.
 
 Three more readings only limit the points: the table without its extra rows, with lazy entries in
 its unread cells, and with one row given up (``fair_points``).
@@ -18,6 +19,7 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.diagnosis.tables.column_order import in_other_orders
 from service.grading.diagnosis.tables.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
+from service.grading.diagnosis.tables.length_unit import in_other_length_unit
 from service.grading.judging.marking.fair_points import with_fair_points
 from service.grading.judging.marking.marks import steps_lost
 from service.grading.judging.own_frames.best_roles import rows_of_mechanism, usual_rows
@@ -147,6 +149,8 @@ class _Readings:
         if wrong > 1:
             convention = self.part.convention
             named = table.convention if convention == "either" else convention
+            if (converted := in_other_length_unit(table, named, self.grading)) is not None:
+                yield _Reading(converted, wrong // 2)
             if (exchanged := with_exchanged_row(table, named, self.grading)) is not None:
                 yield _Reading(exchanged, wrong - 1)
 
