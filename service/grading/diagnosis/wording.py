@@ -1,12 +1,26 @@
 """Words that several messages share."""
 
+from typing import Final
+
+from service.grading.feedback import Finding
+from service.grading.misconception import says
 from service.kinematics.chain import ALPHA, THETA
 from service.translations import Sentence, listed, say
 
-__all__ = ["AXES", "SYMBOLS", "axes_of_row", "change_every_sign", "wrong_throughout"]
+__all__ = [
+    "AXES",
+    "SYMBOLS",
+    "UNIT_FACTORS",
+    "axes_of_row",
+    "change_every_sign",
+    "other_length_unit",
+    "wrong_throughout",
+]
 # The symbol of each table column, and the axis along or about which it is measured.
 SYMBOLS = ("a", "α", "d", "θ")
 AXES = ("x", "x", "z", "z")
+# How many times as large as they should be lengths in another unit are.
+UNIT_FACTORS: Final = (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001)
 
 
 def axes_of_row(axis: str, label: str, last: int) -> str:
@@ -44,3 +58,23 @@ def wrong_throughout(column: int) -> Sentence:
 def change_every_sign(column: int) -> Sentence:
     """Return the correction of such a column."""
     return say("Change the sign of every {symbol}.", symbol=SYMBOLS[column])
+
+
+def other_length_unit(times: float) -> Finding:
+    """Return the message that all lengths are ``times`` as large as they should be."""
+    if times > 1:
+        return says(
+            say(
+                "The lengths are {factor} times too large: in which unit does the exercise give "
+                "them?",
+                factor=round(times),
+            ),
+            say("Divide each length by {factor}.", factor=round(times)),
+        )
+    return says(
+        say(
+            "The lengths are {factor} times too small: in which unit does the exercise give them?",
+            factor=round(1 / times),
+        ),
+        say("Multiply each length by {factor}.", factor=round(1 / times)),
+    )

@@ -10,6 +10,7 @@ from service.grading.diagnosis.motions.given_motion import GivenMotion
 from service.grading.diagnosis.motions.link_products import Chain, named, other_poses
 from service.grading.diagnosis.motions.motion_slips import Displacements
 from service.grading.diagnosis.upstream.slip_search import AFTER_SIGNS, SlipSearch
+from service.grading.diagnosis.wording import UNIT_FACTORS, other_length_unit
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.misconception import (
     Explained,
@@ -91,6 +92,21 @@ def reversed_position(case: WrongPosition) -> Hypotheses:
 def slip_after_signs(case: WrongPosition) -> Explained | None:
     """The table has a slip that is less likely than a reversed position."""
     return case.slip
+
+
+@misconception(
+    of=WrongPosition,
+    rank=45,
+    code="length_unit",
+    rule="position_vector",
+    means=template("all lengths are in another unit, such as millimetres instead of metres"),
+    example=("planar-rr", "position", "[1000*(a1 c1 + a2 c12), 1000*(a1 s1 + a2 s12)]"),
+    unlike="[1000*(a1 c1 - a2 c12), 1000*(a1 s1 - a2 s12)]",
+)
+def length_unit(case: WrongPosition) -> Hypotheses:
+    """The coordinates are in another unit."""
+    for times in UNIT_FACTORS:
+        yield Written(times * case.expected, other_length_unit(times))
 
 
 @misconception(of=WrongPosition, rank=50)

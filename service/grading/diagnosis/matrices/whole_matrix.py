@@ -25,6 +25,7 @@ from service.grading.diagnosis.matrices.matrix_case import (
 )
 from service.grading.diagnosis.motions.link_products import named
 from service.grading.diagnosis.upstream.slip_search import AFTER_SIGNS
+from service.grading.diagnosis.wording import UNIT_FACTORS, other_length_unit
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
@@ -188,6 +189,22 @@ def other_rotation(case: MatrixCase) -> Hypotheses:
     # Translators: {pose} is a name such as "the pose of frame {2}".
     told = template("The rotation comes from {pose}. {advice}")
     return _from_other_poses(case, ROTATION_BLOCK, told)
+
+
+@misconception(
+    of=PositionBlock,
+    rank=50,
+    code="length_unit",
+    rule="position_vector",
+    means=template("all lengths are in another unit, such as millimetres instead of metres"),
+    example=("ur5e", "home", {"1/4": "-817.2", "2/4": "-232.9", "3/4": "62.8"}),
+    unlike={"1/4": "-817.2"},
+)
+def length_unit(case: MatrixCase) -> Hypotheses:
+    """The position is in another unit of length."""
+    for times in UNIT_FACTORS if case.is_transform else ():
+        position = times * case.expected[POSITION_BLOCK]
+        yield Written(position, other_length_unit(times), POSITION_BLOCK)
 
 
 @misconception(of=PositionBlock, rank=60)

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from service.grading.diagnosis.tables.intended_table import IntendedTable
-from service.grading.feedback import Finding
+from service.grading.diagnosis.wording import UNIT_FACTORS, other_length_unit
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.written_table import written_table
 from service.grading.misconception import register
@@ -19,9 +19,8 @@ from service.grading.reading.tables.table import (
     values_of,
 )
 from service.kinematics.dh import Convention
-from service.translations import say, template
+from service.translations import template
 
-_FACTORS: Final = (10, 100, 1000)
 # Between two units. The lengths of other frames differ, too, but not by so much.
 _HALFWAY: Final = 10**0.5
 # With fewer lengths, any number could be a length in another unit.
@@ -71,32 +70,13 @@ def in_other_length_unit(
         values[column] += written[i, column] * (1 / times - 1)
         rows[i] = StudentRow(tuple(entries), values)
     intended = replace(table, rows=tuple(rows), values=values_of(rows))
-    return IntendedTable(intended, _finding(times), frozenset((i, j) for i, j in cells))
+    finding = replace(other_length_unit(times), code=_OTHER_UNIT.code, rule=_OTHER_UNIT.rule)
+    return IntendedTable(intended, finding, frozenset((i, j) for i, j in cells))
 
 
 def _times(largest: float, right: float) -> float | None:
     """Return how many times too large the lengths are, a power of ten; None if in the same unit."""
-    for factor in _FACTORS:
-        for times in (float(factor), 1 / factor):
-            if right / _HALFWAY < largest / times < right * _HALFWAY:
-                return times
+    for times in UNIT_FACTORS:
+        if right / _HALFWAY < largest / times < right * _HALFWAY:
+            return times
     return None
-
-
-def _finding(times: float) -> Finding:
-    if times > 1:
-        return _OTHER_UNIT.finding(
-            say(
-                "The lengths are {factor} times too large: in which unit does the exercise give "
-                "them?",
-                factor=round(times),
-            ),
-            say("Divide each a and d by {factor}.", factor=round(times)),
-        )
-    return _OTHER_UNIT.finding(
-        say(
-            "The lengths are {factor} times too small: in which unit does the exercise give them?",
-            factor=round(1 / times),
-        ),
-        say("Multiply each a and d by {factor}.", factor=round(1 / times)),
-    )

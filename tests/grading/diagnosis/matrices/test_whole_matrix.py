@@ -32,6 +32,7 @@ def with_position(position: Numbers) -> MatrixCase:
 
 
 PAIRS = [
+    Pair(whole_matrix.length_unit, with_position(P / 100), with_position(P / 90)),
     Pair(
         whole_matrix.transposed_matrix,
         wrong_pose(np.swapaxes(POSE, 1, 2)),

@@ -28,8 +28,10 @@ def graded(catalogue: Mapping[str, Exercise], text: str) -> PartReport:
 
 
 def codes(part: PartReport) -> set[str]:
-    cells = [cell for row in part.rows for cell in row.cells]
-    return {f.code for place in (part, *part.rows, *cells) for f in place.feedback}
+    found = [*part.feedback]
+    for row in part.rows:
+        found += [*row.feedback, *(message for cell in row.cells for message in cell.feedback)]
+    return {message.code for message in found}
 
 
 @pytest.mark.parametrize("factor", [1000, 100, 0.001], ids=["mm", "cm", "km"])
