@@ -21,7 +21,7 @@ OF_TABLES = {"WrongCell", "Rereadable", "WrittenTable", "StudentTable"}
 NOT_DRAWN = {
     "value": "no misconception explains the cell",
     "columns_permuted": "the headings of the given table name its columns",
-    "length_unit": "it is in all lengths at once, and most robots have letters",
+    "other_length_unit": "it is in all lengths at once, and most robots have letters",
     "convention_taken": "it tells how a table was read",
     "convention_not_asked_for": "it is about the convention that an answer names",
     "lost_freedom": "it tells what another slip leads to",

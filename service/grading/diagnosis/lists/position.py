@@ -97,7 +97,7 @@ def slip_after_signs(case: WrongPosition) -> Explained | None:
 @misconception(
     of=WrongPosition,
     rank=45,
-    code="length_unit",
+    code="other_length_unit",
     rule="position_vector",
     means=template("all lengths are in another unit, such as millimetres instead of metres"),
     example=("planar-rr", "position", "[1000*(a1 c1 + a2 c12), 1000*(a1 s1 + a2 s12)]"),

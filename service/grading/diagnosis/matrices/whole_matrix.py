@@ -194,7 +194,7 @@ def other_rotation(case: MatrixCase) -> Hypotheses:
 @misconception(
     of=PositionBlock,
     rank=50,
-    code="length_unit",
+    code="other_length_unit",
     rule="position_vector",
     means=template("all lengths are in another unit, such as millimetres instead of metres"),
     example=("ur5e", "home", {"1/4": "-817.2", "2/4": "-232.9", "3/4": "62.8"}),

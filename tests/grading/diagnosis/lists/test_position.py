@@ -32,7 +32,7 @@ def case(written: Numbers) -> WrongPosition:
 PAIRS = [
     Pair(position.exchanged_coordinates, case(TIP[::-1]), case(TIP[::-1] + 0.1)),
     Pair(position.reversed_position, case(-TIP), case(TIP * [[1], [-1]])),
-    Pair(position.length_unit, case(1000 * TIP), case(700 * TIP)),
+    Pair(position.length_unit, case(1000 * TIP), case(700 * TIP), "other_length_unit"),
     Pair(position.other_pose, case(ELBOW), case(2 * ELBOW), "wrong_frame"),
 ]
 

@@ -32,7 +32,12 @@ def with_position(position: Numbers) -> MatrixCase:
 
 
 PAIRS = [
-    Pair(whole_matrix.length_unit, with_position(P / 100), with_position(P / 90)),
+    Pair(
+        whole_matrix.length_unit,
+        with_position(P / 100),
+        with_position(P / 90),
+        "other_length_unit",
+    ),
     Pair(
         whole_matrix.transposed_matrix,
         wrong_pose(np.swapaxes(POSE, 1, 2)),

@@ -39,7 +39,7 @@ def test_lengths_in_another_unit_are_one_mistake(
     catalogue: Mapping[str, Exercise], factor: float
 ) -> None:
     part = graded(catalogue, table(tuple(factor * each for each in METRES)))
-    assert codes(part) == {"length_unit"}
+    assert codes(part) == {"other_length_unit"}
     # A slip of the whole table costs a quarter.
     assert part.points == 0.75 * part.max_points
     wrong = [c.label for row in part.rows for c in row.cells if c.verdict is Verdict.INCORRECT]
@@ -49,9 +49,9 @@ def test_lengths_in_another_unit_are_one_mistake(
 def test_another_slip_beside_the_unit_is_named(catalogue: Mapping[str, Exercise]) -> None:
     millimetres = tuple(1000 * each for each in METRES)
     turned = graded(catalogue, table(millimetres, "-90deg"))
-    assert {"length_unit", "sign"} <= codes(turned)
+    assert {"other_length_unit", "sign"} <= codes(turned)
     negated = graded(catalogue, table(millimetres, sign=-1))
-    assert codes(negated) == {"length_unit", "sign"}
+    assert codes(negated) == {"other_length_unit", "sign"}
     assert negated.points < 0.75 * negated.max_points
 
 
@@ -59,4 +59,4 @@ def test_a_table_of_numbers_in_metres_has_no_other_unit(catalogue: Mapping[str, 
     assert graded(catalogue, table(METRES)).verdict is Verdict.CORRECT
     # One length is ten times too large, and one is wrong.
     for wrong in ((-4.25, *METRES[1:]), (-0.5, *METRES[1:])):
-        assert "length_unit" not in codes(graded(catalogue, table(wrong)))
+        assert "other_length_unit" not in codes(graded(catalogue, table(wrong)))
