@@ -61,4 +61,5 @@ def served(folder: Path, *, module: str = "service", **environment: str) -> Iter
         finally:
             process.terminate()
             process.wait(timeout=ANSWER)
-    assert "Traceback" not in log.read_text(encoding="utf-8")
+    told = log.read_text(encoding="utf-8")
+    assert "Traceback" not in told, told[told.index("Traceback") :]
