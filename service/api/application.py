@@ -85,7 +85,7 @@ def _freeze_gc() -> None:
 def _sending(
     store: "AttemptStore", access: Access, catalogue: Catalogue
 ) -> "Iterable[BackgroundSending]":
-    """Start the threads that send scores and reports to platforms, if there is a secret."""
+    """Yield the threads that send scores and reports to platforms, if there is a secret."""
     secret = None if access.keys is None else access.keys.secret
     if secret is None:
         return
@@ -139,8 +139,10 @@ class _Api(FastAPI):
     async def _lifespan(self, _: FastAPI) -> AsyncIterator[None]:
         sending: list[BackgroundSending] = []
         if self._store is not None:
-            self._store.start()
             sending += _sending(self._store, self._access, self._catalogue)
+            self._store.start()
+        for each in sending:
+            each.start()
         _freeze_gc()
         yield
         for each in sending:

@@ -32,12 +32,18 @@ class BackgroundSending:
     """A thread that sends what is queued as soon as this process has committed it."""
 
     def __init__(self, engine: Engine, sender: Sender, queued: str) -> None:
-        """Start the thread. A transaction that queues something sets ``queued`` in its info."""
-        self._engine, self._sender, self._queued = engine, sender, queued
+        """Listen to commits. A transaction that queues something sets ``queued`` in its info.
+
+        No other thread may commit meanwhile: it goes through the list of those that listen.
+        """
+        self._sender, self._queued = sender, queued
         self._wake = threading.Event()
         self._closed = threading.Event()
         event.listen(engine, "commit", self._committed)
         self._thread = threading.Thread(target=self._run, name=queued, daemon=True)
+
+    def start(self) -> None:
+        """Start the thread."""
         self._thread.start()
 
     def close(self) -> None:
@@ -45,7 +51,6 @@ class BackgroundSending:
         self._closed.set()
         self._wake.set()
         self._thread.join()
-        event.remove(self._engine, "commit", self._committed)
 
     def _committed(self, connection: Connection) -> None:
         if connection.info.pop(self._queued, False):

@@ -373,6 +373,7 @@ def test_a_killed_process_reports_again(course: Course) -> None:
 def test_the_service_grades_what_it_has_committed(course: Course) -> None:
     engine = course.tool.store.engine
     sending = BackgroundSending(engine, course.reporting, queue.QUEUED)
+    sending.start()
     try:
         course.hand_in(table_csv=RIGHT)
         _wait(lambda: len(course.store.reports) == 1)

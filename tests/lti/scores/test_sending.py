@@ -1,17 +1,26 @@
 """Replicas send scores, and are killed after the platform has one, before it has answered."""
 
+import asyncio
 import random
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
+from service.access.key_ring import KeyRing
+from service.access.keys import Secret
+from service.access.open_access import OPEN_HERE
+from service.api.application import application
+from service.api.permissions.access import Access
 from service.attempts.storage.score_queue import QUEUED
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise
 from service.lti.scores.sending import BackgroundSending
+from tests.attempts.databases import new_file
 from tests.guards import ANSWER
 from tests.lti.conftest import SECRET_TEXT
 from tests.lti.scores.conftest import Journey
@@ -132,6 +141,7 @@ def _wait(until: Callable[[], bool]) -> None:
 def test_the_service_sends_what_it_has_committed(journey: Journey) -> None:
     """The thread wakes up after the commit, long before it would look by itself."""
     sending = BackgroundSending(journey.tool.store.engine, journey.sender, QUEUED)
+    sending.start()
     try:
         attempt = journey.hand_in()
         _wait(lambda: len(journey.gradebook.received) == 1)
@@ -141,6 +151,31 @@ def test_the_service_sends_what_it_has_committed(journey: Journey) -> None:
     finally:
         sending.close()
     assert journey.gradebook.grades() == {"ada": 0}
+
+
+def test_all_listen_before_a_thread_begins(
+    catalogue: Mapping[str, Exercise], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A thread that commits goes through the list of those that listen."""
+    store = AttemptStore.open(new_file(tmp_path))
+    keys = KeyRing(store.engine, Secret(SECRET_TEXT))
+    access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)
+    app = application(catalogue, access=access, store=store)
+    listening: list[int] = []
+    begin = threading.Thread.start
+
+    def start(thread: threading.Thread) -> None:
+        listening.append(len(store.engine.dispatch.commit))
+        begin(thread)
+
+    async def run() -> None:
+        async with app.router.lifespan_context(app):
+            listening.append(len(store.engine.dispatch.commit))
+
+    monkeypatch.setattr(threading.Thread, "start", start)
+    asyncio.run(run())
+    assert len(listening) > len(["scores", "reports", "the application"])
+    assert len(set(listening)) == 1
 
 
 @pytest.mark.long
