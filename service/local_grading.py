@@ -19,7 +19,7 @@ from service.submissions.body import GradeRequest
 from service.submissions.handed_in import HandedIn
 from service.submissions.lookup import nearest
 from service.submissions.outline import SetExercise
-from service.translations import ENGLISH, Language
+from service.translations import ENGLISH, Language, joined, say, told
 
 _LONGEST_NAME = 60
 
@@ -70,10 +70,20 @@ def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
     if unknown is None:
         return ""
     meant = nearest(unknown, known)
-    hint = f". Did you mean {meant}?" if meant else ""
-    listed = ", ".join(known)
-    return (
-        f"answers {unknown[:_LONGEST_NAME]!r}, but {assigned.exercise.id} has only {listed}{hint}"
+    name, exercise, listed = unknown[:_LONGEST_NAME], assigned.exercise.id, ", ".join(known)
+    if meant is None:
+        return say(
+            "answers {part!r}, but {exercise} has only {parts}",
+            part=name,
+            exercise=exercise,
+            parts=listed,
+        )
+    return say(
+        "answers {part!r}, but {exercise} has only {parts}. Did you mean {meant}?",
+        part=name,
+        exercise=exercise,
+        parts=listed,
+        meant=meant,
     )
 
 
@@ -90,9 +100,12 @@ def report_here(
         return report_in(grade(exercise, terms.submission(body, assigned)), terms.language), ""
     except Exception as error:  # noqa: BLE001 - a fault of the program affects only this submission
         place = traceback.extract_tb(error.__traceback__)[-1]
-        return None, (
-            "cannot be graded because of a fault in the program; please report it: "
-            f"{type(error).__name__} in {place.name}, line {place.lineno}"
+        return None, say(
+            "cannot be graded because of a fault in the program; please report it: {error} in "
+            "{place}, line {line}",
+            error=type(error).__name__,
+            place=place.name,
+            line=place.lineno or 0,
         )
 
 
@@ -105,8 +118,8 @@ def graded(
     """
     answers = answers_in(handed, terms.assignment)
     files = tuple(
-        _graded_file(each, assigned, told, terms, report_on)
-        for each, assigned, told in zip(
+        _graded_file(each, assigned, shown, terms, report_on)
+        for each, assigned, shown in zip(
             answers, terms.assignment.exercises, terms.answered, strict=True
         )
     )
@@ -116,12 +129,14 @@ def graded(
 def _graded_file(
     answers: ExerciseAnswers,
     assigned: AssignedExercise,
-    told: AnsweredExercise,
+    shown: AnsweredExercise,
     terms: GradingTerms,
     report_on: ReportOn,
 ) -> GradedFile:
-    if answers.body is None:
-        return GradedFile(answers.file, told, None, answers.problem, answers.names)
-    report, problem = report_on(answers.body, assigned, terms)
-    problems = "; ".join(filter(None, (answers.problem, problem)))
-    return GradedFile(answers.file, told, report, problems, answers.names)
+    report, problem = None, ""
+    if answers.body is not None:
+        report, problem = report_on(answers.body, assigned, terms)
+    problems = joined("; ", list(filter(None, (answers.problem, problem))))
+    return GradedFile(
+        answers.file, shown, report, told(problems, terms.language.translation), answers.names
+    )

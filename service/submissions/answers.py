@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import reduce
 from os.path import commonpath
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Final
@@ -28,6 +29,7 @@ from service.submissions.file_content import (
 from service.submissions.handed_in import HandedFile, HandedIn
 from service.submissions.lookup import nearest
 from service.submissions.platform_names import student_and_part, without_copy_number
+from service.translations import Sentence, joined, say
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -72,7 +74,7 @@ def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswer
     except UnusableFileError as error:
         is_file = len(handed.entries) == 1
         file = str(handed.entries[0].path) if is_file else handed.name
-        return (ExerciseAnswers(file, None, str(error)),) * len(assignment.exercises)
+        return (ExerciseAnswers(file, None, error.args[0]),) * len(assignment.exercises)
     return tuple(map(_combined, claims, assignment.exercises))
 
 
@@ -156,8 +158,11 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
     known = [each.exercise.id for each in assignment.exercises]
     if content.is_pasted:
         raise UnusableFileError(
-            "is a pasted answer, whose name does not say the exercise and the part: "
-            f"name it as {_example(assignment.exercises[0], ending(file.name))}"
+            say(
+                "is a pasted answer, whose name does not say the exercise and the part: name it as "
+                "{example}",
+                example=_example(assignment.exercises[0], ending(file.name)),
+            )
         )
     if not isinstance(content.value, dict) or "answers" not in content.value:
         raise UnusableFileError(_no_answers())
@@ -165,13 +170,20 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
         return 0
     if "exercise" not in content.value:
         raise UnusableFileError(
-            'does not say which exercise it answers: write "exercise", or name the file after it, '
-            f"one of {_listed(known)}"
+            say(
+                'does not say which exercise it answers: write "exercise", or name the file after '
+                "it, one of {exercises}",
+                exercises=_listed(known),
+            )
         )
     stated = content.value["exercise"]
     if stated not in known:
         raise UnusableFileError(
-            f"answers the exercise {_quoted(stated)}; those set are {_listed(known)}"
+            say(
+                "answers the exercise {exercise}; those set are {exercises}",
+                exercise=_quoted(stated),
+                exercises=_listed(known),
+            )
         )
     return known.index(stated)
 
@@ -179,7 +191,7 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
 def _only_file(files: Sequence[HandedFile], assignment: Assignment) -> HandedFile:
     """The only file that may have answers. Raises UnusableFileError if there are several."""
     if not files:
-        raise UnusableFileError("holds no file")
+        raise UnusableFileError(say("holds no file"))
     others = [file for file in files if _stem(file) not in _NOT_ANSWERS] or files
     data = [file for file in others if ending(file.name) in DATA_ENDINGS]
     pasted = [file for file in others if ending(file.name) in PASTED_ENDINGS]
@@ -187,9 +199,12 @@ def _only_file(files: Sequence[HandedFile], assignment: Assignment) -> HandedFil
     if len(candidates) == 1:
         return candidates[0]
     raise UnusableFileError(
-        "holds no file whose name says what it answers: there are "
-        f"{_listed([file.own_name for file in files])}; "
-        f"name it as {_example(assignment.exercises[0], ending(candidates[0].name))}"
+        say(
+            "holds no file whose name says what it answers: there are {files}; name it as "
+            "{example}",
+            files=_listed([file.own_name for file in files]),
+            example=_example(assignment.exercises[0], ending(candidates[0].name)),
+        )
     )
 
 
@@ -216,16 +231,18 @@ def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseA
     bodies: list[tuple[str, GradeRequest]] = []
     problems = []
     for claim in claims:
+        name = claim.file.own_name
         try:
-            bodies.append((claim.file.own_name, _body(claim, assigned)))
+            bodies.append((name, _body(claim, assigned)))
         except UnusableFileError as error:
-            told = str(error) if len(claims) == 1 else f"{claim.file.own_name} {error}"
-            problems.append(told)
+            problem = error.args[0]
+            several = len(claims) > 1
+            problems.append(of_file(name, problem) if several else problem)
     try:
         body = _merged(bodies)
     except UnusableFileError as error:
-        return ExerciseAnswers(shown, None, str(error), names)
-    return ExerciseAnswers(shown, body, "; ".join(problems), names)
+        return ExerciseAnswers(shown, None, error.args[0], names)
+    return ExerciseAnswers(shown, body, joined("; ", problems), names)
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
@@ -237,14 +254,23 @@ def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
         for part, answer in body.answers.items():
             if part in answers:
                 raise UnusableFileError(
-                    f"has two answers to {_quoted(part)}, in {came_from[part]} and in {name}"
+                    say(
+                        "has two answers to {part}, in {first} and in {second}",
+                        part=_quoted(part),
+                        first=came_from[part],
+                        second=name,
+                    )
                 )
             answers[part], came_from[part] = answer, name
         for option in body.model_fields_set - {"answers"}:
             value = getattr(body, option)
             if options.setdefault(option, value) != value:
                 raise UnusableFileError(
-                    f"has two files that differ in {option!r}: {name} and another"
+                    say(
+                        "has two files that differ in {option!r}: {file} and another",
+                        option=option,
+                        file=name,
+                    )
                 )
     return GradeRequest(answers=answers, **options) if bodies else None
 
@@ -265,10 +291,15 @@ def read_body(
     part = part or assigned.only_part
     value = content.value
     if content.is_pasted and part is None:
-        names = " or ".join(f"STUDENT.{each.id}.csv" for each in assigned.exercise.parts)
+        names = [f"STUDENT.{each.id}.csv" for each in assigned.exercise.parts]
         raise UnusableFileError(
-            f"is the pasted answer to one part: name the file after it, as in {names}, or name the "
-            "part with --part"
+            say(
+                "is the pasted answer to one part: name the file after it, as in {names}, or name "
+                "the part with --part",
+                names=reduce(
+                    lambda one, other: say("{one} or {other}", one=one, other=other), names
+                ),
+            )
         )
     if content.is_pasted or not isinstance(value, dict) or "answers" not in value:
         if part is None:
@@ -276,7 +307,13 @@ def read_body(
         value = {"answers": {part: value}}
     own = assigned.exercise.id
     if (stated := value.get("exercise", own)) != own:
-        raise UnusableFileError(f"answers the exercise {_quoted(stated)}, and not {own!r}")
+        raise UnusableFileError(
+            say(
+                "answers the exercise {exercise}, and not {own!r}",
+                exercise=_quoted(stated),
+                own=own,
+            )
+        )
     try:
         body = GradeRequest.model_validate(
             {key: each for key, each in value.items() if key != "exercise"}
@@ -290,9 +327,9 @@ def read_body(
 
 
 def _no_answers() -> str:
-    return (
-        'holds no "answers"; write {"answers": {"PART": …}}, '
-        "or name the part that it answers with --part"
+    return say(
+        'holds no "answers"; write {shape}, or name the part that it answers with --part',
+        shape='{"answers": {"PART": …}}',
     )
 
 
@@ -301,8 +338,10 @@ def _first(error: ValidationError) -> str:
     key = ".".join(str(step) for step in detail["loc"])
     if detail["type"] == "extra_forbidden":
         known = ", ".join(["exercise", *GradeRequest.model_fields])
-        return f"has the unknown field {key!r}; the fields are {known}"
-    return f"{key} {_fault(detail)}"
+        return say(
+            "has the unknown field {field!r}; the fields are {fields}", field=key, fields=known
+        )
+    return say("{field} {fault}", field=key, fault=_fault(detail))
 
 
 def _fault(detail: "ErrorDetails") -> str:
@@ -311,15 +350,31 @@ def _fault(detail: "ErrorDetails") -> str:
     shown = json.dumps(given, ensure_ascii=False, default=str)[:_LONGEST_NAME]
     match detail["type"]:
         case "dict_type":
-            return f'is {shown}; write {{"PART": …}}, an answer for each part'
+            return say(
+                "is {shown}; write {shape}, an answer for each part",
+                shown=shown,
+                shape='{"PART": …}',
+            )
         case "bool_type":
-            return f"is {shown}; write true or false"
+            return say("is {shown}; write true or false", shown=shown)
         case "literal_error":
             known = re.findall("'([^']*)'", detail["ctx"]["expected"])
             meant = nearest(given, known) if isinstance(given, str) else None
-            hint = f". Did you mean {meant}?" if meant else ""
-            return f"is {shown}; it may be {', '.join(known)}{hint}"
+            names = ", ".join(known)
+            if meant is None:
+                return say("is {shown}; it may be {names}", shown=shown, names=names)
+            return say(
+                "is {shown}; it may be {names}. Did you mean {meant}?",
+                shown=shown,
+                names=names,
+                meant=meant,
+            )
     return detail["msg"]
+
+
+def of_file(name: str, problem: str) -> Sentence:
+    """Return the problem of a file, after its name."""
+    return say("{file} {problem}", file=name, problem=problem)
 
 
 def _quoted(name: object) -> str:
@@ -329,4 +384,4 @@ def _quoted(name: object) -> str:
 def _listed(names: Sequence[str]) -> str:
     first = ", ".join(name[:_LONGEST_NAME] for name in names[:_MOST_LISTED])
     more = len(names) - _MOST_LISTED
-    return f"{first} and {more} more" if more > 0 else first
+    return say("{first} and {more} more", first=first, more=more) if more > 0 else first

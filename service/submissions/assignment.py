@@ -13,6 +13,7 @@ from service.catalogue.files.toml_file import load_toml
 from service.catalogue.robots.formulas import FieldError
 from service.submissions.lookup import UnknownExerciseError, nearest
 from service.submissions.outline import ExerciseOutline, SetExercise
+from service.translations import paragraph, say
 from service.variants.variant import hidden_variant
 
 PASS_MARK: Final = 0.8
@@ -152,9 +153,12 @@ def assigned(
     for part in parts or ():
         if part not in known:
             meant = nearest(part, known)
-            hint = f" Did you mean {meant!r}?" if meant else ""
             raise UnknownPartNameError(
-                f"{exercise.id} has no part {part!r}.{hint} Its parts are: {', '.join(known)}."
+                paragraph(
+                    say("{exercise} has no part {part!r}.", exercise=exercise.id, part=part),
+                    say("Did you mean {suggestion!r}?", suggestion=meant) if meant else "",
+                    say("Its parts are: {parts}.", parts=", ".join(known)),
+                )
             )
     chosen = frozenset(known if parts is None else parts)
     restricted = _restricted(exercise, chosen)

@@ -17,6 +17,7 @@ from service.submissions.strict_json import (
     nested_deeper,
     read_json,
 )
+from service.translations import say
 
 # Python reads TOML a hundred times more slowly than JSON, and the memory for a key with many dots
 # grows with their square.
@@ -53,13 +54,17 @@ def read_file(path: Path) -> bytes:
     except OSError as error:
         raise UnusableFileError(_unread(error)) from error
     except ValueError as error:  # a zero byte in the name
-        raise UnusableFileError(f"cannot be read: {error}") from error
+        raise UnusableFileError(say("cannot be read: {reason}", reason=str(error))) from error
 
 
 def _unread(error: OSError) -> str:
     if error.errno == errno.EFBIG:
-        return f"is larger than {MAX_BODY_SIZE // 1024} KiB"
-    return f"cannot be read: {error.strerror}"
+        return _too_large()
+    return say("cannot be read: {reason}", reason=str(error.strerror))
+
+
+def _too_large() -> str:
+    return say("is larger than {most} KiB", most=MAX_BODY_SIZE // 1024)
 
 
 def read_content(data: bytes, name: str) -> FileContent:
@@ -68,7 +73,7 @@ def read_content(data: bytes, name: str) -> FileContent:
     The suffix of the name determines the format; for ``.txt`` and standard input, it is detected.
     """
     if len(data) > MAX_BODY_SIZE:
-        raise UnusableFileError(f"is larger than {MAX_BODY_SIZE // 1024} KiB")
+        raise UnusableFileError(_too_large())
     data = _in_utf_8(data)
     match ending(name):
         case ".toml":
@@ -92,20 +97,22 @@ def _in_utf_8(data: bytes) -> bytes:
     try:
         return data.decode("utf-16").encode()
     except UnicodeError as error:
-        raise UnusableFileError("is not text: it begins like UTF-16, but is invalid") from error
+        raise UnusableFileError(
+            say("is not text: it begins like UTF-16, but is invalid")
+        ) from error
 
 
 def _text(data: bytes) -> str:
     if b"\0" in data:
-        raise UnusableFileError("is not text: it has zero bytes")
+        raise UnusableFileError(say("is not text: it has zero bytes"))
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise UnusableFileError(
-            f"is not UTF-8 text: byte {error.start + 1} is wrong; save it as UTF-8"
+            say("is not UTF-8 text: byte {byte} is wrong; save it as UTF-8", byte=error.start + 1)
         ) from error
     if not text.strip():
-        raise UnusableFileError("is empty")
+        raise UnusableFileError(say("is empty"))
     return text
 
 
@@ -118,10 +125,7 @@ def _json(data: bytes) -> object:
 
 
 def _json_reason(error: MalformedError) -> str:
-    """The reason why JSON is malformed, to follow the name of the file in a sentence."""
-    place = str(error).removeprefix(error.reason)
-    reason = error.reason.removesuffix(".")
-    return f"is not usable JSON: {reason[0].lower()}{reason[1:]}{place}"
+    return say("is not usable JSON: {reason}", reason=str(error))
 
 
 def _json_without_suffix(data: bytes, found: str) -> object:
@@ -130,10 +134,17 @@ def _json_without_suffix(data: bytes, found: str) -> object:
         return _json(data)
     except UnusableFileError as error:
         known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
-        kind = f"of a kind that is not read ({found})" if found else "without an ending"
+        problem = (
+            say("is a file of a kind that is not read ({ending})", ending=found)
+            if found
+            else say("is a file without an ending")
+        )
         # Do not complain about JSON in a PDF or a photo.
-        reason = f", and {error}" if data.lstrip().startswith(b"{") else ""
-        raise UnusableFileError(f"is a file {kind}{reason}; known are {known}") from error
+        if data.lstrip().startswith(b"{"):
+            problem = say("{first}, and {second}", first=problem, second=error.args[0])
+        raise UnusableFileError(
+            say("{problem}; known are {endings}", problem=problem, endings=known)
+        ) from error
 
 
 def _recognised(data: bytes) -> FileContent:
@@ -159,21 +170,33 @@ def _recognised(data: bytes) -> FileContent:
 def _toml(data: bytes) -> object:
     if len(data) > MAX_TOML_SIZE or data.count(b".") > MAX_TOML_DOTS:
         raise UnusableFileError(
-            f"is more TOML than {MAX_TOML_SIZE // 1024} KiB or {MAX_TOML_DOTS:,} dots"
+            say(
+                "is more TOML than {size} KiB or {dots:,} dots",
+                size=MAX_TOML_SIZE // 1024,
+                dots=MAX_TOML_DOTS,
+            )
         )
     try:
         content: object = tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        raise UnusableFileError(f"is not UTF-8 text: byte {error.start + 1} is wrong") from error
+        raise UnusableFileError(
+            say("is not UTF-8 text: byte {byte} is wrong", byte=error.start + 1)
+        ) from error
     except RecursionError as error:
-        raise UnusableFileError("has tables or lists nested too deep") from error
+        raise _too_deep() from error
     except tomllib.TOMLDecodeError as error:
-        raise UnusableFileError(f"is not usable TOML: {error}") from error
+        raise UnusableFileError(say("is not usable TOML: {reason}", reason=str(error))) from error
     except ValueError as error:
-        raise UnusableFileError("is not usable TOML: a number has thousands of digits") from error
+        raise UnusableFileError(
+            say("is not usable TOML: a number has thousands of digits")
+        ) from error
     if nested_deeper(content, MAX_DEPTH):
-        raise UnusableFileError("has tables or lists nested too deep")
+        raise _too_deep()
     return _as_json(content)
+
+
+def _too_deep() -> UnusableFileError:
+    return UnusableFileError(say("has tables or lists nested too deep"))
 
 
 def _as_json(value: Any) -> Any:

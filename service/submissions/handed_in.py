@@ -14,6 +14,7 @@ from typing import Final
 from service.submissions.file_content import STANDARD_INPUT, UnusableFileError, read_file
 from service.submissions.platform_names import platform_name, student_and_part
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.translations import say
 
 MAX_SUBMISSIONS_IN_FOLDER: Final = 100_000
 # The most files and levels of folders of one student: a cloned repository has more than answers.
@@ -116,7 +117,7 @@ def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> It
     try:
         names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
     except UnusableFileError as error:
-        yield HandedIn(str(folder), folder.name, (), problem=str(error))
+        yield HandedIn(str(folder), folder.name, (), problem=error.args[0])
         return
     by_student: dict[str, list[str]] = {}
     for name in names:
@@ -154,7 +155,9 @@ def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[Han
     elif entry.content is not None or not entry.path.is_dir():
         yield entry
     elif levels == 0:
-        raise UnusableFileError(f"has folders nested more than {MAX_FOLDERS_DEEP} deep")
+        raise UnusableFileError(
+            say("has folders nested more than {most} deep", most=MAX_FOLDERS_DEEP)
+        )
     else:
         for name in _names(entry.path, MAX_FILES):
             below = f"{entry.name}/{name}" if entry.name else name
@@ -166,9 +169,11 @@ def _names(folder: Path, most: int) -> list[str]:
     try:
         names = sorted(name for name in os.listdir(folder) if not _is_junk(name))  # noqa: PTH208
     except OSError as error:
-        raise UnusableFileError(f"cannot be read: {error.strerror}") from error
+        raise UnusableFileError(
+            say("cannot be read: {reason}", reason=str(error.strerror))
+        ) from error
     if len(names) > most:
-        raise UnusableFileError(f"holds more than {most:,} files")
+        raise UnusableFileError(say("holds more than {most:,} files", most=most))
     return names
 
 
@@ -182,10 +187,10 @@ def _link_problem(link: Path, boundary: Path) -> str:
         target = link.resolve(strict=True)
         is_inside = target.is_relative_to(boundary.resolve())
     except (OSError, RuntimeError):  # RuntimeError is a circle, in older Pythons
-        return "is a symbolic link to nothing"
+        return say("is a symbolic link to nothing")
     if not is_inside:
-        return "is a symbolic link out of the folder"
-    return "is a symbolic link to a folder" if target.is_dir() else ""
+        return say("is a symbolic link out of the folder")
+    return say("is a symbolic link to a folder") if target.is_dir() else ""
 
 
 def _is_folder(path: Path) -> bool:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Final
 
+from service.translations import Sentence, say, template
+
 MAX_BODY_SIZE: Final = 256 * 1024
 # The deepest answer, a list of matrices, needs five levels.
 MAX_DEPTH: Final = 64
@@ -22,6 +24,22 @@ MAX_BRACKETS: Final = 5_000
 # with seven joints have 13,000.
 MAX_COMMAS: Final = 20_000
 
+# What Python's own reader says; it has no templates.
+_SYNTAX_ERRORS: Final = frozenset(
+    (
+        template("Expecting value."),
+        template("Expecting property name enclosed in double quotes."),
+        template("Expecting ':' delimiter."),
+        template("Expecting ',' delimiter."),
+        template("Illegal trailing comma before end of object."),
+        template("Illegal trailing comma before end of array."),
+        template("Extra data."),
+        template("Unterminated string starting at."),
+        template("Invalid control character at."),
+        template("Invalid \\escape."),
+        template("Invalid \\uXXXX escape."),
+    )
+)
 _DIGITS_OF_A_FLOAT: Final = 308
 _SURROGATE_ESCAPE: Final = re.compile(r"\\u[dD][89a-fA-F]")
 _LONE_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
@@ -39,7 +57,12 @@ class MalformedError(ValueError):
         """The reason, with its place if known."""
         if self.line is None:
             return self.reason
-        return f"{self.reason} (line {self.line}, column {self.column})"
+        return say(
+            "{reason} (line {line}, column {column})",
+            reason=self.reason,
+            line=self.line,
+            column=self.column or 1,
+        )
 
 
 def read_json(data: bytes) -> object:
@@ -51,17 +74,24 @@ def read_json(data: bytes) -> object:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MalformedError(f"This is not UTF-8 text: byte {error.start + 1} is wrong.") from error
+        raise MalformedError(
+            say("This is not UTF-8 text: byte {byte} is wrong.", byte=error.start + 1)
+        ) from error
     if not text.strip():
-        raise MalformedError("There is nothing here; a JSON object is expected.")
+        raise MalformedError(say("There is nothing here; a JSON object is expected."))
     if text.count("[") + text.count("{") > MAX_BRACKETS:
-        raise MalformedError(f"There are more than {MAX_BRACKETS} lists and objects.")
+        raise MalformedError(
+            say("There are more than {most} lists and objects.", most=MAX_BRACKETS)
+        )
     if text.count(",") > MAX_COMMAS:
-        raise MalformedError(f"There are more than {MAX_COMMAS} commas.")
+        raise MalformedError(say("There are more than {most} commas.", most=MAX_COMMAS))
     try:
         value: object = _DECODER.decode(text)
     except json.JSONDecodeError as error:
-        raise MalformedError(f"{error.msg}.", error.lineno, error.colno) from error
+        reason = f"{error.msg}."
+        if reason in _SYNTAX_ERRORS:
+            reason = Sentence(reason)
+        raise MalformedError(reason, error.lineno, error.colno) from error
     except RecursionError:
         raise _too_deep() from None
     # Few brackets cannot be nested deep, so nearly every body skips the check of its values.
@@ -87,7 +117,9 @@ def _inside(value: object) -> Iterable[object]:
 
 
 def _too_deep() -> MalformedError:
-    return MalformedError(f"Lists and objects are nested more than {MAX_DEPTH} deep.")
+    return MalformedError(
+        say("Lists and objects are nested more than {most} deep.", most=MAX_DEPTH)
+    )
 
 
 def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -95,7 +127,9 @@ def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
     result = dict(pairs)
     if len(result) != len(pairs):
         [(repeated, _)] = Counter(key for key, _ in pairs).most_common(1)
-        raise MalformedError(f"The key {json.dumps(repeated[:60])} appears twice in one object.")
+        raise MalformedError(
+            say("The key {key} appears twice in one object.", key=json.dumps(repeated[:60]))
+        )
     return result
 
 

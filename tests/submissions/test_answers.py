@@ -10,6 +10,7 @@ import pytest
 from service.submissions.answers import ExerciseAnswers, answers_in
 from service.submissions.assignment import Assignment, assigned, of_one
 from service.submissions.handed_in import all_handed_in
+from service.translations import LANGUAGES, told
 from tests.shipped import shipped_exercises
 
 CATALOGUE = shipped_exercises()
@@ -110,6 +111,7 @@ def test_files_that_cannot_be_assigned_are_explained(
     [found] = handed(tmp_path, files, RRR)
     assert found.body is None
     assert reason in found.problem
+    assert told(found.problem, LANGUAGES["de"].translation) != found.problem
 
 
 def test_a_broken_file_affects_only_itself(tmp_path: Path) -> None:
@@ -151,9 +153,11 @@ def test_a_file_must_name_one_of_several_exercises(
     found = handed(tmp_path, files, TWO)
     assert [each.body for each in found] == [None, None]
     assert all(reason in each.problem for each in found)
+    assert told(found[0].problem, LANGUAGES["de"].translation) != found[0].problem
 
 
 def test_an_empty_folder_is_a_problem(tmp_path: Path) -> None:
     (tmp_path / "anna").mkdir()
     [found] = handed(tmp_path, {}, RRR)
     assert (found.body, found.problem) == (None, "holds no file")
+    assert told(found.problem, LANGUAGES["de"].translation) == "enthält keine Datei"

@@ -13,6 +13,7 @@ from service.submissions.strict_json import (
     nested_deeper,
     read_json,
 )
+from service.translations import LANGUAGES, told
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)
@@ -62,6 +63,12 @@ def test_unrepresentable_numbers_and_surrogates_become_text(text: str, value: ob
         ('{"a": 1,}', "line 1, column "),
         ("[1,\n 2,\n x]", "line 3, column 2"),
         ('"\\x"', "line 1, column "),
+        ('"\\u12"', "line 1, column "),
+        ('"\n"', "line 1, column "),
+        ('"a', "line 1, column "),
+        ("[1 2]", "line 1, column "),
+        ('{"a" 1}', "line 1, column "),
+        ("1 2", "line 1, column "),
         ("[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), "deep"),
         ("[" * MAX_BRACKETS + "]" * MAX_BRACKETS, "deep"),
         ("[" * 100_000 + "]" * 100_000, "lists and objects"),
@@ -72,6 +79,10 @@ def test_an_error_is_reported_with_its_place(text: str, reason: str) -> None:
     with pytest.raises(MalformedError) as caught:
         read_json(text.encode())
     assert reason in str(caught.value)
+    # Every sentence of Python's own reader has a translation, too.
+    german = LANGUAGES["de"].translation
+    assert told(caught.value.reason, german) != caught.value.reason
+    assert told(str(caught.value), german) != str(caught.value)
 
 
 def test_the_depth_is_counted_exactly() -> None:

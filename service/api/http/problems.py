@@ -73,7 +73,13 @@ class ProblemError(Exception):
         if request_id:
             document["request_id"] = request_id
         if self.errors:
-            document["errors"] = list(self.errors)
+            document["errors"] = [
+                {
+                    name: told(value, translation) if isinstance(value, str) else value
+                    for name, value in error.items()
+                }
+                for error in self.errors
+            ]
         # In ASCII, because the request may hold characters that cannot be encoded.
         return json.dumps(document).encode("ascii")
 

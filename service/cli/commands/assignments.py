@@ -7,9 +7,10 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
+from service.cli.language import spoken
 from service.cli.terminal import installed_exercise, stdout
 from service.formats.shared.plain_text import number, percent, visible
-from service.submissions.answers import ExerciseAnswers, answers_in
+from service.submissions.answers import ExerciseAnswers, answers_in, of_file
 from service.submissions.assignment import AssignedExercise, Assignment, load_assignment
 from service.submissions.handed_in import HandedIn, all_handed_in
 
@@ -84,7 +85,7 @@ def _found(handed: HandedIn, assignment: Assignment) -> Iterator[Text]:
 
 def _answered(answers: ExerciseAnswers) -> str:
     if answers.problem:
-        return f"{answers.file} {answers.problem}"
+        return spoken(of_file(answers.file, answers.problem))
     if answers.body is None or not answers.body.answers:
         return "missing"
     return f"{', '.join(answers.body.answers)} from {answers.file}"

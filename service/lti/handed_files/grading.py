@@ -14,10 +14,11 @@ from service.local_grading import GradingTerms, graded
 from service.lti.handed_files.notices import FileAtPlatform, HandedFiles
 from service.lti.handed_files.platform_files import NoFileError
 from service.lti.linking import parameters_assignment
+from service.submissions.answers import of_file
 from service.submissions.assignment import PASS_MARK, Assignment, assigned
 from service.submissions.file_content import PASTED_ENDINGS
 from service.submissions.handed_in import HandedFile, HandedIn
-from service.translations import ENGLISH, Language, language_named
+from service.translations import ENGLISH, Language, language_named, say, told
 
 # The type of our reports, and how long what they say may be.
 KIND: Final = "dh-grader"
@@ -54,7 +55,8 @@ def graded_files(
     failures = {key: each for key, each in contents.items() if isinstance(each, NoFileError)}
     assignment = _assignment(files.custom, catalogue, ceiling)
     if assignment is None:
-        why = NoFileError("UNKNOWN_EXERCISE", "The assignment names no exercise of this service.")
+        unknown = say("The assignment names no exercise of this service.")
+        why = NoFileError("UNKNOWN_EXERCISE", told(unknown, language.translation))
         return GradedFiles(None, {each.asset_id: why for each in files.assets}, language)
     names = _names(files)
     entries = tuple(
@@ -75,7 +77,9 @@ def graded_files(
     found = graded(HandedIn("submission", ", ".join(names.values()), entries), terms)
     for key, name in names.items():
         if key not in failures and (problem := _problem(found, name)):
-            failures[key] = NoFileError("UNSUPPORTED_ASSET_TYPE", problem)
+            failures[key] = NoFileError(
+                "UNSUPPORTED_ASSET_TYPE", told(problem, language.translation)
+            )
     return GradedFiles(found, failures, language)
 
 
@@ -143,6 +147,11 @@ def _problem(found: GradedSubmission, name: str) -> str:
     mine = [file for file in found.files if name in file.names]
     if any(file.report for file in mine):
         return ""
-    told = [file.problem for file in mine or found.files if file.problem]
-    known = " ".join(PASTED_ENDINGS)
-    return f"{name} {told[0]}" if told else f"{name} answers nothing; known are files with {known}"
+    problems = [file.problem for file in mine or found.files if file.problem]
+    if problems:
+        return of_file(name, problems[0])
+    return say(
+        "{file} answers nothing; known are files with {endings}",
+        file=name,
+        endings=" ".join(PASTED_ENDINGS),
+    )

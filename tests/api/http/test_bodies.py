@@ -74,6 +74,14 @@ def test_a_syntax_error_has_its_place(client: httpx.Client) -> None:
     assert "line 2, column 23" in problem["detail"]
 
 
+def test_a_syntax_error_is_told_in_the_language(client: httpx.Client) -> None:
+    response = client.post(GRADE, content=b'{"a" 1}', headers={"Accept-Language": "de"})
+    assert response.headers["content-language"] == "de"
+    told = "Das Trennzeichen ':' wird erwartet."
+    assert response.json()["detail"] == f"{told} (Zeile 1, Spalte 6)"
+    assert response.json()["errors"][0]["detail"] == told
+
+
 @pytest.mark.parametrize(
     "content_type",
     ["application/json", "application/json; charset=utf-8", "application/x-www-form-urlencoded",

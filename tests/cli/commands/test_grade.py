@@ -363,7 +363,7 @@ def test_an_exercise_without_an_answer_is_not_called_unreadable(run: Run, save: 
         (b'{\n "answers": {]}', "a.json", "line 2, column 14"),
         (b"", "a.json", "is empty"),
         (b'{"a": \xff}', "a.json", ": is not UTF-8 text: byte 7 is wrong; save it as UTF-8"),
-        (b'{"a": ]}', "a.json", "is not usable JSON: expecting value (line 1, column 7)"),
+        (b'{"a": ]}', "a.json", "is not usable JSON: Expecting value. (line 1, column 7)"),
         (b"\xff", "a.json", "not UTF-8"),
         (b"[" * 5000 + b"]" * 5000, "a.json", "deep"),
         (b" " * 300_000, "a.json", "larger than 256 KiB"),
