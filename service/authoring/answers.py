@@ -16,6 +16,7 @@ from service.expressions import LIMITS, AngleUnit
 from service.grading import FeedbackLevel, PartReport, Submission, Verdict, grade
 from service.grading.report import messages_of
 from service.solutions import solve
+from service.translations import joined, say, say_count
 
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
 # The recommended number of checks of each kind, which makes a mistake in the exercise unlikely.
@@ -33,9 +34,13 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
     for part in too_long:
         yield failed(
             fields[part],
-            f"the right answer to {part} has an entry of more than the {LIMITS.characters} "
-            f"characters that are read, so nobody can submit it; ask for less, such as the pose "
-            f"of a frame in between",
+            say(
+                "the right answer to {part} has an entry of more than the {most} characters "
+                "that are read, so nobody can submit it; ask for less, such as the pose of a "
+                "frame in between",
+                part=part,
+                most=LIMITS.characters,
+            ),
         )
     for unit in UNITS:
         reports = _graded(exercise, answers, unit)
@@ -44,8 +49,12 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
             if report.part not in too_long:
                 yield failed(
                     fields[report.part],
-                    f"the model answer to {report.part} is not right with angles in {unit}: "
-                    f"{_in_words(report)}",
+                    say(
+                        "the model answer to {part} is not right with angles in {unit}: {result}",
+                        part=report.part,
+                        unit=unit,
+                        result=_in_words(report),
+                    ),
                 )
         if short:
             return
@@ -68,7 +77,10 @@ def failed_checks(exercise: Exercise) -> Iterator[Remark]:
     for i, check in enumerate(exercise.checks):
         reports = _graded(exercise, check.answers, check.angle_unit)
         for part, problem in _problems(check, reports):
-            yield failed(f"checks[{i}]", f"{check.title!r}: {part} {problem}")
+            yield failed(
+                f"checks[{i}]",
+                say("{check!r}: {part} {problem}", check=check.title, part=part, problem=problem),
+            )
 
 
 def missing_checks(exercise: Exercise) -> Iterator[Remark]:
@@ -80,37 +92,57 @@ def missing_checks(exercise: Exercise) -> Iterator[Remark]:
         wanted = ", ".join(f"{number} {kind}" for kind, number in WANTED.items())
         yield warning(
             "checks",
-            f"{have}; write {wanted} or more, so that later mistakes are detected",
+            say(
+                "{have}; write {wanted} or more, so that later mistakes are detected",
+                have=have,
+                wanted=wanted,
+            ),
         )
 
 
 def _problems(check: CheckSpec, reports: dict[str, PartReport]) -> Iterator[tuple[str, str]]:
     for part, expected in check.expect.items():
         for problem in _differences(expected, reports[part]):
-            yield part, f"{problem}; it got {_in_words(reports[part])}"
+            result = _in_words(reports[part])
+            yield part, say("{problem}; it got {result}", problem=problem, result=result)
     answered = [reports[part] for part in check.answers]
     full = [report for report in answered if report.verdict is Verdict.CORRECT]
     if check.kind == "wrong" and len(full) == len(answered):
-        yield full[0].part, "should lose points, as its kind is 'wrong'; it got full marks"
+        yield (
+            full[0].part,
+            say("should lose points, as its kind is 'wrong'; it got full marks"),
+        )
     if check.kind != "wrong":
         for report in answered:
             if report.part not in check.expect and report not in full:
-                yield report.part, f"should get full marks; it got {_in_words(report)}"
+                result = _in_words(report)
+                yield report.part, say("should get full marks; it got {result}", result=result)
 
 
 def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
     if expected.verdict is not None and expected.verdict != report.verdict:
-        yield f"should be {expected.verdict}"
+        yield say("should be {verdict}", verdict=expected.verdict)
     if expected.points is not None and abs(expected.points - report.points) > _SAME_POINTS:
-        yield f"should get {expected.points:g} points"
+        yield say("should get {points} points", points=f"{expected.points:g}")
     codes = sorted({message.code for message, *_ in messages_of(report)})
     missing = [code for code in expected.codes or () if code not in codes]
     if missing:
-        had = f"the codes {', '.join(codes)}" if codes else "no code at all"
-        yield f"should be told {', '.join(missing)}, but was told {had}"
+        named = ", ".join(missing)
+        yield (
+            say(
+                "should be told {missing}, but was told the codes {codes}",
+                missing=named,
+                codes=", ".join(codes),
+            )
+            if codes
+            else say("should be told {missing}, but was told no code at all", missing=named)
+        )
     if expected.follow_through not in (None, report.follow_through):
-        what = "count" if expected.follow_through else "not count"
-        yield f"should {what} as following from the earlier answer"
+        yield (
+            say("should count as following from the earlier answer")
+            if expected.follow_through
+            else say("should not count as following from the earlier answer")
+        )
 
 
 def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
@@ -129,12 +161,17 @@ def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
         ]
         waiting = [other for other in others if other not in same]
         if same:
-            names = ", ".join(part.id for part in same)
-            have = "has" if len(same) == 1 else "have"
             yield warning(
                 f"parts[{exercise.parts.index(same[0])}]",
-                f"{names} {have} the same answer as {one.id}: students can copy it; ask for "
-                f"something else, or keep only one part",
+                say_count(
+                    "{names} has the same answer as {other}: students can copy it; ask for "
+                    "something else, or keep only one part",
+                    "{names} have the same answer as {other}: students can copy it; ask for "
+                    "something else, or keep only one part",
+                    count=len(same),
+                    names=", ".join(part.id for part in same),
+                    other=one.id,
+                ),
             )
 
 
@@ -163,6 +200,11 @@ def _graded(
 def _in_words(report: PartReport) -> str:
     """The verdict, the points and one message of a part, for a remark."""
     # Prefer a message on a single cell: it says more than one on the whole part.
-    message = next((f": {each.message}" for each, *_ in reversed([*messages_of(report)])), "")
-    points = f"{round(report.points, 2):g} of {report.max_points:g} points"
-    return f"{report.verdict.value}, {points}{message}"
+    message = next((each.message for each, *_ in reversed([*messages_of(report)])), "")
+    result = say(
+        "{verdict}, {points} of {most} points",
+        verdict=report.verdict.value,
+        points=f"{round(report.points, 2):g}",
+        most=f"{report.max_points:g}",
+    )
+    return joined(": ", [result, message]) if message else result

@@ -9,6 +9,7 @@ from service.authoring.remarks import Level, Remark
 from service.authoring.slips import unfit_slips
 from service.authoring.symbols import ambiguous_symbols, badly_scaled, bare_degrees, unused_symbols
 from service.catalogue import Exercise
+from service.translations import joined
 
 EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
     # First, because it is the cause of what the other checks find.
@@ -34,7 +35,7 @@ def examine(exercise: Exercise) -> list[Remark]:
 def failures(exercise: Exercise) -> list[str]:
     """Return what is wrong with an exercise, in sentences; warnings are left out."""
     return [
-        f"{remark.field}: {remark.text}" if remark.field else remark.text
+        joined(": ", [remark.field, remark.text]) if remark.field else remark.text
         for remark in examine(exercise)
         if remark.level is Level.FAILED
     ]

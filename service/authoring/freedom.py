@@ -11,6 +11,7 @@ from service.catalogue.robots.variables import TRIALS, trial_values
 from service.kinematics.jacobian import coincident, rank
 from service.kinematics.screws import exponential, moved
 from service.kinematics.transforms import Numbers, identity
+from service.translations import say, template
 
 WAYS = 6
 
@@ -24,18 +25,29 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
     pairs = np.argwhere(np.triu(coincident(jacobian)))
     for i, j in pairs.tolist():
         one, other = robot.joints[i], robot.joints[j]
-        motion = "slide in one direction" if one.prismatic else "turn about one line"
-        yield warning(
-            "robot",
-            f"joints {one.index} and {other.index} {motion}, so the arm has lost a degree of "
-            f"freedom; check the rows between them",
+        motion = (
+            template(
+                "joints {first} and {second} slide in one direction, so the arm has lost a degree "
+                "of freedom; check the rows between them"
+            )
+            if one.prismatic
+            else template(
+                "joints {first} and {second} turn about one line, so the arm has lost a degree of "
+                "freedom; check the rows between them"
+            )
         )
+        yield warning("robot", say(motion, first=one.index, second=other.index))
     ways, joints = rank(jacobian), len(robot.joints)
     if ways < min(joints, WAYS) and not len(pairs):
         yield warning(
             "robot",
-            f"the {joints} joints move the tool in {ways} ways only, in every configuration; check "
-            f"the rows, or say in the statement that the arm is redundant",
+            say(
+                "the {joints} joints move the tool in {ways} ways only, in every "
+                "configuration; check the rows, or say in the statement that the arm is "
+                "redundant",
+                joints=joints,
+                ways=ways,
+            ),
         )
 
 

@@ -7,6 +7,7 @@ from typing import Final
 from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, PartReport, Submission, grade
+from service.translations import Sentence, joined, say, say_count
 
 # The largest share without a warning. A pose may earn more: with parallel axes, the lazy answer to
 # its rotation, half of the pose, is right.
@@ -26,6 +27,20 @@ def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
     }
 
 
+def summary(exercise: Exercise) -> Sentence:
+    """Return the numbers of parts and checks, and what lazy answers earn."""
+    earned = [
+        say("{share} % of {part}", share=math.floor(100 * share), part=part)
+        for part, share in lazy_shares(exercise).items()
+    ]
+    return say(
+        "{parts}, {checks}. Writing only zeros and joint variables earns {earned}.",
+        parts=say_count("{count} part", "{count} parts", count=len(exercise.parts)),
+        checks=say_count("{count} check", "{count} checks", count=len(exercise.checks)),
+        earned=joined(", ", earned),
+    )
+
+
 def lazy_answers(exercise: Exercise) -> Iterator[Remark]:
     """Yield a warning for each part in which a lazy answer earns much."""
     shares = lazy_shares(exercise)
@@ -34,8 +49,12 @@ def lazy_answers(exercise: Exercise) -> Iterator[Remark]:
         if share > (MOST_OF_A_POSE if part.kind == "transform" else MOST):
             yield warning(
                 f"parts[{i}]",
-                f"an answer of only zeros and joint variables earns {math.floor(100 * share)} % of "
-                f"{part.id}; ask for more, or mark it by content",
+                say(
+                    "an answer of only zeros and joint variables earns {share} % of {part}; ask "
+                    "for more, or mark it by content",
+                    share=math.floor(100 * share),
+                    part=part.id,
+                ),
             )
 
 

@@ -6,6 +6,7 @@ from service.authoring.remarks import Remark, failed
 from service.catalogue import Exercise
 from service.catalogue.parts.find_slip import FindSlipSpec
 from service.grading.kinds.find_slip import slip_of
+from service.translations import say
 
 
 def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
@@ -17,6 +18,11 @@ def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
         if found != part.slip:
             yield failed(
                 f"parts[{i}].slip",
-                f"no {part.convention.value} table of this robot has the slip {part.slip} alone; "
-                f"leave slip out, or write another one, such as {found}",
+                say(
+                    "no {convention} table of this robot has the slip {slip} alone; leave slip "
+                    "out, or write another one, such as {found}",
+                    convention=part.convention.value,
+                    slip=part.slip,
+                    found=found,
+                ),
             )

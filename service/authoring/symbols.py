@@ -11,20 +11,21 @@ from service.catalogue import Exercise, Variable
 from service.expressions import Expression
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.tree import Node, Number, Unit, children
+from service.translations import say
 
 _SHORTHAND: Final = re.compile(r"[cCsS][0-9]+")
 # Names, and what students may mistake them for.
 _MISLEADING: Final = {
-    "e": "Euler's number",
-    "E": "Euler's number, or a power of ten",
-    "i": "the imaginary unit or an index",
-    "j": "the imaginary unit or an index",
-    "I": "the digit 1 or the letter l",
-    "l": "the digit 1 or the letter I",
-    "O": "the digit 0",
-    "o": "the digit 0",
-    "c": "a cosine",
-    "s": "a sine",
+    "e": say("Euler's number"),
+    "E": say("Euler's number, or a power of ten"),
+    "i": say("the imaginary unit or an index"),
+    "j": say("the imaginary unit or an index"),
+    "I": say("the digit 1 or the letter l"),
+    "l": say("the digit 1 or the letter I"),
+    "O": say("the digit 0"),
+    "o": say("the digit 0"),
+    "c": say("a cosine"),
+    "s": say("a sine"),
 }
 # Beyond this ratio, a slip in a small length changes only the last digits of a pose.
 MOST_RATIO: Final = 1000.0
@@ -48,7 +49,7 @@ def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
         if len(names) > 1:
             yield warning(
                 f"symbols.{names[1]}",
-                f"looks like {names[0]}: students may confuse them; rename one",
+                say("looks like {other}: students may confuse them; rename one", other=names[0]),
             )
 
 
@@ -59,28 +60,39 @@ def unused_symbols(exercise: Exercise) -> Iterator[Remark]:
         if variable.joint is None and variable.name not in used:
             yield warning(
                 f"symbols.{variable.name}",
-                "is in no formula: remove it, or say in the statement that it is not needed",
+                say("is in no formula: remove it, or say in the statement that it is not needed"),
             )
 
 
 def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
     name = variable.name
     if name in _MISLEADING:
-        yield f"may be read as {_MISLEADING[name]}; give it a longer name, such as {name}1"
+        yield say(
+            "may be read as {meaning}; give it a longer name, such as {name}1",
+            meaning=_MISLEADING[name],
+            name=name,
+        )
     joints = {joint.index for joint in exercise.joints}
     if _SHORTHAND.fullmatch(name) and set(map(int, name[1:])) <= joints:
-        function = "cosine" if name[0] in "cC" else "sine"
         yield (
-            f"takes the place of the shorthand {name} for a {function}: students who write "
-            f"{name} for that are marked wrong; rename it"
+            say(
+                "takes the place of the shorthand {name} for {function}: students who write "
+                "{name} for that are marked wrong; rename it",
+                name=name,
+                function=_MISLEADING[name[0].lower()],
+            )
         )
     if variable.joint is None:
         for joint in exercise.joints:
             names = {f"q{joint.index}", f"{'d' if joint.prismatic else 'theta'}{joint.index}"}
             if name in names and name != joint.variable:
                 yield (
-                    f"is also what students call {joint.variable}, the variable of joint "
-                    f"{joint.index}; rename one of them"
+                    say(
+                        "is also what students call {variable}, the variable of joint {joint}; "
+                        "rename one of them",
+                        variable=joint.variable,
+                        joint=joint.index,
+                    )
                 )
 
 
@@ -95,8 +107,14 @@ def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
     if sizes[most] > MOST_RATIO * sizes[least]:
         yield warning(
             f"symbols.{least}.range",
-            f"reaches {sizes[least]:g} where {most} reaches {sizes[most]:g}, so that a slip in "
-            f"{least} is too small to be detected; write lengths of one unit and similar size",
+            say(
+                "reaches {size} where {most} reaches {largest}, so that a slip in {least} is too "
+                "small to be detected; write lengths of one unit and similar size",
+                size=f"{sizes[least]:g}",
+                most=most,
+                largest=f"{sizes[most]:g}",
+                least=least,
+            ),
         )
 
 
@@ -106,22 +124,32 @@ def _range(variable: Variable) -> Iterator[Remark]:
     if variable.high - variable.low < LEAST_WIDTH * size:
         yield warning(
             field,
-            f"is so narrow that the number {variable.low:g} may be accepted for {variable.name}; "
-            f"widen it, or write the number in the formulas",
+            say(
+                "is so narrow that the number {low} may be accepted for {name}; widen it, or write "
+                "the number in the formulas",
+                low=f"{variable.low:g}",
+                name=variable.name,
+            ),
         )
     is_constant_length = variable.kind == "length" and variable.joint is None
     if is_constant_length and variable.low <= 0 <= variable.high:
         yield warning(
             field,
-            f"holds 0, where separate axes would intersect; begin above 0, as in "
-            f"[{size / 3:.1g}, {size:.1g}]",
+            say(
+                "holds 0, where separate axes would intersect; begin above 0, as in {range}",
+                range=f"[{size / 3:.1g}, {size:.1g}]",
+            ),
         )
     ends = sorted((abs(variable.low), abs(variable.high)))
     if 0 < ends[0] * MOST_RATIO < ends[1]:
         yield warning(
             field,
-            f"goes from {variable.low:g} to {variable.high:g}; narrow it, because mistakes at one "
-            f"end are not detected at the other",
+            say(
+                "goes from {low} to {high}; narrow it, because mistakes at one end are not "
+                "detected at the other",
+                low=f"{variable.low:g}",
+                high=f"{variable.high:g}",
+            ),
         )
 
 
@@ -135,8 +163,11 @@ def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
                 text = f"{value:.12g}" if isinstance(term, Number) else f"({constant.text()})"
                 yield warning(
                     field,
-                    f"angles without a unit are in radians, and {text} looks like degrees; did you "
-                    f"mean {text}deg?",
+                    say(
+                        "angles without a unit are in radians, and {text} looks like degrees; did "
+                        "you mean {text}deg?",
+                        text=text,
+                    ),
                 )
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import AwareDatetime, Field, model_validator
 
 from service.catalogue.files.fields import StrictModel
+from service.translations import say
 
 Worth = Annotated[float, Field(ge=0, le=1)]
 # The price of each step of a hint, as a share of the points of the exercise.
@@ -36,8 +37,8 @@ class AttemptsSpec(StrictModel):
     @model_validator(mode="after")
     def _in_order(self) -> "AttemptsSpec":
         if self.closes is not None and self.due is None:
-            raise ValueError("closes says how long late attempts are taken, so it needs due")
+            raise ValueError(say("closes says how long late attempts are taken, so it needs due"))
         moments = [moment for moment in (self.opens, self.due, self.closes) if moment is not None]
         if moments != sorted(moments):
-            raise ValueError("opens, due and closes must follow each other in this order")
+            raise ValueError(say("opens, due and closes must follow each other in this order"))
         return self

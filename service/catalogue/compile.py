@@ -42,7 +42,7 @@ from service.catalogue.robots.screw_robot import Reference, ScrewRobot
 from service.catalogue.robots.variables import Variable
 from service.expressions import Expression, Kind, Symbol, Vocabulary
 from service.kinematics.chain import COLUMNS, A, D
-from service.translations import say
+from service.translations import say, template
 
 DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "angle": (-math.pi, math.pi),
@@ -117,13 +117,16 @@ def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> Non
                     known = ", ".join(most)
                     raise FieldError(
                         f"checks[{i}].{field}.{name}",
-                        f"there is no such part; write one of {known}",
+                        say("there is no such part; write one of {known}", known=known),
                     )
         for name, expected in check.expect.items():
             if expected.points is not None and expected.points > most[name]:
                 raise FieldError(
                     f"checks[{i}].expect.{name}.points",
-                    f"is more than the part's {most[name]:g} points; write {most[name]:g} or less",
+                    say(
+                        "is more than the part's {most} points; write {most} or less",
+                        most=f"{most[name]:g}",
+                    ),
                 )
 
 
@@ -186,10 +189,14 @@ def _joint_variable(joint: Joint, symbol: SymbolSpec | None) -> Variable:
         described = SymbolSpec(kind=kind, description=meaning)
         return _variable(joint.variable, described, joint.index)
     if symbol.kind != kind:
+        fault = (
+            template("is {given!r}, but joint {joint} slides; write {kind!r}")
+            if joint.prismatic
+            else template("is {given!r}, but joint {joint} turns; write {kind!r}")
+        )
         raise FieldError(
             f"symbols.{joint.variable}.kind",
-            f"is {symbol.kind!r}, but joint {joint.index} "
-            f"{'slides' if joint.prismatic else 'turns'}; write {kind!r}",
+            say(fault, given=symbol.kind, joint=joint.index, kind=kind),
         )
     return _variable(joint.variable, symbol, joint.index)
 
@@ -209,7 +216,14 @@ def _range(field: str, symbol: SymbolSpec) -> tuple[float, float]:
         for i, bound in enumerate(symbol.range)
     )
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise FieldError(field, f"must rise from low to high, not from {low:g} to {high:g}")
+        raise FieldError(
+            field,
+            say(
+                "must rise from low to high, not from {low} to {high}",
+                low=f"{low:g}",
+                high=f"{high:g}",
+            ),
+        )
     return low, high
 
 
@@ -219,7 +233,7 @@ def _vocabulary(variables: tuple[Variable, ...], *, decimal_comma: bool) -> Voca
     try:
         return Vocabulary(symbols, decimal_comma=decimal_comma)
     except ValueError as error:
-        raise FieldError("symbols", str(error)) from error
+        raise FieldError("symbols", error.args[0]) from error
 
 
 def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
@@ -248,10 +262,13 @@ def _screw_robot(
     turns = np.abs(omega).max(axis=(1, 2)) > EXACT
     for i, (joint, turning) in enumerate(zip(joints, turns.tolist(), strict=True)):
         if turning == joint.prismatic:
-            moves, should = ("turns", "slides") if turning else ("slides", "turns")
+            fault = (
+                template("turns, but structure {structure!r} says that joint {joint} slides")
+                if turning
+                else template("slides, but structure {structure!r} says that joint {joint} turns")
+            )
             raise FieldError(
-                f"robot.screws[{i}]",
-                f"{moves}, but structure {spec.structure!r} says that joint {i + 1} {should}",
+                f"robot.screws[{i}]", say(fault, structure=spec.structure, joint=i + 1)
             )
     return ScrewRobot(spec.structure, joints, home, axes)
 
@@ -267,8 +284,16 @@ def _row(i: int, cells: Four, joints: tuple[Joint, ...], reader: FormulaReader) 
     for column, formula in zip(COLUMNS, row, strict=True):
         expected = {moving.variable} if moving and moving.column == column else set()
         if formula.symbols & variables != expected:
-            wanted = f"must hold {moving.variable}" if expected and moving else "must be constant"
-            raise FieldError(f"{field}.{column}", f"{wanted}, but reads {formula.text()}")
+            reason = (
+                say(
+                    "must hold {variable}, but reads {formula}",
+                    variable=moving.variable,
+                    formula=formula.text(),
+                )
+                if expected and moving
+                else say("must be constant, but reads {formula}", formula=formula.text())
+            )
+            raise FieldError(f"{field}.{column}", reason)
     if moving is not None:
         _check_moves_once(f"{field}.{moving.column}", row[COLUMNS.index(moving.column)], moving)
     return a, alpha, d, theta
@@ -284,5 +309,10 @@ def _check_moves_once(field: str, formula: Expression, joint: Joint) -> None:
     cell = formula.evaluate(values)
     if not np.allclose(cell - np.asarray(cell)[0], at):
         raise FieldError(
-            field, f"must be {joint.variable} plus a constant, but reads {formula.text()}"
+            field,
+            say(
+                "must be {variable} plus a constant, but reads {formula}",
+                variable=joint.variable,
+                formula=formula.text(),
+            ),
         )

@@ -16,8 +16,9 @@ from service.catalogue.files.toml_file import (
 )
 from service.catalogue.order import in_order
 from service.catalogue.varying.build import exercise_of
+from service.translations import say
 
-ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
+ID_ADVICE = say("write small letters and digits, with - or _ between them, such as elbow-arm")
 _LONGEST_ID = 60
 
 
@@ -47,10 +48,12 @@ def exercise_files(*folders: Path) -> list[Path]:
             continue
         for file in found:
             if files.setdefault(file.stem, file) is not file:
-                reason = f"has the name of {file}; give it another, for it is the id"
+                reason = say(
+                    "has the name of {file}; give it another, for it is the id", file=str(file)
+                )
                 faults.append(Fault(files[file.stem], "", reason))
     if not files and not faults:
-        faults = [Fault(each, "", "holds no exercise file (*.toml)") for each in folders]
+        faults = [Fault(each, "", say("holds no exercise file (*.toml)")) for each in folders]
     if faults:
         raise CatalogueError(faults)
     return list(files.values())
@@ -92,15 +95,15 @@ def read_exercise(file: Path, text: str) -> Exercise:
 
 def _require_id(file: Path) -> None:
     if not is_exercise_id(file.stem):
-        reason = f"the name of the file is the exercise's id: {ID_ADVICE}"
+        reason = say("the name of the file is the exercise's id: {advice}", advice=ID_ADVICE)
         raise CatalogueError([Fault(file, "", reason)])
 
 
 def _folder_reason(error: OSError) -> str:
     match error:
         case FileNotFoundError():
-            return "there is no such folder"
+            return say("there is no such folder")
         case NotADirectoryError():
-            return "is no folder"
+            return say("is no folder")
         case _:
             return fault_reason(error)

@@ -22,6 +22,7 @@ from service.catalogue.robots.robot import Robot
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape
 from service.kinematics.dh import Convention
+from service.translations import say
 
 
 class PartSpec(StrictModel, ABC):
@@ -72,7 +73,7 @@ class PartSpec(StrictModel, ABC):
         if reference is None:
             raise FieldError(
                 f"{field}.expected",
-                "is required here: the exercise has no robot that would tell it",
+                say("is required here: the exercise has no robot that would tell it"),
             )
 
     @abstractmethod
@@ -102,7 +103,10 @@ class PosePartSpec(PartSpec):
             if not reference.has_frame(frame):
                 known = ", ".join(map(str, reference.frames))
                 raise FieldError(
-                    f"{field}.{name}", f"the robot has no frame {frame!r}; it has {known}"
+                    f"{field}.{name}",
+                    say(
+                        "the robot has no frame {frame!r}; it has {known}", frame=frame, known=known
+                    ),
                 )
 
     @model_validator(mode="after")
@@ -111,7 +115,13 @@ class PosePartSpec(PartSpec):
         names = {"start": "from", "to": "to", "home": "home"}
         further = [name for field, name in names.items() if field in self.model_fields_set]
         if given and given[1:] + further:
-            raise ValueError(f"{given[0]} says what is right; leave {(given[1:] + further)[0]} out")
+            raise ValueError(
+                say(
+                    "{name} says what is right; leave {other} out",
+                    name=given[0],
+                    other=(given[1:] + further)[0],
+                )
+            )
         return self
 
 
@@ -129,11 +139,14 @@ class TablePartSpec(PartSpec):
         if not isinstance(reference, Robot):
             raise FieldError(
                 f"{field}.kind",
-                f'a "{self.kind}" needs a robot with a table; write [robot] table',
+                say('a "{kind}" needs a robot with a table; write [robot] table', kind=self.kind),
             )
         if isinstance(self.convention, Convention) and self.convention not in reference.tables:
             raise FieldError(
                 f"{field}.convention",
-                f"the robot has no {self.convention.value} table: its row 1 moves the base frame, "
-                f"and a standard table begins on the axis of joint 1",
+                say(
+                    "the robot has no {convention} table: its row 1 moves the base frame, and a "
+                    "standard table begins on the axis of joint 1",
+                    convention=self.convention.value,
+                ),
             )

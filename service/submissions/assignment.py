@@ -26,7 +26,9 @@ def _as_list(value: object) -> object:
 
 def _names_a_file(value: str) -> str:
     if not PurePosixPath(value).name:
-        raise ValueError(f'{value!r} names no file; write a name such as "table.csv" or "*.tex"')
+        raise ValueError(
+            say('{value!r} names no file; write a name such as "table.csv" or "*.tex"', value=value)
+        )
     return value
 
 
@@ -55,10 +57,12 @@ class AssignedExerciseSpec(StrictModel):
     def _names_one_exercise(self) -> "AssignedExerciseSpec":
         if (self.id is None) == (self.path is None):
             raise ValueError(
-                'names no exercise; write id = "…" for one of the catalogue, or path = "….toml" '
-                "for one of your own"
+                say(
+                    'names no exercise; write id = "…" for one of the catalogue, or path = '
+                    '"….toml" for one of your own'
+                )
                 if self.id is None
-                else "has an id and a path; leave one of them out"
+                else say("has an id and a path; leave one of them out")
             )
         return self
 
@@ -236,16 +240,20 @@ def _assigned(
     try:
         exercise = load_exercise(path) if path else find(spec.id or "")
     except UnknownExerciseError as error:
-        raise FieldError(f"{place}.id", f"{error} Known are: {', '.join(error.known)}.") from error
+        raise FieldError(
+            f"{place}.id",
+            paragraph(error.args[0], say("Known are: {names}.", names=", ".join(error.known))),
+        ) from error
     try:
         chosen = assigned(exercise, spec.parts, spec.points)
     except UnknownPartNameError as error:
-        raise FieldError(f"{place}.parts", str(error)) from error
+        raise FieldError(f"{place}.parts", error.args[0]) from error
     for part in spec.part_files:
         if chosen.part_named(part) is None:
             known = ", ".join(each.id for each in chosen.exercise.parts)
             raise FieldError(
-                f"{place}.part_files.{part}", f"no part {part!r} is set; those set are: {known}"
+                f"{place}.part_files.{part}",
+                say("no part {part!r} is set; those set are: {known}", part=part, known=known),
             )
     return replace(
         chosen,
@@ -262,7 +270,11 @@ def _check_distinct(exercises: Sequence[AssignedExercise]) -> None:
         if at != i:
             raise FieldError(
                 f"exercises[{i}]",
-                f"is {each.exercise.id!r} again, as exercises[{at}] is; set all its parts there",
+                say(
+                    "is {exercise!r} again, as exercises[{at}] is; set all its parts there",
+                    exercise=each.exercise.id,
+                    at=at,
+                ),
             )
 
 

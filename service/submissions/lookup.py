@@ -42,7 +42,7 @@ def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
     try:
         return cast("_T", variant_of(exercise, seed))
     except NoVariantError as error:
-        raise UnknownExerciseError(exercise_id, tuple(catalogue), str(error)) from error
+        raise UnknownExerciseError(exercise_id, tuple(catalogue), error.args[0]) from error
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:

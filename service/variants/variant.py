@@ -12,6 +12,7 @@ from service.catalogue.robots.formulas import FieldError
 from service.catalogue.varying.build import exercise_of_seed
 from service.catalogue.varying.choices import is_seed
 from service.catalogue.varying.vary import Vary
+from service.translations import say
 
 # A variant takes about 100 kB of memory.
 MOST_BUILT: Final = 512
@@ -27,13 +28,18 @@ def built(exercise: Exercise, seed: str) -> Exercise:
     Raises NoVariantError.
     """
     if exercise.vary is None:
-        raise NoVariantError(f"The exercise {exercise.plain_id} has no variants.")
+        raise NoVariantError(
+            say("The exercise {exercise} has no variants.", exercise=exercise.plain_id)
+        )
     if not is_seed(seed):
-        raise NoVariantError("The seed of a variant has 1 to 20 small letters and digits.")
+        raise NoVariantError(say("The seed of a variant has 1 to 20 small letters and digits."))
     try:
         return exercise_of_seed(exercise, seed)
     except (ValidationError, FieldError, ExceptionGroup) as error:
-        message = f"The variant {exercise.plain_id}~{seed} cannot be made: its file has a fault."
+        message = say(
+            "The variant {variant} cannot be made: its file has a fault.",
+            variant=f"{exercise.plain_id}~{seed}",
+        )
         raise NoVariantError(message) from error
 
 

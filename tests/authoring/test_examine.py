@@ -7,6 +7,7 @@ import pytest
 from service.authoring import Level, examine
 from service.authoring.answers import failed_checks
 from service.catalogue import Exercise, shipped_folder
+from service.translations import LANGUAGES, told
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 from tests.grading.support.bare_numbers import BARE, BareExercise
 from tests.shipped import sampled
@@ -109,6 +110,8 @@ def test_a_failed_check_is_reported(name: str, make_exercise: Make) -> None:
     failures = [each for each in remarks if each.level is Level.FAILED]
     assert {each.field for each in failures} == {f"checks[{place}]"}
     assert any(text in each.text for each in failures), failures
+    german = [told(each.text, LANGUAGES["de"].translation) for each in failures]
+    assert all(": pose sollte " in each for each in german), german
 
 
 @pytest.mark.long

@@ -18,6 +18,7 @@ from service.catalogue.files.schema import (
     SymbolSpec,
 )
 from service.catalogue.parts import SPECS
+from service.translations import LANGUAGES, told
 from tests.guards import ANSWER
 from tests.together import together
 
@@ -205,6 +206,9 @@ def test_a_fault_is_reported_with_its_field(name: str, tmp_path: Path) -> None:
     assert {fault.file for fault in faults} == {file}
     assert [f for f in faults if field in f.field and re.search(reason, f.reason)], faults
     assert str(caught.value).startswith(f"{file}: {faults[0].field}".removesuffix(": "))
+    german = LANGUAGES["de"].translation
+    assert [fault for fault in faults if told(fault.reason, german) == fault.reason] == []
+    assert told(faults[0].reason, german) in told(caught.value.args[0], german)
 
 
 @pytest.mark.parametrize(

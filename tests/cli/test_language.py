@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from service.catalogue import shipped_folder
 from service.cli.language import user_language
 from tests.translations.catalogues import CODES, catalogue, help_texts
 
@@ -175,6 +176,24 @@ def test_errors_are_in_the_language(arguments: str, german: str) -> None:
     result = process("-m", "service", *arguments.split(), LANG="de_DE.UTF-8")
     assert result.returncode == 2
     assert german in result.stderr
+
+
+def test_findings_on_an_exercise_are_in_the_language(tmp_path: Path) -> None:
+    text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+    texts = {
+        "bad": text.replace("points = ", "pionts = ", 1),
+        "short": text.partition("[[checks")[0],
+    }
+    for name, each in texts.items():
+        (tmp_path / f"{name}.toml").write_text(each, encoding="utf-8")
+    check = ("-m", "service", "exercises", "check", tmp_path)
+    german, english = process(*check, LANG="de_DE.UTF-8"), process(*check)
+    assert ": hier gibt es keinen Schlüssel 'pionts'; meinten Sie 'points'?" in german.stderr
+    assert re.search(r"bad\.toml: parts\[0\]\.pionts \(Zeile \d+\): ", german.stderr)
+    assert "short: ok, 3 Teilaufgaben, 0 Prüfungen. Nur Nullen und" in german.stdout
+    assert "0 right, 0 equivalent, 0 wrong; schreiben Sie 1 right, 1 " in german.stdout
+    assert german.returncode == english.returncode == 2
+    assert "there is no key 'pionts' here; did you mean 'points'?" in english.stderr
 
 
 def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:

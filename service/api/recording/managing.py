@@ -43,7 +43,7 @@ from service.contract.tutoring import (
     RegradeAnswer,
     RegradeRequest,
 )
-from service.translations import say
+from service.translations import paragraph, say
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from service.attempts.regrades.outdated import Regrading
@@ -229,7 +229,7 @@ class _Regrades:
                 HTTPStatus.CONFLICT,
                 say(
                     "The exercise fails its check: {failures} Correct its file first.",
-                    failures=" ".join(failures),
+                    failures=paragraph(*failures),
                 ),
                 "exercise-fails",
                 say("The exercise fails its check"),

@@ -20,12 +20,12 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from service.translations import Sentence
+from service.translations import Sentence, say, template
 
 
 def _no_boolean(value: object) -> object:
     if isinstance(value, bool):
-        raise ValueError(f"is {str(value).lower()}; write a number or a formula")
+        raise ValueError(say("is {value}; write a number or a formula", value=str(value).lower()))
     return value
 
 
@@ -39,9 +39,13 @@ _LONGEST: Final = 20_000
 
 def _showable(text: str) -> str:
     if found := _HIDDEN.search(text):
-        raise ValueError(f"holds U+{ord(found[0]):04X}, which no reader sees; leave it out")
+        raise ValueError(
+            say("holds U+{number:04X}, which no reader sees; leave it out", number=ord(found[0]))
+        )
     if len(text) > _LONGEST:
-        raise ValueError(f"has {len(text):,} characters; write at most {_LONGEST:,}")
+        raise ValueError(
+            say("has {count:,} characters; write at most {most:,}", count=len(text), most=_LONGEST)
+        )
     return text
 
 
@@ -70,7 +74,7 @@ IDENTIFIER = r"[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*"
 Identifier = Annotated[
     str,
     StringConstraints(pattern=f"^{IDENTIFIER}$"),
-    advice('write small letters and digits, with - or _ between them, such as "link-2"'),
+    advice(template('write small letters and digits, with - or _ between them, such as "link-2"')),
 ]
 GivenOrFree = Literal["given", "free"]
 Marking = Literal["content", "cells", "rows", "whole"]

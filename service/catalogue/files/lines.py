@@ -7,6 +7,8 @@ read the text before, so this module need not check the syntax again.
 import re
 from typing import Final
 
+from service.translations import say
+
 _BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _KEY: Final = re.compile(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
 _STRINGS: Final = (
@@ -16,6 +18,11 @@ _STRINGS: Final = (
     r"'[^'\n]*'",
 )
 _SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
+
+
+def with_line(field: str, line: int | None) -> str:
+    """Return a field with its line, as messages name it."""
+    return field if line is None else say("{field} (line {line})", field=field, line=line)
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:

@@ -21,6 +21,7 @@ from service.catalogue.files.schema import (
 )
 from service.catalogue.parts import SPECS
 from service.catalogue.robots.formulas import FieldError
+from service.translations import Sentence, say, template
 
 _Detail = Mapping[str, Any]
 _Location = Sequence[int | str]
@@ -31,6 +32,28 @@ TableAt = Callable[[_Location], type[BaseModel]]
 _FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
 _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
                    "union_tag_invalid": "expected_tags"}  # fmt: skip
+# What pydantic says; the program adds advice.
+_MESSAGES: Final = frozenset(
+    (
+        template("Field required"),
+        template("Input should be a valid string"),
+        template("Input should be a valid number"),
+        template("Input should be a valid string, or input should be a valid number"),
+        template("Input should be a valid integer"),
+        template("Input should be a valid boolean"),
+        template("Input should be a valid list"),
+        template("Input should be a valid dictionary"),
+        template("Input should be a valid tuple"),
+        template("String should have at least 1 character"),
+        template("List should have at least 1 item after validation, not 0"),
+    )
+)
+_RANGES: Final[Mapping[str, str]] = {
+    "greater_than": template("is {value}; write a number greater than {limit}"),
+    "greater_than_equal": template("is {value}; write a number greater than or equal to {limit}"),
+    "less_than": template("is {value}; write a number less than {limit}"),
+    "less_than_equal": template("is {value}; write a number less than or equal to {limit}"),
+}
 _QUOTED: Final = re.compile(r"'([^']*)'")
 
 
@@ -74,21 +97,31 @@ def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
         tagged = details[0]["type"] == "union_tag_invalid"
         reasons.insert(0, _no_choice(value["kind"] if tagged else value, known))
     first, *more = reasons
-    return first + "".join(f", or {reason[0].lower()}{reason[1:]}" for reason in more)
+    if not more:
+        return first
+    every = first + "".join(f", or {reason[0].lower()}{reason[1:]}" for reason in more)
+    return Sentence(every) if every in _MESSAGES else every
 
 
 def _no_choice(value: object, known: Sequence[str]) -> str:
     """The reason for a value that is not among the known ones; it suggests the nearest."""
     lowered = {choice.lower(): choice for choice in known}
     near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
-    meant = f"; did you mean {lowered[near[0]]!r}? Write" if near else "; write"
-    return f"is {reprlib.repr(value)}{meant} {alternatives(map(repr, known))}"
+    names = alternatives(map(repr, known))
+    if not near:
+        return say("is {value}; write {names}", value=reprlib.repr(value), names=names)
+    return say(
+        "is {value}; did you mean {meant!r}? Write {names}",
+        value=reprlib.repr(value),
+        meant=lowered[near[0]],
+        names=names,
+    )
 
 
 def alternatives(names: Iterable[str]) -> str:
     """Join the names with commas, and with "or" before the last."""
     *others, last = names
-    return f"{', '.join(others)} or {last}" if others else last
+    return say("{first} or {last}", first=", ".join(others), last=last) if others else last
 
 
 def _path(location: _Location) -> str:
@@ -106,39 +139,62 @@ def _path(location: _Location) -> str:
 
 def _advised(detail: _Detail, table_at: TableAt) -> str:
     """The message of a pydantic finding with advice."""
-    reason: str = detail["msg"].removeprefix("Value error, ")
+    reason = _message(detail)
     location: _Location = detail["loc"]
     last = location[-1] if location else ""
     match detail["type"]:
         case "extra_forbidden":
             return _no_such_key(str(last), table_at(location[:-1]))
         case "missing" if isinstance(last, int):
-            return f"{reason}: write entry {last + 1} as well"
+            return say("{reason}: write entry {number} as well", reason=reason, number=last + 1)
         case "missing":
-            return f"{reason}: write {last} = …"
+            return say("{reason}: write {key} = …", reason=reason, key=last)
         case "string_pattern_mismatch":
-            return f"{reason}: {_advice(str(last), table_at(location[:-1]))}"
+            return say(
+                "String should match pattern '{pattern}': {advice}",
+                pattern=detail["ctx"]["pattern"],
+                advice=_advice(str(last), table_at(location[:-1])),
+            )
         case "float_type" | "bool_type" if isinstance(detail["input"], str):
-            return f"{reason}: write it without quotation marks"
+            return say("{reason}: write it without quotation marks", reason=reason)
         case "bool_type":
-            return f"{reason}: write true or false"
+            return say("{reason}: write true or false", reason=reason)
         case "string_type" if isinstance(detail["input"], bool | int | float):
-            return f"{reason}: write it in quotation marks"
+            return say("{reason}: write it in quotation marks", reason=reason)
         case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
-            return _out_of_range(detail["input"], reason, _is_share(str(last), table_at(location)))
+            return _out_of_range(detail, _is_share(str(last), table_at(location)))
         case "union_tag_not_found":
-            return f'{reason}: write kind = "…", one of {", ".join(SPECS)}'
+            return say(
+                '{reason}: write kind = "…", one of {kinds}', reason=reason, kinds=", ".join(SPECS)
+            )
         case _:
             return reason
 
 
-def _out_of_range(value: float, reason: str, is_share: bool) -> str:
+def _message(detail: _Detail) -> str:
+    """The message of a pydantic finding, or of the error of a validator."""
+    if detail["type"] == "value_error":
+        reason: str = detail["ctx"]["error"].args[0]
+        return reason
+    message: str = detail["msg"]
+    return Sentence(message) if message in _MESSAGES else message
+
+
+def _out_of_range(detail: _Detail, is_share: bool) -> str:
     """The reason for a number out of range; for a share, it suggests the value of a percentage."""
+    value = detail["input"]
     shown = reprlib.repr(value)
     if not is_share:
-        return f"is {shown}; {reason.replace('Input should be', 'write a number', 1)}"
-    meant = f", so {value / 100:g} for {value:g} %" if 1 < value <= 100 else ""
-    return f"is {shown}; write a share from 0 to 1{meant}"
+        limit = detail["msg"].rpartition(" ")[2]
+        return Sentence(_RANGES[detail["type"]], {"value": shown, "limit": limit})
+    if not 1 < value <= 100:
+        return say("is {value}; write a share from 0 to 1", value=shown)
+    return say(
+        "is {value}; write a share from 0 to 1, so {share} for {percentage} %",
+        value=shown,
+        share=f"{value / 100:g}",
+        percentage=f"{value:g}",
+    )
 
 
 def _is_share(key: str, model: type[BaseModel]) -> bool:
@@ -153,14 +209,22 @@ def _is_share(key: str, model: type[BaseModel]) -> bool:
 def _no_such_key(key: str, model: type[BaseModel]) -> str:
     known = [field.alias or name for name, field in model.model_fields.items()]
     matches = difflib.get_close_matches(key, known, n=1)
-    meant = f"did you mean {matches[0]!r}? The keys are" if matches else "the keys are"
-    return f"there is no key {key!r} here; {meant} {', '.join(known)}"
+    if not matches:
+        return say(
+            "there is no key {key!r} here; the keys are {keys}", key=key, keys=", ".join(known)
+        )
+    return say(
+        "there is no key {key!r} here; did you mean {meant!r}? The keys are {keys}",
+        key=key,
+        meant=matches[0],
+        keys=", ".join(known),
+    )
 
 
 def _advice(key: str, model: type[BaseModel]) -> str:
     field = model.model_fields.get(key)
     extra = field.json_schema_extra if field else None
-    return str(extra["advice"]) if isinstance(extra, dict) else "write it so"
+    return Sentence(str(extra["advice"])) if isinstance(extra, dict) else say("write it so")
 
 
 def exercise_table(location: _Location) -> type[BaseModel]:

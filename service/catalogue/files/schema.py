@@ -28,11 +28,14 @@ from service.catalogue.level import ExerciseLevel
 from service.catalogue.parts import SPECS, AnyPartSpec
 from service.expressions import Kind
 from service.kinematics.dh import Convention
+from service.translations import say, template
 
 Structure = Annotated[
     str,
     StringConstraints(pattern=r"^[RP]{1,10}$"),
-    advice("write one letter for each joint, R if it turns and P if it slides, at most 10"),
+    advice(
+        template("write one letter for each joint, R if it turns and P if it slides, at most 10")
+    ),
 ]
 Joints = Annotated[list[Text], Field(min_length=1)]
 
@@ -72,13 +75,23 @@ class RobotSpec(StrictModel):
         joints = len(self.structure)
         if len(self.joints) != joints:
             raise ValueError(
-                f"joints names {len(self.joints)} variables, but structure {self.structure!r} "
-                f"has {joints} joints; write one variable for each"
+                say(
+                    "joints names {count} variables, but structure {structure!r} has {joints} "
+                    "joints; write one variable for each",
+                    count=len(self.joints),
+                    structure=self.structure,
+                    joints=joints,
+                )
             )
         if len(self.table) not in (joints, joints + 1):
             raise ValueError(
-                f"table has {len(self.table)} rows; write {joints} (one for each joint) "
-                f"or {joints + 1} (with a fixed end-effector row)"
+                say(
+                    "table has {count} rows; write {joints} (one for each joint) or {more} (with "
+                    "a fixed end-effector row)",
+                    count=len(self.table),
+                    joints=joints,
+                    more=joints + 1,
+                )
             )
         return self
 
@@ -102,8 +115,14 @@ class ScrewRobotSpec(StrictModel):
         for name, count in (("joints", len(self.joints)), ("screws", len(self.screws))):
             if count != joints:
                 raise ValueError(
-                    f"{name} has {count} entries, but structure {self.structure!r} has {joints} "
-                    f"joints; write one for each"
+                    say(
+                        "{name} has {count} entries, but structure {structure!r} has {joints} "
+                        "joints; write one for each",
+                        name=name,
+                        count=count,
+                        structure=self.structure,
+                        joints=joints,
+                    )
                 )
         return self
 
@@ -138,7 +157,7 @@ class ExpectSpec(StrictModel):
     @model_validator(mode="after")
     def _expects_something(self) -> "ExpectSpec":
         if not self.model_fields_set:
-            raise ValueError("expects nothing; write points, verdict, codes or follow_through")
+            raise ValueError(say("expects nothing; write points, verdict, codes or follow_through"))
         return self
 
 
@@ -161,8 +180,11 @@ class CheckSpec(StrictModel):
     def _says_what_is_wrong(self) -> "CheckSpec":
         if self.kind == "wrong" and not self.expect:
             raise ValueError(
-                "a wrong answer needs an expectation, or it may be wrong for another reason than "
-                'you think; write expect.PART = { points = …, verdict = "…", codes = ["…"] }'
+                say(
+                    "a wrong answer needs an expectation, or it may be wrong for another reason "
+                    'than you think; write expect.PART = {{ points = …, verdict = "…", codes = '
+                    '["…"] }}'
+                )
             )
         return self
 
@@ -256,16 +278,25 @@ class ExerciseSpec(StrictModel):
         ids = [part.id for part in self.parts]
         repeated = sorted({part_id for part_id in ids if ids.count(part_id) > 1})
         if repeated:
-            raise ValueError(f"two parts share the id {repeated[0]!r}; give each its own")
+            raise ValueError(
+                say("two parts share the id {id!r}; give each its own", id=repeated[0])
+            )
         if self.view is not None and self.robot is None:
-            raise ValueError("view says where the robot is seen from; leave it out without a robot")
+            raise ValueError(
+                say("view says where the robot is seen from; leave it out without a robot")
+            )
         earlier: set[str] = set()
         for part in self.parts:
             if part.follows is not None and part.follows not in earlier:
                 kinds = [kind for kind, spec in SPECS.items() if spec.can_be_followed]
                 raise ValueError(
-                    f"part {part.id!r} follows {part.follows!r}, which is no earlier part of kind "
-                    f"{', '.join(kinds)}; name one, or leave follows out"
+                    say(
+                        "part {part!r} follows {followed!r}, which is no earlier part of kind "
+                        "{kinds}; name one, or leave follows out",
+                        part=part.id,
+                        followed=part.follows,
+                        kinds=", ".join(kinds),
+                    )
                 )
             if part.can_be_followed:
                 earlier.add(part.id)

@@ -8,10 +8,11 @@ from typing import Any, Final, TypeVar
 
 from pydantic import ValidationError
 
-from service.catalogue.files.lines import line_of, value_lines
+from service.catalogue.files.lines import line_of, value_lines, with_line
 from service.catalogue.files.refusals import TableAt, refusals
 from service.catalogue.files.regular_file import read_regular
 from service.catalogue.robots.formulas import FieldError
+from service.translations import joined, say
 
 # The largest shipped exercise has 8 kB.
 _LARGEST: Final = 1024 * 1024
@@ -30,15 +31,15 @@ class Fault:
 
     def __str__(self) -> str:
         """File, field and reason on one line."""
-        place = self.field if self.line is None else f"{self.field} (line {self.line})"
-        return ": ".join(filter(None, (str(self.file), place, self.reason)))
+        place = with_line(self.field, self.line)
+        return joined(": ", list(filter(None, (str(self.file), place, self.reason))))
 
 
 class CatalogueError(Exception):
     """One or more files of a tutor cannot be used; ``faults`` are the reasons."""
 
     def __init__(self, faults: list[Fault]) -> None:
-        super().__init__("\n".join(str(fault) for fault in faults))
+        super().__init__(joined("\n", list(map(str, faults))))
         self.faults = faults
 
 
@@ -79,10 +80,10 @@ def fault_reason(error: Exception) -> str:
     """The reason why a file cannot be read, or is not TOML."""
     match error:
         case OSError():
-            return f"cannot be read: {error.strerror}"
+            return say("cannot be read: {reason}", reason=str(error.strerror))
         case UnicodeDecodeError():
-            return f"is not UTF-8 text: {error.reason}"
+            return say("is not UTF-8 text: {reason}", reason=error.reason)
         case RecursionError():
-            return "has tables or lists nested too deep"
+            return say("has tables or lists nested too deep")
         case _:  # of TOML itself, or of a number with thousands of digits
-            return f"is not TOML: {error}"
+            return say("is not TOML: {reason}", reason=str(error))

@@ -7,6 +7,7 @@ from typing import Final
 
 from service.catalogue.files.schema import ExerciseSpec, TranslationSpec
 from service.catalogue.robots.formulas import FieldError
+from service.translations import say
 
 LANGUAGE_CODES: Final = ("de", "es", "fr", "zh")
 _FORMULA: Final = re.compile(r"(?<!\\)(\$\$?)(.+?)(?<!\\)\1", re.DOTALL)
@@ -18,7 +19,9 @@ def check_translations(spec: ExerciseSpec) -> None:
         field = f"translations.{code}"
         if code not in LANGUAGE_CODES:
             known = ", ".join(LANGUAGE_CODES)
-            raise FieldError(field, f"there is no such language; write one of {known}")
+            raise FieldError(
+                field, say("there is no such language; write one of {known}", known=known)
+            )
         _require_known(f"{field}.parts", texts.parts, [part.id for part in spec.parts])
         joints = spec.robot.joints if spec.robot else []
         _require_known(f"{field}.symbols", texts.symbols, [*joints, *spec.symbols])
@@ -31,7 +34,7 @@ def _require_known(field: str, named: Iterable[str], known: Iterable[str]) -> No
     names = list(known)
     for name in named:
         if name not in names:
-            reason = f"there is no such name; write one of {', '.join(names)}"
+            reason = say("there is no such name; write one of {names}", names=", ".join(names))
             raise FieldError(f"{field}.{name}", reason)
 
 
@@ -51,9 +54,15 @@ def _pairs(spec: ExerciseSpec, texts: TranslationSpec) -> Iterator[tuple[str, st
 def _require_same_formulas(field: str, original: str, text: str) -> None:
     wanted, found = _formulas(original), _formulas(text)
     if missing := list((wanted - found).elements()):
-        raise FieldError(field, f"lacks the formula ${missing[0]}$ of the English text; write it")
+        raise FieldError(
+            field,
+            say("lacks the formula ${formula}$ of the English text; write it", formula=missing[0]),
+        )
     if further := list((found - wanted).elements()):
-        reason = f"has a formula ${further[0]}$ that the English text lacks; leave it out"
+        reason = say(
+            "has a formula ${formula}$ that the English text lacks; leave it out",
+            formula=further[0],
+        )
         raise FieldError(field, reason)
 
 

@@ -21,6 +21,7 @@ from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import dh1_residual, dh2_residual
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 
 class DhRowShape(AnswerShape):
@@ -65,7 +66,7 @@ class DhRowSpec(PartSpec):
             holds = np.abs(residual) < EXACT
             if holds.any() and not holds.all():
                 raise FieldError(
-                    field, "has a DH row for some values of its symbols and none for others"
+                    field, say("has a DH row for some values of its symbols and none for others")
                 )
 
     def shape(self, _: Reference | None) -> DhRowShape:

@@ -13,6 +13,7 @@ from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
+from service.translations import say
 
 # The meaning of an empty cell: unread, or 0.
 EmptyCells: TypeAlias = Literal["unread", "zero"]
@@ -91,13 +92,17 @@ class DhTableSpec(TablePartSpec):
         if self.convention is not reference.convention:
             raise FieldError(
                 f"{field}.given",
-                f"are rows of the robot's own table, which is {reference.convention.value}; write "
-                f'convention = "{reference.convention.value}"',
+                say(
+                    "are rows of the robot's own table, which is {convention}; write convention "
+                    '= "{convention}"',
+                    convention=reference.convention.value,
+                ),
             )
         rows = len(reference.tables[reference.convention].rows)
         if max(self.given) > rows or len(self.given) == rows:
             raise FieldError(
-                f"{field}.given", f"leave at least one of the {rows} rows to the student"
+                f"{field}.given",
+                say("leave at least one of the {rows} rows to the student", rows=rows),
             )
 
     def shape(self, reference: Reference | None) -> DhTableShape:
@@ -130,9 +135,11 @@ class DhTableSpec(TablePartSpec):
     @model_validator(mode="after")
     def _given_rows_have_given_frames(self) -> "DhTableSpec":
         if list(self.given) != sorted(set(self.given)):
-            raise ValueError("write each number in given once, in order")
+            raise ValueError(say("write each number in given once, in order"))
         if self.given and self.frames == "free":
-            raise ValueError('given rows need frames = "given", because they say where frames lie')
+            raise ValueError(
+                say('given rows need frames = "given", because they say where frames lie')
+            )
         return self
 
     @model_validator(mode="after")
@@ -140,7 +147,10 @@ class DhTableSpec(TablePartSpec):
         free = [name for name in ("base", "tool", "directions") if getattr(self, name) == "free"]
         if self.frames == "given" and free:
             raise ValueError(
-                f'{free[0]} = "free" says nothing where frames = "given"; '
-                f'write frames = "free" or leave {free[0]} out'
+                say(
+                    '{name} = "free" says nothing where frames = "given"; write frames = "free" '
+                    "or leave {name} out",
+                    name=free[0],
+                )
             )
         return self

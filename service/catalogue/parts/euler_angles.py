@@ -9,6 +9,7 @@ from service.catalogue.part import PosePartSpec
 from service.catalogue.robots.formulas import WrittenFormulas, list_of
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import ListShape, list_shape
+from service.translations import say
 
 
 class EulerAnglesSpec(PosePartSpec):
@@ -47,7 +48,9 @@ class EulerAnglesSpec(PosePartSpec):
     def _rpy_is_about_moving_axes(self) -> "EulerAnglesSpec":
         if self.sequence == "RPY" and self.axes == "fixed":
             raise ValueError(
-                'sequence "RPY" is answered as Rz(α) Ry(β) Rx(γ); write sequence = "XYZ" with '
-                'axes = "fixed" for roll, pitch, yaw in this order'
+                say(
+                    'sequence "RPY" is answered as Rz(α) Ry(β) Rx(γ); write sequence = "XYZ" '
+                    'with axes = "fixed" for roll, pitch, yaw in this order'
+                )
             )
         return self

@@ -13,6 +13,7 @@ from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
+from service.translations import say
 
 # The codes of the misconceptions that a table can be given.
 SlipName: TypeAlias = Literal[
@@ -116,7 +117,10 @@ class FindSlipSpec(TablePartSpec):
     def _is_marked_by_halves(self) -> "FindSlipSpec":
         if self.marking not in ("content", "whole"):
             raise ValueError(
-                f'marking = "{self.marking}" is not possible here, because marking and mending '
-                f'are each worth half; leave marking out or write marking = "whole"'
+                say(
+                    'marking = "{marking}" is not possible here, because marking and mending are '
+                    'each worth half; leave marking out or write marking = "whole"',
+                    marking=self.marking,
+                )
             )
         return self

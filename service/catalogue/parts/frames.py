@@ -9,6 +9,7 @@ from service.catalogue.robots.robot import Robot
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape
 from service.kinematics.dh import Convention
+from service.translations import say
 
 # The labels of a frame's cells.
 COORDINATES = ("origin_x", "origin_y", "origin_z")
@@ -54,11 +55,14 @@ class FramesSpec(TablePartSpec):
         if fixed > (self.convention is Convention.MODIFIED):
             raise FieldError(
                 f"{field}.convention",
-                f"the robot's {self.convention.value} table has a fixed row whose frame is on no "
-                f"joint axis; ask for the frames of the other convention",
+                say(
+                    "the robot's {convention} table has a fixed row whose frame is on no joint "
+                    "axis; ask for the frames of the other convention",
+                    convention=self.convention.value,
+                ),
             )
         if not frame_labels(reference, self.convention):
-            raise FieldError(f"{field}.kind", "the robot has no frame between base and tool")
+            raise FieldError(f"{field}.kind", say("the robot has no frame between base and tool"))
 
     def shape(self, reference: Reference | None) -> FramesShape:
         """The shape of a list of frames."""

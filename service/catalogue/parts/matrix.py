@@ -10,6 +10,7 @@ from service.catalogue.robots.formulas import WrittenFormulas, matrix_of
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import MatrixShape, matrix_shape
 from service.expressions import Kind
+from service.translations import say
 
 
 class MatrixSpec(PartSpec):
@@ -46,12 +47,21 @@ class MatrixSpec(PartSpec):
         for i, row in enumerate(self.expected):
             if len(row) != columns:
                 raise ValueError(
-                    f"row {i + 1} of expected has {len(row)} entries, row 1 has {columns}; write "
-                    f"rows of one length"
+                    say(
+                        "row {number} of expected has {count} entries, row 1 has {columns}; write "
+                        "rows of one length",
+                        number=i + 1,
+                        count=len(row),
+                        columns=columns,
+                    )
                 )
         if not isinstance(self.quantity, str) and len(self.quantity) != columns:
             raise ValueError(
-                f"quantity names {len(self.quantity)} columns, but expected has {columns}; write "
-                f"one for all or one for each column"
+                say(
+                    "quantity names {count} columns, but expected has {columns}; write one for "
+                    "all or one for each column",
+                    count=len(self.quantity),
+                    columns=columns,
+                )
             )
         return self

@@ -9,6 +9,7 @@ from service.catalogue.part import PosePartSpec
 from service.catalogue.robots.formulas import WrittenFormulas, list_of
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import ListShape, list_shape
+from service.translations import say, template
 
 
 class PositionSpec(PosePartSpec):
@@ -18,7 +19,7 @@ class PositionSpec(PosePartSpec):
     coordinates: Annotated[
         str,
         StringConstraints(pattern=r"^(x?y?z?)$", min_length=2),
-        advice('write the coordinates that are asked for, such as "xy" or "xyz"'),
+        advice(template('write the coordinates that are asked for, such as "xy" or "xyz"')),
     ] = "xyz"
     """The required coordinates in order."""
     expected: list[Formula] | None = None
@@ -38,7 +39,11 @@ class PositionSpec(PosePartSpec):
     def _one_for_each(self) -> "PositionSpec":
         if self.expected is not None and len(self.expected) != len(self.coordinates):
             raise ValueError(
-                f"expected has {len(self.expected)} entries, but coordinates are "
-                f"{self.coordinates!r}; write one for each"
+                say(
+                    "expected has {count} entries, but coordinates are {coordinates!r}; write "
+                    "one for each",
+                    count=len(self.expected),
+                    coordinates=self.coordinates,
+                )
             )
         return self

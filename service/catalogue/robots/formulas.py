@@ -14,6 +14,7 @@ from service.catalogue.robots.variables import TRIALS, Variable, trial_values
 from service.expressions import Expression, ExpressionError, Kind, Vocabulary, read
 from service.expressions.evaluation.samples import SymbolValues
 from service.kinematics.transforms import Numbers
+from service.translations import say
 
 FormulaGrid = tuple[tuple[Expression, ...], ...]
 # The field of a formula, the formula, and its quantity.
@@ -111,8 +112,14 @@ class FormulaReader:
         try:
             return read(source, self._vocabulary, quantity=quantity)
         except ExpressionError as error:
-            hint = f"; did you mean {error.suggestion!r}?" if error.suggestion else ""
-            raise FieldError(field, f"{error.message}{hint}") from error
+            reason = error.message
+            if error.suggestion:
+                reason = say(
+                    "{reason}; did you mean {suggestion!r}?",
+                    reason=reason,
+                    suggestion=error.suggestion,
+                )
+            raise FieldError(field, reason) from error
 
     def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
         """Read and check all formulas; prepend ``prefix`` to their fields. Raises FieldError."""
@@ -139,8 +146,11 @@ class FormulaReader:
         for i, j in np.argwhere(~np.isfinite(numbers).all(axis=-1)).tolist():
             raise FieldError(
                 field(i, j),
-                f"{grid[i][j].text()} has no value for some values of its symbols; fix it, or "
-                f"narrow their ranges",
+                say(
+                    "{formula} has no value for some values of its symbols; fix it, or narrow "
+                    "their ranges",
+                    formula=grid[i][j].text(),
+                ),
             )
         return numbers
 
@@ -150,17 +160,18 @@ def check_rotation(field: str, numbers: Numbers) -> None:
     rotation = np.moveaxis(numbers[:3, :3], -1, 0)
     if np.abs(np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)).max() > EXACT:
         raise FieldError(
-            field, "is no rotation: its columns must be unit vectors at right angles to each other"
+            field,
+            say("is no rotation: its columns must be unit vectors at right angles to each other"),
         )
     if (np.linalg.det(rotation) < 0).any():
-        raise FieldError(field, "is left-handed: the determinant of a rotation is 1, not −1")
+        raise FieldError(field, say("is left-handed: the determinant of a rotation is 1, not −1"))
 
 
 def check_transform(field: str, numbers: Numbers) -> None:
     """Raise FieldError unless numbers ``(4, 4, samples)`` are homogeneous transforms."""
     check_rotation(field, numbers)
     if np.abs(numbers[3] - np.array([[0.0], [0.0], [0.0], [1.0]])).max() > EXACT:
-        raise FieldError(field, "must end in the row 0, 0, 0, 1")
+        raise FieldError(field, say("must end in the row 0, 0, 0, 1"))
 
 
 def _check_screws(field: str, numbers: Numbers) -> None:
@@ -170,5 +181,5 @@ def _check_screws(field: str, numbers: Numbers) -> None:
         if not fits:
             raise FieldError(
                 f"{field}[{i}]",
-                "is no screw axis (ω; v): either ω is a unit vector, or it is 0 and v is one",
+                say("is no screw axis (ω; v): either ω is a unit vector, or it is 0 and v is one"),
             )

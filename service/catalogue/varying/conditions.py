@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from service.catalogue.robots.formulas import FieldError
 from service.catalogue.varying.choices import VaryValue
 from service.expressions import Expression, ExpressionError, Symbol, Vocabulary, read
+from service.translations import say
 
 # Signs of two characters come first.
 _SIGN: Final = re.compile("<=|>=|!=|==|[<>=≤≥≠]")
@@ -41,11 +42,11 @@ def vocabulary_of(names: Sequence[str]) -> Vocabulary:
         try:
             Vocabulary([Symbol(name, "number")])
         except ValueError as error:
-            raise FieldError(f"vary.{name}", str(error)) from error
+            raise FieldError(f"vary.{name}", error.args[0]) from error
     try:
         return Vocabulary([Symbol(name, "number") for name in names])
     except ValueError as error:
-        raise FieldError("vary", str(error)) from error
+        raise FieldError("vary", error.args[0]) from error
 
 
 def read_formula(field: str, text: str, vocabulary: Vocabulary) -> Expression:
@@ -53,7 +54,7 @@ def read_formula(field: str, text: str, vocabulary: Vocabulary) -> Expression:
     try:
         return read(text, vocabulary)
     except ExpressionError as error:
-        raise FieldError(field, error.message.rstrip(".")) from error
+        raise FieldError(field, error.message) from error
 
 
 _Comparison: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
@@ -89,7 +90,9 @@ def read_condition(field: str, text: str, vocabulary: Vocabulary) -> Condition:
     """Return the condition in ``text``. Raises FieldError."""
     signs = _SIGN.findall(text)
     if len(signs) != 1:
-        reason = 'must compare two formulas by <, >, <=, >=, = or !=; write, for example, "a1 > a2"'
+        reason = say(
+            'must compare two formulas by <, >, <=, >=, = or !=; write, for example, "a1 > a2"'
+        )
         raise FieldError(field, reason)
     left, right = (read_formula(field, side, vocabulary) for side in text.split(signs[0]))
     return Condition(left, signs[0], right)

@@ -29,6 +29,7 @@ from service.catalogue.varying.conditions import (
     read_formula,
     vocabulary_of,
 )
+from service.translations import say
 
 # A seed takes the first of these draws that meets all conditions.
 _DRAWS: Final = 256
@@ -54,7 +55,7 @@ class Vary:
         """Read the table ``vary`` of a file's content. Raises FieldError."""
         written = content["vary"]
         if not isinstance(written, dict):
-            raise FieldError("vary", "must be a table; write [vary]")
+            raise FieldError("vary", say("must be a table; write [vary]"))
         self.table: Mapping[str, Any] = written
         self._id = exercise_id
         self._content = {key: value for key, value in content.items() if key != "vary"}
@@ -70,7 +71,9 @@ class Vary:
         first = dict.fromkeys(self._choices, 0)
         chosen = first if self._meet([first])[0] else self._draw("")
         if chosen is None:
-            reason = f"no one of {_DRAWS} draws meets all conditions; allow more choices"
+            reason = say(
+                "no one of {count} draws meets all conditions; allow more choices", count=_DRAWS
+            )
             raise FieldError(f"vary.{CONDITIONS}", reason)
         # The exercise without a seed has the first choices if they meet the conditions.
         self._plain = chosen
@@ -180,7 +183,10 @@ class Vary:
         if isinstance(found, Mapping):
             if key not in found:
                 keys = ", ".join(f"{name}.{each}" for each in found)
-                raise FieldError(field, f"there is no {{{{{place}}}}}; write one of {keys}")
+                raise FieldError(
+                    field,
+                    say("there is no {{{{{place}}}}}; write one of {keys}", place=place, keys=keys),
+                )
             return _text(found[key])
         if found is not None and not dot:
             return _text(found)
@@ -191,7 +197,9 @@ class Vary:
         }
         result = float(np.broadcast_to(formula.evaluate(numbers), 1)[0])
         if not np.isfinite(result):
-            raise FieldError(field, f"{{{{{place}}}}} has no value for some of the choices")
+            raise FieldError(
+                field, say("{{{{{place}}}}} has no value for some of the choices", place=place)
+            )
         return _text(Decimal(f"{result:.9g}"))
 
 

@@ -1,6 +1,5 @@
 """`dh-grader exercises check`: find faults in exercise files."""
 
-import math
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from service.authoring import Level, Remark, examine, lazy_shares
+from service.authoring import Level, Remark, examine, summary
 from service.catalogue import (
     CatalogueError,
     Exercise,
@@ -18,11 +17,12 @@ from service.catalogue import (
     is_exercise_id,
     load_exercise,
 )
-from service.catalogue.files.lines import line_of, value_lines
+from service.catalogue.files.lines import line_of, value_lines, with_line
 from service.cli.exercises.variants import check_seeds
+from service.cli.language import spoken
 from service.cli.terminal import UNUSABLE, complain, give_up, installed_file, stdout
 from service.settings import load_settings
-from service.translations import say
+from service.translations import joined, say
 
 FAILED = 1
 
@@ -74,7 +74,7 @@ def _check(file: Path, console: Console) -> set[Level] | None:
     try:
         exercise = load_exercise(file)
     except CatalogueError as error:
-        complain(str(error))
+        complain(error)
         return None
     remarks = examine(exercise)
     for line in _lines(exercise, remarks, file):
@@ -86,20 +86,12 @@ def _check(file: Path, console: Console) -> set[Level] | None:
 def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Text]:
     failed = any(remark.level is Level.FAILED for remark in remarks)
     verdict = ("failed", STYLES[Level.FAILED]) if failed else ("ok", "green")
-    parts = _count(len(exercise.parts), "part")
-    checks = _count(len(exercise.checks), "check")
-    earned = ", ".join(
-        f"{math.floor(100 * share)} % of {part}" for part, share in lazy_shares(exercise).items()
-    )
-    lazy = f". Writing only zeros and joint variables earns {earned}."
-    yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {parts}, {checks}{lazy}")
+    yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {spoken(summary(exercise))}")
     lines = value_lines(file.read_text(encoding="utf-8")) if remarks else {}
     for remark in remarks:
-        line = line_of(remark.field, lines)
-        place = remark.field if line is None else f"{remark.field} (line {line})"
-        yield Text.assemble(
-            "  ", (remark.level.value, STYLES[remark.level]), f": {place}: {remark.text}"
-        )
+        place = with_line(remark.field, line_of(remark.field, lines))
+        told = spoken(joined(": ", [place, remark.text]))
+        yield Text.assemble("  ", (remark.level.value, STYLES[remark.level]), f": {told}")
 
 
 def _summary(files: int, unusable: int, found: Counter[Level]) -> str:

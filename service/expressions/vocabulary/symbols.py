@@ -8,6 +8,7 @@ from typing import Final, Literal
 
 from service.expressions.characters import greek
 from service.expressions.vocabulary.functions import RESERVED
+from service.translations import say
 
 Kind = Literal["angle", "length", "number"]
 
@@ -97,20 +98,31 @@ class Vocabulary:
 
     def _declare(self, symbol: Symbol) -> None:
         if not _CANONICAL.fullmatch(symbol.name):
-            raise ValueError(f"the symbol name {symbol.name!r} is not a plain ASCII name")
+            raise ValueError(
+                say("the symbol name {name!r} is not a plain ASCII name", name=symbol.name)
+            )
         for alias in (symbol.name, *symbol.aliases):
             plain = normal_form(alias)
             if not _NORMAL.fullmatch(plain):
-                raise ValueError(f"{alias!r} cannot be the name of a symbol")
+                raise ValueError(say("{name!r} cannot be the name of a symbol", name=alias))
             for spelling in greek.spellings(plain):
                 if spelling in RESERVED:
-                    raise ValueError(f"{alias!r} already names a function, a unit or a constant")
+                    raise ValueError(
+                        say("{name!r} already names a function, a unit or a constant", name=alias)
+                    )
                 other = self.by_name.setdefault(spelling, symbol)
                 if other is not symbol:
-                    raise ValueError(f"{alias!r} names both {other.name!r} and {symbol.name!r}")
+                    raise ValueError(
+                        say(
+                            "{name!r} names both {first!r} and {second!r}",
+                            name=alias,
+                            first=other.name,
+                            second=symbol.name,
+                        )
+                    )
         if symbol.joint is not None:
             if symbol.joint in self.turning or symbol.joint in self.sliding:
-                raise ValueError(f"joint {symbol.joint} has two joint variables")
+                raise ValueError(say("joint {joint} has two joint variables", joint=symbol.joint))
             (self.turning if symbol.kind == "angle" else self.sliding)[symbol.joint] = symbol
 
     def __eq__(self, other: object) -> bool:

@@ -10,6 +10,7 @@ import threading
 import traceback
 from contextlib import suppress
 
+from service.translations import LANGUAGES
 from service.web.tutor.checking import DONE, IDLE_SECONDS, READY, received, send
 from service.web.tutor.exercise_check import CheckRequest, checked
 
@@ -32,9 +33,10 @@ def main() -> None:
     with suppress(BrokenPipeError, queue.Empty):
         send(answers, READY)
         while True:
-            body = bodies.get(timeout=IDLE_SECONDS)
+            code, _, body = bodies.get(timeout=IDLE_SECONDS).partition(b"\n")
             try:
-                content = checked(CheckRequest.model_validate_json(body))
+                language = LANGUAGES[code.decode()]
+                content = checked(CheckRequest.model_validate_json(body), language)
             except Exception:  # noqa: BLE001 - the service answers 500, and the log says why
                 traceback.print_exc()
                 content = b""

@@ -9,6 +9,7 @@ from http import HTTPStatus
 from typing import IO, Final
 
 from service.api.http.problems import ProblemError
+from service.translations import ENGLISH, Language
 from service.web.tutor.exercise_check import CheckRequest
 
 # Ten times what `exercises check` takes for the largest exercise of the catalogue.
@@ -32,17 +33,18 @@ class Checking:
         self._is_ready = False
         self._closed = False
 
-    def checked(self, body: CheckRequest) -> bytes:
-        """Return the findings on a text as JSON. Only one thread may call it at a time.
+    def checked(self, body: CheckRequest, language: Language = ENGLISH) -> bytes:
+        """Return the findings on a text as JSON, in a language.
 
-        Raises ProblemError if the checks take too long, or if the service ends.
+        Only one thread may call it at a time. Raises ProblemError if the checks take too long, or
+        if the service ends.
         """
         if self._process is None or self._process.poll() is not None:
             self._start()
         process = self._process
         assert process is not None
         try:
-            content = self._asked(process, body.model_dump_json().encode())
+            content = self._asked(process, f"{language.code}\n{body.model_dump_json()}".encode())
         except BaseException as error:
             _end(process)
             if self._closed:
@@ -51,7 +53,7 @@ class Checking:
                 raise _too_long(self._seconds) from error
             if isinstance(error, OSError) and process.returncode == 0:
                 # The idle process has ended just now.
-                return self.checked(body)
+                return self.checked(body, language)
             raise
         if not content:
             raise RuntimeError("the checks failed; the log has their traceback")

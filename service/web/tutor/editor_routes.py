@@ -71,7 +71,7 @@ def editor_routes(
     async def check(request: Request) -> Response:
         """Answer with the findings on a text, which is not stored."""
         body = await read_body(CheckRequest, request)
-        content = await work.do(partial(checking.checked, body))
+        content = await work.do(partial(checking.checked, body, language_of(request)))
         return Response(content, headers=NO_STORE, media_type="application/json")
 
     @router.post("/import")

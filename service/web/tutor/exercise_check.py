@@ -1,6 +1,5 @@
 """The findings of ``exercises check`` on a text in the editor, and a preview of the exercise."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
@@ -18,6 +17,8 @@ from service.catalogue import (
 from service.catalogue.files.lines import line_of, value_lines
 from service.formats.shared.plain_text import number
 from service.submissions.file_content import MAX_TOML_DOTS
+from service.translations import ENGLISH, Language, say, told
+from service.translations.sentence import Translation
 from service.typeset.statement import statement_html
 
 # The largest exercise that comes with the program has 8 kB.
@@ -66,51 +67,65 @@ class CheckAnswer:
 _ANSWER: Final = TypeAdapter(CheckAnswer)
 
 
-def checked(body: CheckRequest) -> bytes:
+def checked(body: CheckRequest, language: Language = ENGLISH) -> bytes:
     """Return the CheckAnswer for a request as JSON."""
-    return _ANSWER.dump_json(check(body.id, body.text))
+    return _ANSWER.dump_json(check(body.id, body.text, language))
 
 
-def check(exercise_id: str, text: str) -> CheckAnswer:
+def check(exercise_id: str, text: str, language: Language = ENGLISH) -> CheckAnswer:
     """Return the findings of ``exercises check`` on a file with this text."""
     # Imported here, because it loads an algebra system.
-    from service.authoring import examine, lazy_shares
+    from service.authoring import examine, summary
+
+    translation = language.translation
 
     try:
         exercise = exercise_of(exercise_id, text)
     except CatalogueError as error:
         faults = (
-            FileFinding("unusable", each.field, each.reason, each.line) for each in error.faults
+            FileFinding("unusable", each.field, told(each.reason, translation), each.line)
+            for each in error.faults
         )
-        return CheckAnswer(tuple(faults), "The file cannot be used.")
+        return CheckAnswer(tuple(faults), told(say("The file cannot be used."), translation))
     lines = value_lines(text.replace("\r\n", "\n"))
     findings = tuple(
-        FileFinding(remark.level.value, remark.field, remark.text, line_of(remark.field, lines))
+        FileFinding(
+            remark.level.value,
+            remark.field,
+            told(remark.text, translation),
+            line_of(remark.field, lines),
+        )
         for remark in examine(exercise)
     )
-    return CheckAnswer(findings, _summary(exercise, lazy_shares(exercise)), _preview(exercise))
+    return CheckAnswer(
+        findings,
+        told(summary(exercise), translation),
+        _preview(exercise, translation),
+    )
 
 
 def exercise_of(exercise_id: str, text: str) -> Exercise:
     """Return the exercise of a file with this name and text. Raises CatalogueError."""
     file = Path(f"{exercise_id}.toml")
     if not is_exercise_id(exercise_id):
-        raise CatalogueError([Fault(file, "", f"the id is the name of the file: {ID_ADVICE}")])
+        raise CatalogueError(
+            [Fault(file, "", say("the id is the name of the file: {advice}", advice=ID_ADVICE))]
+        )
     if text.count(".") > MAX_TOML_DOTS:
-        raise CatalogueError([Fault(file, "", f"has more than {MAX_TOML_DOTS:,} dots")])
+        raise CatalogueError(
+            [Fault(file, "", say("has more than {most:,} dots", most=MAX_TOML_DOTS))]
+        )
     return read_exercise(file, text)
 
 
-def _summary(exercise: Exercise, lazy: Mapping[str, float]) -> str:
-    told = [_count(len(exercise.parts), "part"), _count(len(exercise.checks), "check")]
-    earned = ", ".join(f"{int(100 * share)} % of {part}" for part, share in lazy.items())
-    return f"{', '.join(told)}. Writing only zeros and joint variables earns {earned}."
-
-
-def _preview(exercise: Exercise) -> ExercisePreview:
+def _preview(exercise: Exercise, translation: Translation | None) -> ExercisePreview:
     from service.figures.figure import exercise_figure
 
-    parts = tuple(f"{part.title}, {number(part.points)} points" for part in exercise.parts)
+    points = (say("{points} points", points=number(part.points)) for part in exercise.parts)
+    parts = tuple(
+        f"{part.title}, {told(worth, translation)}"
+        for part, worth in zip(exercise.parts, points, strict=True)
+    )
     return ExercisePreview(
         exercise.title,
         exercise.source,
@@ -118,7 +133,3 @@ def _preview(exercise: Exercise) -> ExercisePreview:
         parts,
         exercise_figure(exercise) if exercise.reference is not None else None,
     )
-
-
-def _count(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -77,8 +77,8 @@ class Tutor:
                 method, path, headers={"host": host, "accept": accept}, **more
             )
 
-    def check(self, text: str, exercise: str = "scara") -> dict[str, Any]:
-        answer = self.ask("POST", "/tutor/check", json={"id": exercise, "text": text})
+    def check(self, text: str, exercise: str = "scara", **more: Any) -> dict[str, Any]:
+        answer = self.ask("POST", "/tutor/check", json={"id": exercise, "text": text}, **more)
         assert answer.status_code == 200
         return dict(answer.json())
 
@@ -148,6 +148,20 @@ def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> No
     wrong = SCARA.replace('verdict = "partial"', 'verdict = "correct"')
     assert wrong != SCARA
     assert {each["level"] for each in tutor.check(wrong)["findings"]} >= {"failed"}
+
+
+@pytest.mark.long
+def test_the_findings_are_in_the_language_of_the_reader(tutor: Tutor) -> None:
+    german = {"lang": "de"}
+    assert (
+        "Nur Nullen und Gelenkvariablen zu schreiben bringt "
+        in (tutor.check(SCARA, params=german)["summary"])
+    )
+    bad = tutor.check(SCARA.replace("points = ", "pionts = ", 1), params=german)
+    assert bad["summary"] == "Die Datei ist nicht verwendbar."
+    assert bad["findings"][0]["text"].startswith("hier gibt es keinen Schlüssel 'pionts'; meinten")
+    # The process of the checks is the same, and has no language of its own.
+    assert tutor.check(SCARA[:10])["summary"] == "The file cannot be used."
     for text in (
         "",
         "=",
