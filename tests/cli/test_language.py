@@ -170,6 +170,8 @@ def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> No
         ("exercises check scara --seeds 3 --output", "Hilfe: 'dh-grader exercises check --help'"),
         ("exercises show scara --figure /nowhere/a.svg", "/nowhere/a.svg: kann nicht geschrieben"),
         ("attempts list", "Hier werden keine Versuche aufgezeichnet"),
+        ("merge /nowhere/a.jsonl", "/nowhere/a.jsonl: kann nicht gelesen werden"),
+        ("keys create tutor --scope tutor", "Schlüssel brauchen ein Geheimnis, das auch"),
     ],
 )
 def test_errors_are_in_the_language(arguments: str, german: str) -> None:
@@ -191,6 +193,7 @@ def test_findings_on_an_exercise_are_in_the_language(tmp_path: Path) -> None:
     assert ": hier gibt es keinen Schlüssel 'pionts'; meinten Sie 'points'?" in german.stderr
     assert re.search(r"bad\.toml: parts\[0\]\.pionts \(Zeile \d+\): ", german.stderr)
     assert "short: ok, 3 Teilaufgaben, 0 Prüfungen. Nur Nullen und" in german.stdout
+    assert german.stdout.endswith("2 Aufgaben: 1 ok, 1 nicht verwendbar, 1 mit Warnungen\n")
     assert "0 right, 0 equivalent, 0 wrong; schreiben Sie 1 right, 1 " in german.stdout
     assert german.returncode == english.returncode == 2
     assert "there is no key 'pionts' here; did you mean 'points'?" in english.stderr

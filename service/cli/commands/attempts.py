@@ -35,7 +35,7 @@ from service.cli.language import spoken
 from service.cli.terminal import complain, give_up, installed, installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible, whole_percent
 from service.settings import load_settings
-from service.translations import paragraph, say
+from service.translations import joined, paragraph, say
 
 commands = typer.Typer(
     help="Recorded attempts: read, export, regrade, forget.",
@@ -45,7 +45,7 @@ commands = typer.Typer(
 
 _MOST_SLIPS: Final = 15
 _MOST_LISTED: Final = 1_000_000
-_STILL_THERE: Final = (
+_STILL_THERE: Final = say(
     "It is still in the file -wal beside the database, because another program is reading. A "
     "service that uses the database overwrites it within a minute after that program has ended; "
     "without a service, run this command again then."
@@ -239,11 +239,14 @@ def regrade(
     corrected = installed_exercise(exercise)
     with database() as engine:
         if wrong := failures(corrected):
-            complain("\n  ".join([f"{exercise} fails its check:", *wrong]))
+            fails = say("{exercise} fails its check:", exercise=exercise)
+            complain(joined("\n  ", [fails, *wrong]))
         if wrong and apply and not force:
             give_up(
-                "Nothing is regraded. Correct the file of the exercise, or add --force to regrade "
-                "with it as it is."
+                say(
+                    "Nothing is regraded. Correct the file of the exercise, or add --force to "
+                    "regrade with it as it is."
+                )
             )
         if not apply:
             show_what_would_change(engine, corrected, course)
@@ -311,18 +314,39 @@ def expire(
                 old = select(func.count(attempts.c.number)).where(attempts.c.at < before)
                 count = connection.scalar(old.where(is_older(before))) or 0
                 kept = (connection.scalar(old) or 0) - count
-            typer.echo(f"{count} attempts are from before {before:%Y-%m-%d}. --apply deletes them.")
+            typer.echo(
+                spoken(
+                    say(
+                        "{count} attempts are from before {date}. --apply deletes them.",
+                        count=count,
+                        date=f"{before:%Y-%m-%d}",
+                    )
+                )
+            )
             if kept:
                 typer.echo(
-                    f"{kept} older attempts are kept: their assignments have no due date, or were "
-                    "closed later."
+                    spoken(
+                        say(
+                            "{kept} older attempts are kept: their assignments have no due date, "
+                            "or were closed later.",
+                            kept=kept,
+                        )
+                    )
                 )
             return
         count = in_transaction(engine, lambda connection: delete_older(connection, before))
         erased = overwrite_deleted(engine)
-    typer.echo(f"Deleted: {count} attempts from before {before:%Y-%m-%d}.")
+    typer.echo(
+        spoken(
+            say(
+                "Deleted: {count} attempts from before {date}.",
+                count=count,
+                date=f"{before:%Y-%m-%d}",
+            )
+        )
+    )
     if erased is False:
-        typer.echo(_STILL_THERE)
+        typer.echo(spoken(_STILL_THERE))
 
 
 @commands.command("forget")
@@ -339,7 +363,9 @@ def forget_learner(
         if not (found.attempts or found.courses):
             # After an earlier call, deleted data may still wait to be overwritten.
             left = overwrite_deleted(engine) is False
-            give_up("Nothing is recorded of this learner." + (f" {_STILL_THERE}" if left else ""))
+            give_up(
+                paragraph(say("Nothing is recorded of this learner."), _STILL_THERE if left else "")
+            )
         if not yes:
             question = f"Delete {visible(learner)} permanently? {_counts(found)}."
             typer.confirm(question, abort=True)
@@ -347,7 +373,7 @@ def forget_learner(
         erased = overwrite_deleted(engine)
     typer.echo(f"Deleted: {_counts(deleted)}.")
     if erased is False:
-        typer.echo(_STILL_THERE)
+        typer.echo(spoken(_STILL_THERE))
 
 
 def _counts(data: LearnerData) -> str:

@@ -31,6 +31,7 @@ from service.courses.errors import CourseError
 from service.formats.shared.plain_text import number, visible
 from service.submissions.assignment import Assignment, load_assignment
 from service.submissions.lookup import find_exercise
+from service.translations import say
 
 D = TypeVar("D", bound=DeletionRequest)
 M = TypeVar("M", bound=BaseModel)
@@ -357,10 +358,10 @@ def _date(option: str | None) -> datetime | str | None:
         if len(option) == len("2026-10-15"):
             # Midnight, at which this day begins, is seldom meant.
             date.fromisoformat(option)
-            give_up(f'{option}: write the time, too, such as "{option} 23:59".')
+            give_up(say('{option}: write the time, too, such as "{option} 23:59".', option=option))
         return datetime.fromisoformat(option)
     except ValueError:
-        give_up(f'{option}: write a date such as "2026-10-15 23:59".')
+        give_up(say('{option}: write a date such as "2026-10-15 23:59".', option=option))
 
 
 def _print(assignment: CourseAssignment) -> None:

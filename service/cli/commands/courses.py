@@ -17,6 +17,7 @@ from service.cli.commands.course_assignments import (
     deleted,
 )
 from service.cli.files.output import write
+from service.cli.language import spoken
 from service.cli.terminal import complain, counted, give_up, stdout
 from service.contract.courses import (
     LONGEST_LINK_DAYS,
@@ -37,7 +38,7 @@ from service.courses.results.gradebook import gradebook, missing, written_gradeb
 from service.courses.results.workbook import gradebook_workbook
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
-from service.translations import say
+from service.translations import joined, say
 
 commands = typer.Typer(
     help="Courses: learners, links, assignments, gradebook.",
@@ -68,7 +69,7 @@ def new(
     """Create a course. Its id has small letters, digits and hyphens."""
     body = checked(NewCourse, id=course, title=title, zone=zone)
     changed(lambda it: roll.add_course(it, body, datetime.now(UTC)), create=True)
-    typer.echo(f"The course {course} is there.")
+    typer.echo(spoken(say("The course {course} is there.", course=course)))
 
 
 @commands.command("list")
@@ -107,7 +108,7 @@ def change(
     """Change the title or the time zone of a course."""
     body = checked(CourseChange, title=title, zone=zone)
     changed(lambda it: roll.change_course(it, course, body))
-    typer.echo("Changed.")
+    typer.echo(spoken(say("Changed.")))
 
 
 @commands.command("delete")
@@ -155,9 +156,9 @@ def import_learners(
         data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
         listed = read_class_list(decoded(data))
     except OSError as error:
-        give_up(f"{file}: cannot be read: {error}")
+        give_up(say("{file}: cannot be read: {reason}", file=str(file), reason=str(error)))
     except CourseError as error:
-        give_up(f"{file}: {error}")
+        give_up(joined(": ", [str(file), str(error.args[0])]))
     count = changed(lambda it: roll.add_learners(it, course, listed))
     typer.echo(f"{counted(len(listed), 'learner')}, {count} of them new.")
 
@@ -189,8 +190,11 @@ def links(
         give_up(say("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE."))
     if address == _LOCAL:
         complain(
-            f"The links lead to {_LOCAL}, which only this machine can open. "
-            "Give the address of the service with --address https://…."
+            say(
+                "The links lead to {address}, which only this machine can open. Give the "
+                "address of the service with --address https://….",
+                address=_LOCAL,
+            )
         )
     wanted = LinksRequest(learners=learner, renew=renew, days=days)
     found = changed(lambda it: issue_links(it, course, wanted, secret, address, now))

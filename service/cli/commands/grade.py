@@ -43,7 +43,7 @@ from service.submissions.assignment import (
 )
 from service.submissions.handed_in import HandedIn, all_handed_in
 from service.submissions.outline import SetExercise
-from service.translations import say
+from service.translations import joined, say
 from service.variants.variant import NoVariantError
 
 if TYPE_CHECKING:
@@ -262,9 +262,9 @@ def command(
                 write(pieces, output, at_once=at_once, quiet=quiet)
             remember(output, folders)
     except UnusableFolderError as error:
-        give_up(f"{output}: {error}")
+        give_up(joined(": ", [str(output), error.args[0]]))
     except UnusableSettingError as error:
-        give_up(f"{output_format}: {error}")
+        give_up(joined(": ", [output_format, error.args[0]]))
     except WorkerLostError:
         give_up(say("A grading process was killed, perhaps for lack of memory; try fewer --jobs."))
     _explain_one_student(output_format, () if one_student else folders, run.exit_code)

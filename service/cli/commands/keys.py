@@ -51,8 +51,10 @@ def create(
     secret = load_settings().known_secret()
     if secret is None:
         give_up(
-            "Keys need a secret, which the service must know as well. Make one with "
-            "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
+            say(
+                "Keys need a secret, which the service must know as well. Make one with "
+                "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
+            )
         )
     if course is not None and exercise:
         give_up(say("A key is for a course or for exercises: leave out --course or --exercise."))

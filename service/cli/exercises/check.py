@@ -22,7 +22,7 @@ from service.cli.exercises.variants import check_seeds
 from service.cli.language import spoken
 from service.cli.terminal import UNUSABLE, complain, give_up, installed_file, stdout
 from service.settings import load_settings
-from service.translations import joined, say
+from service.translations import joined, say, say_count
 
 FAILED = 1
 
@@ -96,10 +96,16 @@ def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Te
 
 def _summary(files: int, unusable: int, found: Counter[Level]) -> str:
     failed = found[Level.FAILED]
-    ok = f"{_count(files, 'exercise')}: {files - unusable - failed} ok"
-    others = {"failed": failed, "cannot be used": unusable, "with warnings": found[Level.WARNING]}
-    return ", ".join([ok, *(f"{number} {sort}" for sort, number in others.items() if number)])
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+    warned = found[Level.WARNING]
+    ok = say_count(
+        "{count} exercise: {ok} ok",
+        "{count} exercises: {ok} ok",
+        count=files,
+        ok=files - unusable - failed,
+    )
+    others = [
+        say("{number} failed", number=failed) if failed else "",
+        say("{number} cannot be used", number=unusable) if unusable else "",
+        say("{number} with warnings", number=warned) if warned else "",
+    ]
+    return spoken(joined(", ", [ok, *filter(None, others)]))

@@ -19,7 +19,7 @@ from service.importing.robot_import import (
 )
 from service.importing.urdf import MOST_BYTES
 from service.kinematics.dh import Convention
-from service.translations import say
+from service.translations import joined, say
 
 
 def command(
@@ -75,9 +75,9 @@ def command(
         else:
             found = imported_urdf(data, options)
     except SeveralTipsError as error:
-        give_up(f"{file}: {error}. Use --tip LINK.")
+        give_up(say("{file}: {reason}. Use --tip LINK.", file=str(file), reason=str(error)))
     except RefusedRobotError as error:
-        give_up(f"{file}: {error}")
+        give_up(joined(": ", [str(file), str(error.args[0])]))
     made = write_new(output, name, found.text)
     for remark in found.remarks:
         stdout().print(spoken(remark), soft_wrap=True)

@@ -34,6 +34,9 @@ def warn_of_unread(exercises: Iterable[str]) -> None:
     own = [each for each in exercises if not (shipped / f"{each}.toml").is_file()]
     if own and not load_settings().reload_exercises:
         complain(
-            f"{', '.join(own)}: if the file is new, restart the service. It reads new files only "
-            "when it starts, or at once with DH_GRADER_RELOAD_EXERCISES=true."
+            say(
+                "{ids}: if the file is new, restart the service. It reads new files only "
+                "when it starts, or at once with DH_GRADER_RELOAD_EXERCISES=true.",
+                ids=", ".join(own),
+            )
         )

@@ -120,7 +120,13 @@ def deploy_command(
         return
     text = with_deployed(file.read_text(encoding="utf-8"), seeds)
     if text is None:
-        give_up(f"{file}: cannot be edited here; write deployed = {seeds} below [vary]")
+        give_up(
+            say(
+                "{file}: cannot be edited here; write deployed = {seeds} below [vary]",
+                file=str(file),
+                seeds=str(seeds),
+            )
+        )
     try:
         file.write_text(text, encoding="utf-8")
     except OSError as error:

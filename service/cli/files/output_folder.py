@@ -8,6 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from service.formats.shared.report_format import Document
+from service.translations import say
 
 # The name of a folder that is still being written begins with this.
 _UNFINISHED: Final = ".dh-grader-unfinished-"
@@ -40,7 +41,9 @@ def write_folder(documents: Iterable[Document], folder: Path) -> None:
     try:
         _write_all(documents, folder.resolve())
     except OSError as error:
-        raise UnusableFolderError(f"cannot be written: {error.strerror}") from error
+        raise UnusableFolderError(
+            say("cannot be written: {reason}", reason=str(error.strerror))
+        ) from error
 
 
 def _write_all(documents: Iterable[Document], folder: Path) -> None:
@@ -89,12 +92,15 @@ def _within(path: str) -> PurePosixPath:
 def _replaceable(folder: Path) -> list[Path]:
     """The content of the folder. Raises UnusableFolderError if no earlier run has written it."""
     if not folder.is_dir():
-        raise UnusableFolderError("is no folder")
+        raise UnusableFolderError(say("is no folder"))
     found = [path for path in folder.iterdir() if not path.name.startswith(_UNFINISHED)]
     for path in _foreign(found, _written_before(folder)):
         raise UnusableFolderError(
-            f"holds {path.relative_to(folder).as_posix()!r}, which no earlier run has written; "
-            "name an empty folder, or one that does not exist"
+            say(
+                "holds {name!r}, which no earlier run has written; name an empty folder, or "
+                "one that does not exist",
+                name=path.relative_to(folder).as_posix(),
+            )
         )
     return found
 

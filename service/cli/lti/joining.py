@@ -8,10 +8,12 @@ import typer
 
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
+from service.cli.language import spoken
 from service.cli.terminal import give_up, stdout
 from service.lti.joining.invitations import LONGEST_DAYS, allow, invite
 from service.lti.joining.tool_configuration import canvas_configuration
 from service.lti.registrations import RegistrationError, unusable
+from service.translations import say
 
 Address = Annotated[str, typer.Option(help="This service: https://grader.example.edu")]
 
@@ -49,7 +51,7 @@ def allow_platform(
             in_transaction(engine, lambda it: allow(it, registration))
         except RegistrationError as error:
             give_up(error)
-    typer.echo("Allowed.")
+    typer.echo(spoken(say("Allowed.")))
 
 
 def canvas(

@@ -13,6 +13,7 @@ from sqlalchemy import Connection
 from service.access.keys import Secret
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
+from service.cli.language import spoken
 from service.cli.lti import joining
 from service.cli.lti.scores import scores
 from service.cli.terminal import give_up, stdout
@@ -29,6 +30,7 @@ from service.lti.roster.enrolment import (
     read_roster,
 )
 from service.settings import load_settings
+from service.translations import say
 
 R = TypeVar("R")
 
@@ -135,7 +137,11 @@ def show(registration: RegistrationId) -> None:
 def remove(registration: RegistrationId) -> None:
     """Remove a registration. Its courses and their attempts stay, and launch no more."""
     _done(lambda it: registrations.remove_registration(it, registration))
-    typer.echo("Removed. Pages that are open work until their tokens end, at most twelve hours.")
+    typer.echo(
+        spoken(
+            say("Removed. Pages that are open work until their tokens end, at most twelve hours.")
+        )
+    )
 
 
 @commands.command("check")
@@ -171,8 +177,15 @@ def roster(
         give_up(error)
     change = _done(lambda it: enrol_members(it, asked, members, secret, shows_names=names))
     typer.echo(
-        f"{change.learners} learners: {change.added} new, {change.removed} removed, "
-        f"{change.renamed} renamed."
+        spoken(
+            say(
+                "{learners} learners: {added} new, {removed} removed, {renamed} renamed.",
+                learners=change.learners,
+                added=change.added,
+                removed=change.removed,
+                renamed=change.renamed,
+            )
+        )
     )
 
 
@@ -181,7 +194,9 @@ def rotate_keys() -> None:
     """Add a new key. It is published for a day before it signs; the oldest key is removed."""
     secret, now = _secret(), datetime.now(UTC)
     signs_from = _done(lambda it: rotate(it, secret, now), create=True)
-    typer.echo(f"The new key signs from {signs_from:%Y-%m-%d %H:%M} UTC on.")
+    typer.echo(
+        spoken(say("The new key signs from {time} UTC on.", time=f"{signs_from:%Y-%m-%d %H:%M}"))
+    )
 
 
 @_keys.command("list")
@@ -194,7 +209,7 @@ def list_keys() -> None:
 def _secret() -> Secret:
     secret = load_settings().known_secret()
     if secret is None:
-        give_up("LTI needs a secret: set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE.")
+        give_up(say("LTI needs a secret: set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."))
     return secret
 
 
@@ -211,9 +226,9 @@ def _values_in(file: Path) -> dict[str, Any]:
     try:
         found = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        give_up(f"{file}: cannot be read: {error}")
+        give_up(say("{file}: cannot be read: {reason}", file=str(file), reason=str(error)))
     if not isinstance(found, dict):
-        give_up(f"{file}: must be a JSON object.")
+        give_up(say("{file}: must be a JSON object.", file=str(file)))
     return found
 
 

@@ -6,10 +6,12 @@ from typing import Annotated
 import typer
 
 from service.cli.commands.course_assignments import CourseOption, changed
+from service.cli.language import spoken
 from service.cli.terminal import stdout
 from service.contract.scores import SendAgainRequest
 from service.formats.shared.plain_text import number, visible
 from service.lti.scores.overview import scores_of, send_again
+from service.translations import say
 
 
 def scores(
@@ -23,7 +25,7 @@ def scores(
     wanted, now = SendAgainRequest(failed=failed), datetime.now(UTC)
     if again:
         queued = changed(lambda it: send_again(it, course, wanted, now))
-        typer.echo(f"Scores that are sent again: {queued}.")
+        typer.echo(spoken(say("Scores that are sent again: {queued}.", queued=queued)))
         return
     for each in changed(lambda it: scores_of(it, course, wanted)):
         points = "-" if each.sent_points is None else number(each.sent_points)

@@ -8,7 +8,9 @@ import typer
 
 from service.attempts.storage.database_file import copy_into
 from service.cli.commands.attempts import database
+from service.cli.language import spoken
 from service.cli.terminal import give_up
+from service.translations import say
 
 commands = typer.Typer(add_completion=False)
 
@@ -27,10 +29,18 @@ def command(
         if engine.dialect.name != "sqlite":
             give_up(USE_POSTGRESQL)
         if file.exists():
-            give_up(f"{file} is there already. Choose another name.")
+            give_up(say("{file} is there already. Choose another name.", file=str(file)))
         try:
             copy_into(Path(engine.url.database or ""), file)
         except (OSError, sqlite3.Error) as error:
             file.unlink(missing_ok=True)
-            give_up(f"{file}: cannot be written: {error}")
-    typer.echo(f"{file}: {file.stat().st_size} bytes. Only you can read it. Keep it safe.")
+            give_up(say("{file}: cannot be written: {reason}", file=str(file), reason=str(error)))
+    typer.echo(
+        spoken(
+            say(
+                "{file}: {size} bytes. Only you can read it. Keep it safe.",
+                file=str(file),
+                size=file.stat().st_size,
+            )
+        )
+    )

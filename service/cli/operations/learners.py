@@ -10,6 +10,7 @@ from service.attempts.learner_data import everything_of
 from service.cli.commands.attempts import database, encodable
 from service.cli.files.output import write
 from service.cli.terminal import give_up
+from service.translations import say
 
 commands = typer.Typer(
     help="Learners: export all that is known of one.", no_args_is_help=True, add_completion=False
@@ -32,6 +33,6 @@ def export(
     with database() as engine, engine.connect() as connection:
         found = everything_of(connection, learner)
     if not any(rows for name, rows in found.items() if name != "learner"):
-        give_up("Nothing is recorded of this learner.")
+        give_up(say("Nothing is recorded of this learner."))
     text = json.dumps(found, indent=2, ensure_ascii=False)
     write([f"{text}\n".encode()], output, at_once=True)

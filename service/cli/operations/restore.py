@@ -11,9 +11,11 @@ from sqlalchemy import make_url
 from service.attempts.errors import UnusableDatabaseError
 from service.attempts.storage.database import open_database
 from service.attempts.storage.database_file import copy_into, is_in_use
+from service.cli.language import spoken
 from service.cli.operations.backup import USE_POSTGRESQL
 from service.cli.terminal import give_up
 from service.settings import load_settings
+from service.translations import joined, say
 
 commands = typer.Typer(add_completion=False)
 
@@ -28,24 +30,32 @@ def command(
     """Put a backup in the place of the database, while no service runs."""
     target = _target()
     if not file.is_file():
-        give_up(f"{file}: there is no such file.")
+        give_up(say("{file}: there is no such file.", file=str(file)))
     if _damage(file):
-        give_up(f"{file} is not a whole SQLite database.")
+        give_up(say("{file} is not a whole SQLite database.", file=str(file)))
     before = target.with_name(f"{target.name}.before")
     if target.exists():
         if not replace:
-            give_up(f"{target} is there already. Add --replace; it is then kept as {before}.")
+            give_up(
+                say(
+                    "{target} is there already. Add --replace; it is then kept as {before}.",
+                    target=str(target),
+                    before=str(before),
+                )
+            )
         if before.exists():
-            give_up(f"{before} is there already. Move it away first.")
+            give_up(say("{before} is there already. Move it away first.", before=str(before)))
         if is_in_use(target):
-            give_up(f"{target} is in use. Stop the service first.")
+            give_up(say("{target} is in use. Stop the service first.", target=str(target)))
     new = _copy(file, target)
     # SQLite would replay an old log over the new file.
     for old, kept in zip((target, *_logs(target)), (before, *_logs(before)), strict=True):
         if old.exists():
             old.rename(kept)
     new.rename(target)
-    typer.echo(f"{target} has the content of {file}.")
+    typer.echo(
+        spoken(say("{target} has the content of {file}.", target=str(target), file=str(file)))
+    )
 
 
 def _copy(file: Path, target: Path) -> Path:
@@ -58,7 +68,7 @@ def _copy(file: Path, target: Path) -> Path:
         open_database(str(new), create=False)
     except (UnusableDatabaseError, sqlite3.Error) as error:
         new.unlink(missing_ok=True)
-        give_up(f"{file}: {error}")
+        give_up(joined(": ", [str(file), str(error.args[0])]))
     return new
 
 
@@ -71,7 +81,7 @@ def _target() -> Path:
     """Return the place of the database of this installation."""
     setting = load_settings().database
     if setting is None:
-        give_up("Name the database: DH_GRADER_DATABASE.")
+        give_up(say("Name the database: DH_GRADER_DATABASE."))
     text = setting.get_secret_value()
     if "://" not in text:
         return Path(text)

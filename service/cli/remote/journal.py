@@ -14,6 +14,7 @@ from typing import Final
 from service.cli.terminal import complain
 from service.formats.documents.json import read_report, rendered
 from service.grading import Report
+from service.translations import say
 
 _LINE: Final = re.compile(rb'\{"digest": "([0-9a-f]{64})", "report": (\{.*\})\}\n')
 # The name of a journal without an output file.
@@ -74,8 +75,12 @@ class Journal:
             except OSError as error:
                 self._is_writable = False
                 complain(
-                    f"{self.path}: cannot be written: {error.strerror}. If this run is "
-                    "interrupted, the next one sends every submission again."
+                    say(
+                        "{file}: cannot be written: {reason}. If this run is interrupted, the next "
+                        "one sends every submission again.",
+                        file=str(self.path),
+                        reason=str(error.strerror),
+                    )
                 )
 
     def remove(self) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from http import HTTPStatus
 from typing import Final
 
+from service.cli.language import spoken
 from service.cli.remote.journal import Journal, digest
 from service.client import GraderClient, GraderClientError, RequestRefusedError
 from service.formats.shared.graded import GradedSubmission
@@ -16,6 +17,7 @@ from service.submissions.body import GradeRequest
 from service.submissions.handed_in import HandedIn
 from service.submissions.lookup import UnknownExerciseError
 from service.submissions.outline import ExerciseOutline, PartOutline
+from service.translations import say
 
 # The statuses that concern the key or the connection; other client errors concern the answers.
 _CONCERNING_ALL: Final = {HTTPStatus.UNAUTHORIZED, HTTPStatus.FORBIDDEN, HTTPStatus.REQUEST_TIMEOUT}
@@ -66,10 +68,11 @@ class RemoteGrading:
                 return self._report(assigned, terms.submission(body, assigned)), ""
             except GraderClientError as error:
                 if _concerns_these(error):
-                    return None, f"is refused by the server: {error}"
+                    refused = say("is refused by the server: {reason}", reason=str(error))
+                    return None, spoken(refused)
                 self.reason = self.reason or str(error)
                 self.ungraded.add(handed.name)
-                return None, f"is not graded: {error}"
+                return None, spoken(say("is not graded: {reason}", reason=str(error)))
 
         return graded(handed, self._terms, report_on)
 

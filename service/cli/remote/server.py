@@ -15,6 +15,7 @@ from service.settings import Settings
 from service.submissions.assignment import Assignment
 from service.submissions.handed_in import HandedIn
 from service.submissions.outline import SetExercise
+from service.translations import say
 
 if TYPE_CHECKING:
     from service.client import GraderClient
@@ -67,8 +68,11 @@ def require_no_own_files(assignment: Assignment) -> None:
     for assigned in assignment.exercises:
         if assigned.path is not None:
             give_up(
-                f"{assigned.path} is a file of yours, and a server grades by its own exercises: "
-                'name one of them in the assignment, by id = "…".'
+                say(
+                    "{file} is a file of yours, and a server grades by its own exercises: name "
+                    'one of them in the assignment, by id = "…".',
+                    file=str(assigned.path),
+                )
             )
 
 
@@ -95,10 +99,18 @@ def graded_by(
     if not grading.ungraded:
         journal.remove()
         return
-    complain(visible(f"Not graded: {len(grading.ungraded)} of {len(found)}, for {grading.reason}"))
     complain(
-        visible(
-            f"The reports on the others are kept in {journal.path}. Give the same command again, "
-            "and only the rest is sent."
+        say(
+            "Not graded: {count} of {all}, for {reason}",
+            count=len(grading.ungraded),
+            all=len(found),
+            reason=visible(grading.reason),
+        )
+    )
+    complain(
+        say(
+            "The reports on the others are kept in {file}. Give the same command again, and only "
+            "the rest is sent.",
+            file=visible(str(journal.path)),
         )
     )

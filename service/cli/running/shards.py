@@ -17,6 +17,8 @@ from typing import BinaryIO, Final, TypeVar
 
 import typer
 
+from service.translations import say
+
 _Item = TypeVar("_Item")
 
 MOST_SHARDS: Final = 1000
@@ -91,7 +93,12 @@ def merged(files: Sequence[Path]) -> Iterator[bytes]:
             header = _header(file.readline(_LONGEST_HEADER), path)
             if header.shard in shards:
                 raise UnusableShardsError(
-                    f"{path}: is shard {header.shard}, and so is {shards[header.shard][1]}"
+                    say(
+                        "{path}: is shard {shard}, and so is {other}",
+                        path=str(path),
+                        shard=header.shard,
+                        other=str(shards[header.shard][1]),
+                    )
                 )
             shards[header.shard] = header, path, file
         _require_one_run(shards)
@@ -102,14 +109,18 @@ def merged(files: Sequence[Path]) -> Iterator[bytes]:
             yield from islice(_whole_lines(file, path), first.exercises)
         for _, path, file in in_order:
             if file.read(1):
-                raise UnusableShardsError(f"{path}: has more lines than its header says")
+                raise UnusableShardsError(
+                    say("{path}: has more lines than its header says", path=str(path))
+                )
 
 
 def _opened(path: Path) -> BinaryIO:
     try:
         return path.open("rb")
     except OSError as error:
-        raise UnusableShardsError(f"{path}: cannot be read: {error.strerror}") from error
+        raise UnusableShardsError(
+            say("{path}: cannot be read: {reason}", path=str(path), reason=str(error.strerror))
+        ) from error
 
 
 def _header(line: bytes, path: Path) -> ShardHeader:
@@ -118,7 +129,7 @@ def _header(line: bytes, path: Path) -> ShardHeader:
         shard_of(f"{header.shard}/{header.shards}")
     except (ValueError, TypeError, typer.BadParameter):
         raise UnusableShardsError(
-            f"{path}: is not a shard; dh-grader grade --shard writes shards"
+            say("{path}: is not a shard; dh-grader grade --shard writes shards", path=str(path))
         ) from None
     return header
 
@@ -129,13 +140,19 @@ def _require_one_run(shards: dict[int, tuple[ShardHeader, Path, BinaryIO]]) -> N
         same = (header.shards, header.submissions, header.exercises, header.run)
         if same != (first.shards, first.submissions, first.exercises, first.run):
             raise UnusableShardsError(
-                f"{path}: is from another run than {first_path}: the submissions, the assignment "
-                "or the count of shards differ"
+                say(
+                    "{path}: is from another run than {first_path}: the submissions, the "
+                    "assignment or the count of shards differ",
+                    path=str(path),
+                    first_path=str(first_path),
+                )
             )
     missing = [number for number in range(1, first.shards + 1) if number not in shards]
     if missing:
         numbers = ", ".join(map(str, missing))
-        raise UnusableShardsError(f"Missing shards of {first.shards}: {numbers}.")
+        raise UnusableShardsError(
+            say("Missing shards of {count}: {numbers}.", count=first.shards, numbers=numbers)
+        )
 
 
 def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
@@ -143,5 +160,7 @@ def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
     while True:
         line = file.readline()
         if not line.endswith(b"\n"):
-            raise UnusableShardsError(f"{path}: is incomplete; grade this shard again")
+            raise UnusableShardsError(
+                say("{path}: is incomplete; grade this shard again", path=str(path))
+            )
         yield line
