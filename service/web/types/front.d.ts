@@ -180,6 +180,28 @@ declare namespace Front {
   type Move = import("../static/robot/rows/row_moves.js").Move;
   type RowShape = import("../static/robot/rows/row_shape.js").RowShape;
   type RowShapeClass = typeof import("../static/robot/rows/row_shape.js").RowShape;
+  type FrameCell = "axis" | "z" | "origin_x" | "origin_y" | "origin_z" | "x";
+  type FrameStep = "z" | "origin" | "x";
+  // A dot or the end of an arrow that may be clicked, and the cells that it writes.
+  type PlaceMark = { at: number[]; from?: number[]; texts: [FrameCell, string][]; isChosen: boolean; told: string };
+  type AxisMark = { joint: string; ends: number[][] };
+  type ShownValues = { symbols: Record<string, number>; joints: number[] };
+  // A point as texts, and as sums: the factor of each symbol in each coordinate.
+  type NamedPlace = { texts: string[]; sums: number[][] };
+  // What is offered with all joint variables 0. `slid` and `directions` are for each joint axis.
+  type HomeOffers = {
+    axes: number[][];
+    names: string[];
+    places: NamedPlace[];
+    slid: NamedPlace[][];
+    directions: number[][][];
+  };
+  // The motion of the link of each frame since then, and the picture of which it is.
+  type LinkMotions = {
+    picture: Pick<Api.DrawnConfiguration, "centres" | "axes">;
+    symbols: Record<string, number>;
+    motions: Frame[];
+  };
   type AxisClicks = import("../static/robot/placing/axis_clicks.js").AxisClicks;
   type RowPlayer = import("../static/robot/rows/row_player.js").RowPlayer;
   type RowHost = { host: ViewHost; isFlat(): boolean; draw(): void; build(): void };

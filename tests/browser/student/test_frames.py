@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from tests.browser.fixtures import Visit
 from tests.browser.maths.reading import typed_names
@@ -119,40 +119,176 @@ def test_placed_frames_are_in_the_view_and_lead_to_full_marks_on_a_phone(
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
+# Waits until the view is at rest, and returns the place of the mark that writes a value, in pixels
+# of the page. Joint axes are clicked beside their middles.
+PLACE = """async (svg, value) => {
+  const view = svg.getRootNode().querySelector(".robot-view");
+  const place = () => {
+    const mark = svg.querySelector(`[data-value="${value}"]`);
+    if (!mark || view.getAttribute("aria-busy") !== "false") return null;
+    const { x, y } = svg.getBoundingClientRect();
+    const end = mark.querySelector("circle");
+    const at = (name) => Number((end ?? mark).getAttribute(name));
+    const between = (from, to) => at(from) + 0.75 * (at(to) - at(from));
+    return end ? [x + at("cx"), y + at("cy")] : [x + between("x1", "x2"), y + between("y1", "y2")];
+  };
+  let before = null;
+  for (const from = performance.now(); performance.now() < from + 60_000;) {
+    const now = place();
+    if (now && String(now) === String(before)) return now;
+    before = now;
+    for (const _ of "12") await new Promise(requestAnimationFrame);
+  }
+  const shown = [...svg.querySelectorAll("[data-value]")].map((mark) => mark.dataset.value);
+  throw new Error(`${value} is not one of ${shown.join("; ")}`);
+}"""
+
+
+def place_of(page: Page, value: str) -> tuple[float, float]:
+    x, y = page.locator(".place-marks").evaluate(PLACE, value)
+    return x, y
+
+
+def click_mark(page: Page, value: str, *, tap: bool = False) -> None:
+    page.locator(".stage").scroll_into_view_if_needed()
+    click = page.touchscreen.tap if tap else page.mouse.click
+    click(*place_of(page, value))
+
+
+def place_by_clicks(page: Page, row: int, frame: tuple[str, ...], *, tap: bool = False) -> None:
+    """Click a joint axis, a dot and an arrow, after which the cells of a frame have these texts."""
+    joint, z, *origin, x = frame
+    boxes = [cells(page).nth(6 * row + i) for i in range(6)]
+    told = page.locator("dh-exercise p.aloud[role=status]")
+    click_mark(page, joint, tap=tap)
+    expect(boxes[0]).to_have_value(joint)
+    if boxes[1].input_value() != z:
+        click_mark(page, z, tap=tap)
+    expect(boxes[1]).to_have_value(z)
+    click_mark(page, ", ".join(origin), tap=tap)
+    expect(told).to_have_text(f"Frame {row + 1}: origin at ({', '.join(origin)})")
+    click_mark(page, x, tap=tap)
+    expect(told).to_have_text(f"Frame {row + 1}: x along {x}")
+    assert [box.input_value() for box in boxes] == list(frame)
+
+
+def open_view(page: Page, service: str, exercise: str, *, tap: bool = False) -> None:
+    open_exercise(page, service, exercise)
+    button = page.get_by_role("button", name="Move it in 3D")
+    (button.tap if tap else button.click)()
+    expect(page.locator(".axis-hint")).to_have_text(
+        "Frame 1: click a joint axis, so that z lies along it."
+    )
+
+
 @pytest.mark.long
 def test_a_click_on_a_joint_axis_puts_z_there_and_a_second_turns_it_over(
     visit: Opening, service: str
 ) -> None:
     page = visit().page
-    open_exercise(page, service, "planar-rrr-frames")
-    page.get_by_role("button", name="Move it in 3D").click()
-    expect(page.locator(".axis-hint")).to_contain_text("Click a joint axis")
-    expect(page.locator("#where-frames-are")).to_contain_text("Given frame {0}")
+    open_view(page, service, "planar-rrr-frames")
+    second = place_of(page, "2")
+    # A frame that was typed to its end is not changed by the next click on an axis.
+    for i, text in enumerate(RIGHT[:6]):
+        cells(page).nth(i).fill(text)
     axis = page.get_by_label("joint axis along which z lies, frame 2")
     z = page.get_by_label("direction of z, frame 2")
-    axis.focus()
-    box = page.locator(".stage canvas").bounding_box()
-    assert box is not None
-    found: list[str] = []
-    # From left to right, all the three axes are crossed.
-    for across in range(10, int(box["width"]), 15):
-        page.mouse.click(box["x"] + across, box["y"] + box["height"] / 2)
-        # The first click on an axis waits for the directions of the axes.
-        page.wait_for_timeout(100)
-        found.append(axis.input_value())
-        if found[-1] == "2":
-            break
-    assert found[-1] == "2"
-    assert set(found) <= {"", "1", "2"}
+    page.mouse.click(*second)
     expect(z).to_have_value("+z")
-    page.mouse.click(box["x"] + across, box["y"] + box["height"] / 2)
+    click_mark(page, "2")
     expect(z).to_have_value("-z")
     expect(axis).to_have_value("2")
+    expect(cells(page).first).to_have_value("1")
     told = page.locator("dh-exercise p.aloud[role=status]")
     expect(told).to_have_text("Frame 2: z along the axis of joint 2, -z")
     # A drag turns the view and chooses nothing.
-    page.mouse.move(box["x"] + across, box["y"] + box["height"] / 2)
+    across, down = second
+    page.mouse.move(across, down)
     page.mouse.down()
-    page.mouse.move(box["x"] + across + 40, box["y"] + box["height"] / 2, steps=3)
+    page.mouse.move(across + 40, down, steps=3)
     page.mouse.up()
     expect(z).to_have_value("-z")
+
+
+PLACES = {
+    "planar-rrr-frames": [
+        ("1", "+z", "0", "0", "0", "+x"),
+        ("2", "-z", "l1", "0", "0", "-x"),
+        # The origin may be anywhere on the last of parallel axes; the tip is not on it.
+        ("3", "+z", "l1 + l2", "0", "0", "+x"),
+    ],
+    "spatial-rrr-frames": [
+        ("2", "+y", "R", "0", "0", "+x"),
+        ("3", "-y", "R + L1", "0", "0", "-x"),
+    ],
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("exercise", PLACES)
+def test_frames_are_placed_by_clicks_alone_right_or_wrong(
+    visit: Opening, service: str, exercise: str
+) -> None:
+    page = visit().page
+    open_view(page, service, exercise)
+    for row, frame in enumerate(PLACES[exercise]):
+        place_by_clicks(page, row, frame)
+    expect(page.locator(".axis-hint")).to_contain_text("All frames are placed.")
+    check(page)
+    badge = part(page, 0).locator(".badge").first
+    expect(badge).to_have_text("correct")
+    # Across the link, and along the axis itself.
+    x = page.get_by_label("direction of x, frame 2")
+    x.focus()
+    click_mark(page, "+y")
+    expect(x).to_have_value("+y")
+    check(page)
+    expect(x).to_have_attribute("aria-invalid", "true")
+    expect(badge).not_to_have_text("correct")
+
+
+@pytest.mark.long
+def test_frames_are_placed_by_touch_and_an_origin_is_chosen_again(
+    visit: Opening, service: str
+) -> None:
+    page = visit(**PHONE).page
+    open_view(page, service, "planar-rrr-frames", tap=True)
+    place_by_clicks(page, 0, ("1", "+z", "0", "0", "0", "+x"), tap=True)
+    click_mark(page, "2", tap=True)
+    click_mark(page, "l1 + l2 + l3, 0, 0", tap=True)
+    hint = page.locator(".axis-hint")
+    expect(hint).to_contain_text("Frame 2: click the end of an arrow")
+    origin = cells(page).nth(8)
+    # A click on the chosen dot changes no cell.
+    click_mark(page, "l1 + l2 + l3, 0, 0", tap=True)
+    expect(hint).to_contain_text("Frame 2: click a dot")
+    expect(origin).to_have_value("l1 + l2 + l3")
+    click_mark(page, "l1, 0, 0", tap=True)
+    expect(origin).to_have_value("l1")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
+@pytest.mark.long
+def test_dots_move_with_the_link_of_their_frame(visit: Opening, service: str) -> None:
+    page = visit().page
+    open_view(page, service, "stanford-arm-frames")
+    stage = page.locator(".stage")
+
+    def height() -> float:
+        # The page may scroll.
+        box = stage.bounding_box()
+        assert box is not None
+        return box["y"] - place_of(page, "0, d2, 0")[1]
+
+    # The boom is drawn out, and carries frame 3.
+    heights = []
+    for row, axis in ((1, "3"), (2, "4")):
+        cells(page).nth(6 * row).fill(axis)
+        cells(page).nth(6 * row + 2).focus()
+        expect(page.locator(".axis-hint")).to_contain_text(f"Frame {row + 1}: click a dot")
+        heights.append(height())
+    low, high = heights
+    assert high - low > 60
+    # Draw the boom in as far as its slider goes.
+    page.locator(".slider input").nth(2).press("Home")
+    assert low + 20 < height() < high - 20

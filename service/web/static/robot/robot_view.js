@@ -55,7 +55,7 @@ export class RobotView {
       () => this.#answer && this.picture && this.#showScene(this.#answer, this.picture),
     ];
     this.rows = new RowLoader({ host, isFlat: () => this.stage.isFlat, draw, build });
-    this.placing = new PlacingLoader(host, this.stage);
+    this.placing = new PlacingLoader(host, this.stage, () => ({ symbols: this.#symbols, joints: this.#current }));
     this.numbers = new PoseNumbers();
     this.sliders = new JointSliders(this);
     this.symbols = new SymbolFields((name, value) => this.#chosen(name, value), host.descriptions);

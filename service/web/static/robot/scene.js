@@ -44,6 +44,8 @@ export class RobotScene {
   #wasInside = true;
   // The offset of a table's chain from the robot, if they are shown side by side.
   aside = new Vector3();
+  // Called after each picture.
+  drawn = () => {};
 
   /**
    * The canvas fills the element `stage`. `inSoftware` is true if the browser draws without a graphics card.
@@ -185,15 +187,28 @@ export class RobotScene {
     return [...robot, ...chain.map((point) => (beside() ? point.add(this.aside) : point))];
   }
 
-  /** Return the two ends of each joint axis on the stage, in pixels from its upper left corner. */
-  axesOnStage() {
-    const { centres = [], axes = [] } = this.#picture.mechanism ?? {};
+  /** The robot as it is drawn, and its size. */
+  get robot() {
+    return { mechanism: this.#picture?.mechanism ?? null, size: this.#subject?.size ?? 1 };
+  }
+
+  /**
+   * Return the place of a point on the stage, in pixels from its upper left corner.
+   *
+   * @param {number[]} point
+   */
+  onStage(point) {
     this.camera.updateMatrixWorld();
+    const { x, y } = vector(point).project(this.camera);
+    return [((x + 1) / 2) * this.size.x, ((1 - y) / 2) * this.size.y];
+  }
+
+  /** Return the two ends of each joint axis on the stage. */
+  axesOnStage() {
+    const { mechanism, size } = this.robot;
+    const { centres, axes } = mechanism ?? { centres: [], axes: [] };
     return centres.map((centre, i) =>
-      [-AXIS, AXIS].map((share) => {
-        const end = vector(centre).addScaledVector(vector(axes[i]), share * this.#subject.size).project(this.camera);
-        return [((end.x + 1) / 2) * this.size.x, ((1 - end.y) / 2) * this.size.y];
-      })
+      [-AXIS, AXIS].map((share) => this.onStage(centre.map((value, k) => value + share * size * axes[i][k])))
     );
   }
 
@@ -317,6 +332,7 @@ export class RobotScene {
     this.renderer.render(this.solids, this.camera);
     this.renderer.clearDepth();
     this.renderer.render(this.over, this.camera);
+    this.drawn();
   }
 
   dispose() {

@@ -7,10 +7,11 @@ export class PlacingLoader {
   /** @type {Front.AxisClicks | null} */
   #clicks = null;
 
-  /** @param {Front.ViewHost} host @param {Front.Stage} stage */
-  constructor(host, stage) {
+  /** @param {Front.ViewHost} host @param {Front.Stage} stage @param {() => Front.ShownValues} shown */
+  constructor(host, stage, shown) {
     this.host = host;
     this.stage = stage;
+    this.shown = shown;
   }
 
   /** Load them when the stage is open. */
@@ -20,7 +21,7 @@ export class PlacingLoader {
     try {
       const { AxisClicks } = await import("./axis_clicks.js");
       if (this.#closed) return;
-      this.#clicks = new AxisClicks(this.host, part, scene);
+      this.#clicks = new AxisClicks(this.host, part, scene, this.shown);
       this.stage.element.after(this.#clicks.hint);
     } catch {
       this.host.announce(worded("Clicks on joint axes could not be loaded"));
