@@ -6,6 +6,7 @@ from tests.frame_choice.robots import GIVEN, MODIFIED, POLICIES, STANDARD, Polic
 from tests.frame_choice.rows.student_rows import Texts
 
 _SEVEN = tuple(f"q{i}" for i in range(1, 8))
+_FREE_DIRECTIONS = next(policy for policy in POLICIES if policy.name == "free directions")
 
 
 class OtherReading(NamedTuple):
@@ -99,7 +100,7 @@ OTHER_READINGS = [
             (("a1", "0", "0", "q1"), ("a2", "0", "0", "q2")),
             ("a1", "a2"),
         ),
-        next(policy for policy in POLICIES if policy.name == "free directions"),
+        _FREE_DIRECTIONS,
         MODIFIED,
         [["0", "0", "0.3", "-q1"], ["a1", "0", "0", "q2"], ["a1", "0", "a1", "0"]],
         2,
@@ -155,5 +156,65 @@ OTHER_READINGS = [
         ],
         2,
         (0,),
+    ),
+    # The row of the tool is missing, which an empty row before it hides.
+    OtherReading(
+        Robot(
+            "RRR without its tool row",
+            "RRR",
+            MODIFIED,
+            ("q1", "q2", "q3"),
+            (
+                ("l1", "0", "0", "q1"),
+                ("l1", "0", "l2", "q2"),
+                ("0.90", "0", "l3", "q3"),
+                ("0", "0", "0", "0"),
+            ),
+            ("l1", "l2", "l3"),
+        ),
+        GIVEN,
+        MODIFIED,
+        [["l1", "pi", "0", "-q1"], ["l1", "pi", "l2", "q2"], ["l2", "0", "0", "pi/6"]],
+        2,
+    ),
+    # Two cells of one row are wrong; with more of its cells wrong, it needs no geometry.
+    OtherReading(
+        Robot(
+            "RRRP with two wrong cells in a row",
+            "RRRP",
+            MODIFIED,
+            ("q1", "q2", "q3", "q4"),
+            (
+                ("0", "0", "0.2", "q1"),
+                ("l2", "0", "0", "q2+pi/2"),
+                ("l3", "0", "0", "q3"),
+                ("0", "pi", "q4", "0"),
+            ),
+            ("l1", "l2", "l3"),
+        ),
+        GIVEN,
+        STANDARD,
+        [
+            ["-l2", "pi", "0.2", "q1 - pi"],
+            ["-l3", "0", "0", "-q2 - pi/2"],
+            ["0.5", "pi", "q4", "-q3 + pi"],
+            ["l1", "pi", "-q4", "0"],
+        ],
+        2,
+    ),
+    # Directions are free, and a wrong first row makes the second one look wrong.
+    OtherReading(
+        Robot(
+            "vertical-axes",
+            "RPR",
+            STANDARD,
+            ("theta1", "d2", "theta3"),
+            (("0.45", "0", "0", "theta1"), ("0.6", "0", "d2", "0"), ("0.15", "0", "0", "theta3")),
+            (),
+        ),
+        _FREE_DIRECTIONS,
+        STANDARD,
+        [["0.4", "pi", "0.3", "theta1"], ["0.6", "0", "-d2", "0"], ["0.15", "0", "0", "-theta3"]],
+        0,
     ),
 ]

@@ -7,6 +7,7 @@ any frames. A table with empty cells earns at most as much as with such numbers 
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -46,12 +47,9 @@ def with_fair_points(
 
     ``judged_again`` judges another table, which costs ``work``.
     """
-
-    def lost(other: Judged) -> int:
-        return steps_lost(part, other)
-
     budget = grading.reader.budget
     unread = np.isnan(answer.values).any(axis=-1)
+    given_up = partial(_row_given_up, part, answer, judged, judged_again, AGAIN * work, grading)
     if missing := _missing_at_end(part, answer, judged, grading):
         # A missing row counts as a wrong one.
         if judged.count_wrong == missing * len(COLUMNS):
@@ -59,7 +57,8 @@ def with_fair_points(
         budget.charge_search(work)
         full = with_wrong_rows(answer, missing, grading)
         fair = with_fair_points(part, full, judged_again(full), judged_again, work, grading)
-        return replace(judged, at_most=fair, at_least=None if unread.any() else fair)
+        # If a row is empty, it may not be seen that another one is missing.
+        return replace(judged, at_most=fair, at_least=None if unread.any() else given_up(fair))
     if unread.any():
         empty = empty_cells(answer)
         # A table without any readable cell earns nothing anyway.
@@ -68,24 +67,46 @@ def with_fair_points(
         budget.charge_search(work)
         others = [judged_again(with_wrong_cells(answer, empty, grading))]
         others += [] if judged.at_most is None else [judged.at_most]
-        return replace(judged, at_most=max(others, key=lost), at_least=None)
-    best = judged
-    # All tables that differ from the answer in as few cells have been compared.
-    is_searched = _has_given_ends(part, judged) and sum(_counts_wrong(judged)) <= FEW
-    wrong = _wrong_rows(part, judged, len(answer.rows))
-    for row, content in _content_in_any_frames(part, answer, wrong, grading):
-        if lost(best) <= least_lost(part, judged, content) or (content and is_searched):
+        most = max(others, key=partial(steps_lost, part))
+        return replace(judged, at_most=most, at_least=None)
+    best = given_up(judged)
+    return judged if best is judged else replace(judged, at_least=best)
+
+
+def _row_given_up(
+    part: DhTableSpec,
+    answer: StudentTable,
+    judged: Judged,
+    judged_again: Callable[[StudentTable], Judged],
+    work: float,
+    grading: Grading,
+    best: Judged,
+) -> Judged:
+    """Return ``best``, or the judgement with one row given up if that loses less.
+
+    To judge again costs ``work``.
+    """
+    counts = _counts_wrong(judged)
+    # All tables that differ from the answer in as few cells, or in one row, have been compared.
+    is_searched = _has_given_ends(part, judged) and (
+        sum(counts) <= FEW or np.count_nonzero(counts) == 1
+    )
+    rows = _wrong_rows(part, judged, len(answer.rows))
+    for row, content in _content_in_any_frames(part, answer, rows, grading):
+        lost = steps_lost(part, best)
+        if lost <= least_lost(part, judged, content) or (content and is_searched):
             continue
-        if not budget.affords_search(AGAIN * work):
+        if not grading.reader.budget.affords_search(work):
             break
-        cells = np.zeros(unread.shape, np.bool_)
+        cells = np.zeros((len(answer.rows), len(COLUMNS)), np.bool_)
         cells[row] = True
         other = judged_again(with_wrong_cells(answer, cells, grading))
         if other.is_right:
             # The row may be anything, such as the last one if the tool is free.
             other = judged_again(with_empty_cells(answer, cells))
-        best = min(best, other, key=lost)
-    return judged if best is judged else replace(judged, at_least=best)
+        if steps_lost(part, other) < lost:
+            best = other
+    return best
 
 
 def _missing_at_end(
@@ -120,10 +141,13 @@ def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
     if len(judged.rows) != rows:
         return list(range(rows))
     counts = _counts_wrong(judged)
-    if _has_given_ends(part, judged) and np.count_nonzero(counts) == 1:
+    has_given_ends = _has_given_ends(part, judged)
+    if has_given_ends and sum(counts) == 1:
         # The other rows determine this row.
         return []
-    return sorted((i for i in range(rows) if counts[i]), key=lambda i: -counts[i])
+    # If base, tool or directions are free, a wrong row may make another one look wrong.
+    is_any = not has_given_ends and sum(counts) > FEW
+    return sorted((i for i in range(rows) if counts[i] or is_any), key=lambda i: -counts[i])
 
 
 def _counts_wrong(judged: Judged) -> list[int]:
