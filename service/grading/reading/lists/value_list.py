@@ -11,6 +11,7 @@ from service.grading.feedback import Finding, UnreadableAnswerError, reading_err
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
 from service.grading.reading.lists.component_names import ListNames
 from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
+from service.grading.reading.unit_comments import refuse_other_lengths
 from service.grading.reading.written_names import arranged, name_of, with_order_note
 from service.grids import FULL_WIDTH, GridCell, GridError
 from service.kinematics.transforms import Numbers
@@ -202,6 +203,7 @@ def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) 
     if not text.strip():
         return [MISSING] * count
     try:
+        refuse_other_lengths(text, names.quantities, reader)
         rows = pasted_grid(text, reader).rows
     except GridError as error:
         entries = None

@@ -18,6 +18,7 @@ from service.grading.reading.entry import (
 )
 from service.grading.reading.matrices.matrix_entry_names import misnamed_entry
 from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
+from service.grading.reading.unit_comments import refuse_other_lengths
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.transforms import Numbers
 from service.translations import say
@@ -148,6 +149,7 @@ def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[En
 
 def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     try:
+        refuse_other_lengths(text, chain.from_iterable(quantities), reader)
         grid = pasted_grid(text, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error

@@ -21,6 +21,7 @@ from service.grading.reading.matrices.matrix_names import (
     places_of,
 )
 from service.grading.reading.pasted import from_grid_error, pasted_grids, quoted
+from service.grading.reading.unit_comments import refuse_other_lengths
 from service.grids import Grid, GridError, NamedGrid, SourceText, read_grids
 from service.translations import listed, say
 
@@ -48,6 +49,7 @@ def grids_in_order(
     Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
     """
     try:
+        refuse_other_lengths(text, ["length"], reader)
         grids = pasted_grids(text, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error

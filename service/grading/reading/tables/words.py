@@ -59,12 +59,13 @@ ANGLE_UNITS: Final[Mapping[str, AngleUnit]] = {
     **dict.fromkeys(("radiant", "bogenmass", "radianes", "radianti"), "radians"),
 }  # fmt: skip
 METRES: Final[Mapping[str, float]] = {
-    **dict.fromkeys(("m", "metre", "metres", "meter", "meters", "metro", "metros", "metri"), 1.0),
+    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
     **dict.fromkeys(("dm",), 0.1),
     **dict.fromkeys(("cm", "centimetre", "centimetres", "centimeter", "centimeters"), 0.01),
     **dict.fromkeys(("mm", "millimetre", "millimetres", "millimeter", "millimeters"), 0.001),
-    **dict.fromkeys(("zentimeter", "centimetros"), 0.01),
-    **dict.fromkeys(("milimetros", "millimetri"), 0.001),
+    **dict.fromkeys(("metern", "metro", "metros", "metri"), 1.0),
+    **dict.fromkeys(("zentimeter", "zentimetern", "centimetros", "centimetri"), 0.01),
+    **dict.fromkeys(("millimetern", "milimetros", "millimetri"), 0.001),
     **dict.fromkeys(("in", "inch", "inches"), 0.0254),
     **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
 }
