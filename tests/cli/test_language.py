@@ -89,6 +89,7 @@ def test_the_environment_names_the_language(variables: Mapping[str, str], code: 
     assert user_language(variables).code == code
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("code", CODES)
 def test_all_help_is_in_the_language(code: str) -> None:
     printed = all_help(code)
@@ -104,6 +105,7 @@ def test_all_help_is_in_the_language(code: str) -> None:
         assert typer_word not in printed
 
 
+@pytest.mark.long
 def test_the_pseudo_language_covers_all_help() -> None:
     printed = all_help("qps")
     texts = {SAME.sub("", text) for text, _ in help_texts()}
@@ -111,6 +113,7 @@ def test_the_pseudo_language_covers_all_help() -> None:
     assert left == []
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("locale", ["C", "C.UTF-8", "xx", "it_IT.UTF-8", ""])
 def test_other_locales_give_english(locale: str) -> None:
     arguments = ("-m", "service", "exercises", "check", "--help")
@@ -120,6 +123,7 @@ def test_other_locales_give_english(locale: str) -> None:
     assert "Usage: dh-grader" in printed
 
 
+@pytest.mark.long
 def test_names_of_commands_and_options_stay() -> None:
     english, german = all_help("en"), all_help("de")
     options = [set(re.findall(r"--[a-z-]+", text)) for text in (english, german)]
@@ -155,12 +159,14 @@ def test_a_report_on_the_screen_is_in_the_language_throughout(tmp_path: Path) ->
     assert [line for line in german if line in english and line.strip()] == []
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("form", ["json", "jsonl", "csv", "markdown", "junit"])
 def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> None:
     grade = (*wrong_table(tmp_path), "--format", form)
     assert process(*grade, LANG="de_AT.UTF-8").stdout == process(*grade, LANG="C").stdout
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("arguments", "german"),
     [

@@ -47,7 +47,7 @@ WITH_LAST_ROW = [
 ]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("policy", POLICIES, ids=lambda policy: policy.name)
 def test_a_lazy_table_earns_at_most_a_quarter(policy: Policy) -> None:
     for robot in (RPR, PRRR, *ROBOTS):
