@@ -35,14 +35,14 @@ def check_registration(registration: Registration, key: SigningKey) -> Iterator[
     try:
         with answer(registration.jwks_url, local=registration.is_development) as response:
             if response.status_code != HTTPStatus.OK:
-                raise FetchError(f"the status is {response.status_code}")
+                raise FetchError(say("the status is {status}", status=response.status_code))
             try:
                 keys = usable_keys(json.loads(content(response, until)))
             except (ValueError, RecursionError) as error:
-                raise FetchError("the answer is not JSON") from error
+                raise FetchError(say("the answer is not JSON")) from error
             date = response.headers.get("date")
     except FetchError as error:
-        yield CheckLine(False, say("Keys of the platform: {reason}", reason=str(error)))
+        yield CheckLine(False, say("Keys of the platform: {reason}", reason=error.args[0]))
     else:
         usable = sum(key is not None for key in keys.values())
         count = len(keys)
@@ -74,7 +74,7 @@ def _token(registration: Registration, key: SigningKey) -> CheckLine:
     try:
         fetched_token(registration, SEND, key, datetime.now(UTC))
     except ScoreError as error:
-        return CheckLine(False, say("Access token: {reason}", reason=str(error)))
+        return CheckLine(False, say("Access token: {reason}", reason=error.args[0]))
     return CheckLine(True, say("Access token: the platform gives one for scores"))
 
 

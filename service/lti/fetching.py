@@ -19,6 +19,7 @@ from urllib.parse import urljoin
 import httpx
 
 from service.lti.registrations import LOCAL_HOSTS, origin_of, unusable
+from service.translations import say
 from service.version import VERSION
 
 # Moodle refuses requests without one.
@@ -49,15 +50,15 @@ def fetch_json(url: str, *, local: bool = False) -> Any:
         with answer(url, local=local) as response:
             if not response.is_redirect:
                 if response.status_code != HTTPStatus.OK:
-                    raise FetchError(f"the status is {response.status_code}")
+                    raise FetchError(say("the status is {status}", status=response.status_code))
                 try:
                     return json.loads(content(response, until))
                 except (ValueError, RecursionError) as error:
-                    raise FetchError("the answer is not JSON") from error
+                    raise FetchError(say("the answer is not JSON")) from error
             url = urljoin(url, response.headers.get("location", ""))
         if unusable(url, local=local) or origin_of(url) != origin_of(first):
-            raise FetchError("the answer is a redirect to another host")
-    raise FetchError("the answers are too many redirects")
+            raise FetchError(say("the answer is a redirect to another host"))
+    raise FetchError(say("the answers are too many redirects"))
 
 
 @contextmanager
@@ -69,7 +70,7 @@ def answer(
     ``more`` are further arguments of ``httpx.Client.stream``. Raises FetchError.
     """
     if reason := unusable(url, local=local):
-        raise FetchError(f"the address {reason}")
+        raise FetchError(say("the address {reason}", reason=reason))
     parts = httpx.URL(url)
     # Connect to the checked address: another resolution could give another one.
     pinned = parts.copy_with(host=str(_address(parts.host, local=local)))
@@ -87,20 +88,22 @@ def answer(
         ):
             yield response
     except httpx.HTTPError as error:
-        raise FetchError(f"the platform does not answer ({type(error).__name__})") from error
+        raise FetchError(
+            say("the platform does not answer ({error})", error=type(error).__name__)
+        ) from error
 
 
 def content(response: httpx.Response, until: float, largest: int = LARGEST) -> bytes:
     """Return the content of an answer, read before the moment ``until``. Raises FetchError."""
     if response.headers.get("content-encoding", "identity") != "identity":
-        raise FetchError("the answer is compressed")
+        raise FetchError(say("the answer is compressed"))
     found = bytearray()
     for piece in response.iter_raw():
         found += piece
         if len(found) > largest:
-            raise TooLargeError(f"the answer is larger than {largest // 1024} KiB")
+            raise TooLargeError(say("the answer is larger than {most} KiB", most=largest // 1024))
         if monotonic() > until:
-            raise FetchError("the answer takes too long")
+            raise FetchError(say("the answer takes too long"))
     return bytes(found)
 
 
@@ -116,12 +119,12 @@ def _address(host: str, *, local: bool) -> IPv4Address | IPv6Address:
         found = {each[4][0] for each in socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)}
         addresses = sorted((ip_address(each) for each in found), key=lambda it: (it.version, it))
     except (OSError, UnicodeError, ValueError) as error:
-        raise FetchError("the name of the host is not known") from error
+        raise FetchError(say("the name of the host is not known")) from error
     is_local = local and host in LOCAL_HOSTS
     if not addresses or not all(
         each.is_loopback if is_local else is_public(each) for each in addresses
     ):
-        raise FetchError("the host has a private address")
+        raise FetchError(say("the host has a private address"))
     return addresses[0]
 
 

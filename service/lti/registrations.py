@@ -15,7 +15,7 @@ from service.attempts.recording import insert_or_ignore
 from service.attempts.storage import lti_tables as tables
 from service.courses.times import zone_named
 from service.lti.problems import LtiError
-from service.translations import say
+from service.translations import joined, say
 
 LAUNCH_PATH: Final = "/lti/launch"
 LOGIN_PATH: Final = "/lti/login"
@@ -80,7 +80,7 @@ class NewRegistration(BaseModel):
         for name in ("auth_url", "jwks_url", "token_url", "address"):
             value = getattr(self, name)
             if value is not None and (reason := unusable(value, local=self.is_development)):
-                raise RegistrationError(f"{name}: {reason}")
+                raise RegistrationError(joined(": ", [name, reason]))
 
 
 def unusable(address: str, *, local: bool = False) -> str:
@@ -89,12 +89,12 @@ def unusable(address: str, *, local: bool = False) -> str:
         parts = urlsplit(address)
         host, _ = parts.hostname, parts.port
     except ValueError:
-        return "is no address"
+        return say("is no address")
     if not (_ADDRESS.fullmatch(address) and host) or parts.fragment:
-        return "is no address of the form https://host/path"
+        return say("is no address of the form https://host/path")
     if parts.scheme == "https" or (local and host in LOCAL_HOSTS):
         return ""
-    return "must begin with https://"
+    return say("must begin with https://")
 
 
 @dataclass(frozen=True, slots=True)

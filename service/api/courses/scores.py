@@ -7,6 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.api.courses.asking import CourseId, changing, read, reading, write
 from service.api.http.bodies import read_body
+from service.api.http.language import language_of
 from service.api.recording.store import private
 from service.contract.attempts import Learner
 from service.contract.courses import CourseName
@@ -28,6 +29,7 @@ def routes(store: "AttemptStore | None") -> APIRouter:
         **reading(PlatformScores),
     )
     async def list_scores(
+        request: Request,
         course_id: CourseId,
         assignment: Annotated[
             CourseName | None, Query(description="Only those of this assignment.")
@@ -41,7 +43,8 @@ def routes(store: "AttemptStore | None") -> APIRouter:
         from service.lti.scores.overview import scores_of
 
         wanted = SendAgainRequest(assignment=assignment, learner=learner, failed=failed)
-        found = await read(store, lambda it: scores_of(it, course_id, wanted))
+        language = language_of(request)
+        found = await read(store, lambda it: scores_of(it, course_id, wanted, language))
         return private(PlatformScores(scores=found))
 
     @router.post(

@@ -13,7 +13,7 @@ from service.cli.terminal import give_up, stdout
 from service.lti.joining.invitations import LONGEST_DAYS, allow, invite
 from service.lti.joining.tool_configuration import canvas_configuration
 from service.lti.registrations import RegistrationError, unusable
-from service.translations import say
+from service.translations import joined, say
 
 Address = Annotated[str, typer.Option(help="This service: https://grader.example.edu")]
 
@@ -63,5 +63,5 @@ def canvas(
     """Print the JSON configuration for a developer key of Canvas."""
     address = address.rstrip("/")
     if reason := unusable(address, local=True):
-        give_up(f"address: {reason}")
+        give_up(joined(": ", ["address", reason]))
     typer.echo(json.dumps(canvas_configuration(address, files=files), indent=2))

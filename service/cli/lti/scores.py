@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from service.cli.commands.course_assignments import CourseOption, changed
-from service.cli.language import spoken
+from service.cli.language import spoken, user_language
 from service.cli.terminal import stdout
 from service.contract.scores import SendAgainRequest
 from service.formats.shared.plain_text import number, visible
@@ -27,7 +27,7 @@ def scores(
         queued = changed(lambda it: send_again(it, course, wanted, now))
         typer.echo(spoken(say("Scores that are sent again: {queued}.", queued=queued)))
         return
-    for each in changed(lambda it: scores_of(it, course, wanted)):
+    for each in changed(lambda it: scores_of(it, course, wanted, user_language())):
         points = "-" if each.sent_points is None else number(each.sent_points)
         at = f"{each.sent_at:%Y-%m-%d %H:%M} UTC" if each.sent_at else "never sent"
         line = [each.assignment, each.learner, f"{points} / {number(each.max_points)}", at]

@@ -12,6 +12,7 @@ from service.attempts.storage.tables import course_learners
 from service.lti.handed_files.notices import HandedFiles
 from service.lti.linking import pseudonymous_name
 from service.lti.scores.score_problems import told
+from service.translations import Language
 
 _OF: Final = handed_files.c
 # Waiting reports have a refusal, too, if they were tried in vain.
@@ -32,7 +33,7 @@ class MissingReport:
 
 
 def missing_reports(
-    connection: Connection, course: str, learner: str | None = None
+    connection: Connection, course: str, language: Language, learner: str | None = None
 ) -> list[MissingReport]:
     """Return the reports of a course that did not arrive, the newest first; of one learner or all.
 
@@ -63,7 +64,7 @@ def missing_reports(
                     [each.filename for each in files.assets if each.filename],
                     row.received_at,
                     row.next_try_at if row.state == "waiting" else None,
-                    told(row.refusal, of_report=True),
+                    told(row.refusal, language, of_report=True),
                 )
             )
     return found[:_MOST]

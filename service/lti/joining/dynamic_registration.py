@@ -53,7 +53,7 @@ def register_at(invitation: Invitation, configuration: str, token: str) -> dict[
         made = _asked(endpoint, "POST", local=local, headers=headers, json=body)
     except FetchError as error:
         raise RegistrationError(
-            say("The platform cannot be registered: {reason}.", reason=str(error))
+            say("The platform cannot be registered: {reason}.", reason=error.args[0])
         ) from error
     client = made.get("client_id")
     # Some platforms have numbers.

@@ -25,7 +25,7 @@ from service.lti.registrations import (
     registration,
     unusable,
 )
-from service.translations import say
+from service.translations import joined, say
 
 LONGEST_DAYS: Final = 90
 _HELD: Final = "held-"
@@ -63,7 +63,7 @@ def invite(
     """
     address = address.rstrip("/")
     if reason := unusable(address, local=True):
-        raise RegistrationError(f"address: {reason}")
+        raise RegistrationError(joined(": ", ["address", reason]))
     try:
         zone_named(zone)
     except CourseError as error:

@@ -19,6 +19,7 @@ from service.lti.registrations import Registration, registration
 from service.lti.roster.members import SCOPE, Member, read_members
 from service.lti.scores.access_tokens import fetched_token
 from service.lti.scores.score_problems import ScoreError
+from service.translations import say
 
 
 class RosterError(Exception):
@@ -58,7 +59,7 @@ def ask_for_roster(
     """Return what is needed to read the roster of a course. Raises RosterError."""
     context = roster_context(connection, course)
     if context is None:
-        raise RosterError("The platform of this course does not tell its roster.")
+        raise RosterError(say("The platform of this course does not tell its roster."))
     ensure_key(connection, secret, now)
     try:
         key = signing_key(connection, secret, now)
@@ -74,10 +75,13 @@ def read_roster(question: RosterQuestion) -> Sequence[Member]:
         token, _ = fetched_token(known, SCOPE, question.key, question.now)
         members = read_members(known, question.context.memberships_url, token)
     except (FetchError, ScoreError) as error:
-        raise RosterError(f"The roster cannot be read: {str(error).rstrip('.')}.") from error
+        reason = error.args[0]
+        if reason.endswith("."):
+            raise RosterError(say("The roster cannot be read: {reason}", reason=reason)) from error
+        raise RosterError(say("The roster cannot be read: {reason}.", reason=reason)) from error
     if not members:
         # A platform that forgets its learners must not empty the course.
-        raise RosterError("The roster has no learner. Nothing was changed.")
+        raise RosterError(say("The roster has no learner. Nothing was changed."))
     return members
 
 

@@ -13,6 +13,7 @@ from service.formats.shared.plain_text import visible
 from service.lti.fetching import FetchError, answer, content
 from service.lti.registrations import Registration, origin_of, unusable
 from service.lti.roles import LtiRole, role_of
+from service.translations import say
 
 SCOPE: Final = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly"
 _MEDIA_TYPE: Final = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json"
@@ -43,13 +44,13 @@ def read_members(registration: Registration, url: str, token: str) -> list[Membe
     for page in _pages(registration, url, token):
         listed = page.get("members")
         if not isinstance(listed, list):
-            raise FetchError("the answer has no list of members")
+            raise FetchError(say("the answer has no list of members"))
         for each in listed:
             member = _member(each)
             if member is not None:
                 found[member.sub] = member
         if len(found) > MOST_LEARNERS:
-            raise FetchError(f"the course has more than {MOST_LEARNERS} learners")
+            raise FetchError(say("the course has more than {most} learners", most=MOST_LEARNERS))
     return list(found.values())
 
 
@@ -63,8 +64,8 @@ def _pages(registration: Registration, url: str, token: str) -> Iterator[Mapping
             return
         url = urljoin(url, following)
         if unusable(url, local=local) or origin_of(url) != origin_of(first):
-            raise FetchError("the next page is at another host")
-    raise FetchError(f"the roster has more than {MOST_PAGES} pages")
+            raise FetchError(say("the next page is at another host"))
+    raise FetchError(say("the roster has more than {most} pages", most=MOST_PAGES))
 
 
 def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]:
@@ -73,14 +74,16 @@ def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]
     until = monotonic() + _PAGE_TIME
     with answer(url, local=local, headers=headers, timeout=_PAGE_TIME) as response:
         if response.status_code != HTTPStatus.OK:
-            raise FetchError(f"the platform does not give the roster ({response.status_code})")
+            raise FetchError(
+                say("the platform does not give the roster ({status})", status=response.status_code)
+            )
         try:
             page = json.loads(content(response, until, LARGEST_PAGE))
         except (ValueError, RecursionError) as error:
-            raise FetchError("the roster is not JSON") from error
+            raise FetchError(say("the roster is not JSON")) from error
         following = response.links.get("next", {}).get("url", "")
     if not isinstance(page, dict):
-        raise FetchError("the answer has no list of members")
+        raise FetchError(say("the answer has no list of members"))
     return page, following
 
 

@@ -19,6 +19,7 @@ from service.lti.own_keys import SigningKey, ensure_key, signing_key
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration
 from service.lti.scores.score_problems import LaterError, RefusedError
+from service.translations import say
 
 _ASSERTION: Final = "urn:ietf:params:oauth:client-assertion-type:jwt-bearer"
 # How long our assertion is valid. It begins a little in the past: clocks differ.
@@ -80,16 +81,16 @@ def fetched_token(
     try:
         with answer(registration.token_url, "POST", local=local, data=fields) as response:
             if response.status_code != HTTPStatus.OK:
-                reason = f"the status is {response.status_code}"
+                reason = say("the status is {status}", status=response.status_code)
                 raise LaterError("token-refused", seconds_to_wait(response.headers), reason=reason)
             found = json.loads(content(response, until))
     except FetchError as error:
         raise LaterError("token-refused", reason=error) from error
     except (ValueError, RecursionError) as error:
-        raise LaterError("token-refused", reason="the answer is not JSON") from error
+        raise LaterError("token-refused", reason=say("the answer is not JSON")) from error
     token = found.get("access_token") if isinstance(found, dict) else None
     if not isinstance(token, str) or not _TOKEN.fullmatch(token):
-        raise LaterError("token-refused", reason="the answer has no token")
+        raise LaterError("token-refused", reason=say("the answer has no token"))
     seconds = found.get("expires_in", _USUAL)
     is_number = isinstance(seconds, int | float) and not isinstance(seconds, bool)
     return token, float(seconds) if is_number and 0 < seconds < 1e9 else _USUAL

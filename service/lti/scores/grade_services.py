@@ -20,6 +20,7 @@ from service.lti.scores.score_problems import (
     RefusedError,
     ThisLaterError,
 )
+from service.translations import say
 
 _SCORE: Final = "application/vnd.ims.lis.v1.score+json"
 _ITEM: Final = "application/vnd.ims.lis.v2.lineitem+json"
@@ -175,20 +176,20 @@ def _json(response: httpx.Response, until: float) -> Any:
     try:
         return json.loads(content(response, until))
     except (ValueError, RecursionError) as error:
-        raise ThisLaterError("unusable-answer", reason="it is not JSON") from error
+        raise ThisLaterError("unusable-answer", reason=say("it is not JSON")) from error
 
 
 def _item_address(item: Any, lineitems_url: str) -> str:
     found = item.get("id") if isinstance(item, dict) else None
     if not isinstance(found, str) or len(found) > 1000:
-        raise ThisLaterError("unusable-answer", reason="the line item has no address")
+        raise ThisLaterError("unusable-answer", reason=say("the line item has no address"))
     return _of_platform(found, lineitems_url)
 
 
 def _of_platform(url: str, lineitems_url: str) -> str:
     """Return an address in an answer of a platform: the token is sent to its host only."""
     if unusable(url, local=True) or origin_of(url) != origin_of(lineitems_url):
-        raise ThisLaterError("unusable-answer", reason="an address is of another host")
+        raise ThisLaterError("unusable-answer", reason=say("an address is of another host"))
     return url
 
 

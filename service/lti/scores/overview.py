@@ -13,10 +13,16 @@ from service.courses import roll
 from service.courses.assignments import assignment_of
 from service.courses.names import place_of
 from service.lti.scores.score_problems import told
+from service.translations import ENGLISH, Language
 
 
-def scores_of(connection: Connection, course: str, wanted: SendAgainRequest) -> list[PlatformScore]:
-    """Return the scores of a course, by assignment and learner. Raises CourseError."""
+def scores_of(
+    connection: Connection, course: str, wanted: SendAgainRequest, language: Language = ENGLISH
+) -> list[PlatformScore]:
+    """Return the scores of a course, by assignment and learner; problems are in the language.
+
+    Raises CourseError.
+    """
     _check(connection, course, wanted)
     enrolled = and_(
         course_learners.c.course == course, course_learners.c.learner == scores.c.learner
@@ -49,7 +55,7 @@ def scores_of(connection: Connection, course: str, wanted: SendAgainRequest) -> 
             max_points=row.max_points,
             tries=row.tries,
             next_try_at=row.next_try_at if row.state == "waiting" else None,
-            problem=told(row.refusal) or None,
+            problem=told(row.refusal, language) or None,
         )
         for row in ordered
     ]

@@ -16,6 +16,7 @@ from service.contract.attempts import Learner
 from service.contract.courses import LinksRequest
 from service.contract.scores import SendAgainRequest
 from service.courses.errors import CourseError
+from service.translations import Language
 from service.web.assets import Assets
 from service.web.courses.course_pages import (
     CourseState,
@@ -61,12 +62,13 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     @router.get("/{course_id}")
     async def course(request: Request, course_id: CourseId) -> Response:
         """Answer with the page of a course."""
-        state = await read(store, lambda it: _state(it, course_id))
+        language = language_of(request)
+        state = await read(store, lambda it: _state(it, course_id, language))
         drawn = course_page(
             state,
             catalogue,
             assets,
-            language_of(request),
+            language,
             has_secret=access.keys is not None and access.keys.secret is not None,
             has_keys=bool(access.caller(request).key_id),
             deletes=access.caller(request).course is None,
@@ -86,11 +88,13 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
         def drawn(connection: "Connection") -> bytes:
             return assignment_page(
-                _state(connection, course_id),
+                _state(connection, course_id, language),
                 assignment_of(connection, course_id, assignment_id),
                 missing(connection, course_id, assignment_id),
                 gradebook(connection, course_id, assignment_id),
-                scores_of(connection, course_id, SendAgainRequest(assignment=assignment_id)),
+                scores_of(
+                    connection, course_id, SendAgainRequest(assignment=assignment_id), language
+                ),
                 catalogue,
                 assets,
                 language,
@@ -136,8 +140,9 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
                 each.id: learner_variants(connection, course_id, each.id, learner, catalogue)
                 for each in own.assignments
             }
-            scores = scores_of(connection, course_id, SendAgainRequest(learner=learner))
-            reports = missing_reports(connection, course_id, learner)
+            wanted = SendAgainRequest(learner=learner)
+            scores = scores_of(connection, course_id, wanted, language)
+            reports = missing_reports(connection, course_id, language, learner)
             return learner_page(own, learner, variants, scores, reports, now, assets, language)
 
         return _answer(request, await read(store, drawn))
@@ -169,7 +174,7 @@ def _answer(request: Request, content: bytes) -> Response:
     return page_answer(request, content, FORM_HEADERS)
 
 
-def _state(connection: "Connection", course_id: str) -> CourseState:
+def _state(connection: "Connection", course_id: str, language: Language) -> CourseState:
     """Return a course with all that its page shows. Raises CourseError."""
     from service.courses import roll
     from service.courses.assignments import assignments_of
@@ -184,5 +189,5 @@ def _state(connection: "Connection", course_id: str) -> CourseState:
         assignments_of(connection, course_id),
         handed_in(connection, course_id),
         roster,
-        missing_reports(connection, course_id),
+        missing_reports(connection, course_id, language),
     )

@@ -9,7 +9,9 @@ from starlette.responses import Response
 
 from service.api.courses.asking import CourseId, course_problem, read, write
 from service.api.http.language import language_of
+from service.api.http.problems import message_of
 from service.courses.errors import CourseError
+from service.translations import told
 from service.web.assets import Assets
 from service.web.courses.course_pages import roster_page
 from service.web.page_answer import page_answer
@@ -44,11 +46,13 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
         try:
             asked = await write(store, lambda it: ask_for_roster(it, course_id, known, now))
         except RosterError as error:
-            raise course_problem(CourseError("unusable", str(error))) from error
+            raise course_problem(CourseError("unusable", message_of(error))) from error
         try:
             members = await asyncio.to_thread(read_roster, asked)
         except RosterError as error:
-            content = roster_page(course, None, str(error), assets, language)
+            content = roster_page(
+                course, None, told(message_of(error), language.translation), assets, language
+            )
             return page_answer(request, content, FORM_HEADERS, HTTPStatus.BAD_GATEWAY)
         change = await write(
             store, lambda it: enrol_members(it, asked, members, known, shows_names=shows_names)

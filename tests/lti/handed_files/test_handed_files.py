@@ -24,6 +24,7 @@ from service.lti.handed_files.overview import missing_counts, missing_reports
 from service.lti.own_keys import published_keys
 from service.lti.registrations import registration, remove_registration
 from service.lti.scores.sending import BackgroundSending
+from service.translations import ENGLISH
 from tests.lti.conftest import SECRET, Tool, hidden
 from tests.lti.handed_files.file_store import LTI, FileStore
 from tests.lti.platform import DL, MEMBER, deep_linking, public_jwk, rsa_key
@@ -314,7 +315,7 @@ def test_tutors_see_which_reports_did_not_arrive(course: Course) -> None:
         assert course.notify(claims | {f"{LTI}context": more}).status_code == 200
         course.grade()
     here = tool.do(lambda it: it.scalar(select(contexts.c.course)))
-    waiting, refused = tool.do(lambda it: missing_reports(it, here))
+    waiting, refused = tool.do(lambda it: missing_reports(it, here, ENGLISH))
     assert (refused.files, refused.next_try_at) == (["table.csv"], None)
     assert refused.problem == "The platform refuses the report (status 404)."
     assert (waiting.files, waiting.next_try_at is None) == (["pose.csv"], False)

@@ -2,6 +2,9 @@
 
 import pytest
 
+from service.lti.fetching import FetchError
+from service.lti.scores.score_problems import LaterError, told
+from service.translations import ENGLISH, language_named, say
 from tests.cli.conftest import Run
 from tests.cli.conftest import run as run
 from tests.lti.scores.conftest import Journey
@@ -52,6 +55,19 @@ def test_the_pages_show_it(journey: Journey) -> None:
         assert "Sent to the learning platform" in page.text
         assert "refused: The platform refuses the score (status 400)." in page.text
         assert "Send again" in page.text
+
+
+def test_problems_are_told_in_the_language_of_the_reader(journey: Journey) -> None:
+    course = refused_and_sent(journey)
+    german = {**journey.tutor(), "accept-language": "de"}
+    path = f"/v1/courses/{course}/scores?failed=true"
+    [score] = journey.tool.send("GET", path, headers=german).json()["scores"]
+    assert score["problem"].startswith("Die Plattform lehnt die Punkte ab (Status 400).")
+    reason = FetchError(say("the status is {status}", status=503))
+    stored = LaterError("token-refused", reason=reason).stored
+    assert told(stored, language_named("de") or ENGLISH) == (
+        "Die Plattform gibt kein Zugriffstoken: der Status ist 503"
+    )
 
 
 def test_the_command(journey: Journey, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
