@@ -63,11 +63,13 @@ test("the text says where the tool and the frames are", () => {
 test("the text says where the placed frames are, and why others are left out", () => {
   const text = viewText({ frames: null, mechanism: null, placed: [QUARTER] }, [], null, ["2"]);
   assert.equal(text, "Your frame {2}: origin (3, 4, 0), x along the base's y, z along the base's z.");
-  const cell = { row: "1", column: "origin_x", error: { message: "Nothing is written here." } };
+  const cell = { row: "1", column: "origin_x", error: { code: "unknown", message: "`R` is not known." } };
+  const empty = { row: "2", column: "axis", error: { code: "missing", message: "Nothing is written here." } };
   assert.equal(
-    leftOutText({ left_out: [cell] }),
-    "Frame 1, origin x: Nothing is written here. The view leaves this frame out.",
+    leftOutText({ left_out: [cell, empty] }),
+    "Frame 1, origin x: `R` is not known. The view leaves this frame out.",
   );
+  assert.equal(leftOutText({ left_out: [empty] }), "");
   assert.equal(leftOutText({ left_out: [] }), "");
   assert.equal(leftOutText(undefined), "");
 });

@@ -6,13 +6,15 @@ import { worded, wordedFor } from "../../shared/words/words.js";
 const CELLS = { origin_x: worded("origin x"), origin_y: worded("origin y"), origin_z: worded("origin z") };
 
 /**
- * Return the reason of each frame that is left out, in sentences.
+ * Return the reason of each frame that is left out, in sentences. A frame with an empty cell is not told: it is
+ * still being placed.
  *
  * @param {Api.Frames["placed"]} [placed]
  */
 export function leftOutText(placed) {
   if (placed?.error) return placed.error.message;
-  const reasons = (placed?.left_out ?? []).map(({ row, column, error }) =>
+  const unread = (placed?.left_out ?? []).filter(({ error }) => error.code !== "missing");
+  const reasons = unread.map(({ row, column, error }) =>
     worded("Frame {frame}, {column}: {reason}", { frame: row, column: CELLS[column] ?? column, reason: error.message })
   );
   if (!reasons.length) return "";
