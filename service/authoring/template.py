@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Final
 
 from service.catalogue import ID_ADVICE, is_exercise_id
+from service.translations import say
 
 _TEMPLATE: Final = Path(__file__).with_name("template.toml")
 _SHOWN: Final = 60
@@ -13,7 +14,13 @@ class UnusableIdError(ValueError):
     """The text cannot be the id of an exercise."""
 
     def __init__(self, exercise_id: str) -> None:
-        super().__init__(f"{exercise_id[:_SHOWN]!r} cannot be an exercise's id: {ID_ADVICE}")
+        super().__init__(
+            say(
+                "{id!r} cannot be an exercise's id: {advice}",
+                id=exercise_id[:_SHOWN],
+                advice=ID_ADVICE,
+            )
+        )
 
 
 def template(exercise_id: str, like: Path | None = None) -> str:

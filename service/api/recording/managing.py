@@ -14,6 +14,7 @@ from service.access.caller import Caller
 from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
 from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
+from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import ProblemError, invalid
 from service.api.permissions.access import Access
@@ -43,7 +44,7 @@ from service.contract.tutoring import (
     RegradeAnswer,
     RegradeRequest,
 )
-from service.translations import paragraph, say
+from service.translations import Language, paragraph, say, told
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from service.attempts.regrades.outdated import Regrading
@@ -195,7 +196,10 @@ def routes(
         exercise = exercise_or_404(catalogue, exercise_id.partition("~")[0])
         course = course_of(access.caller(request), course)
         body = await read_body(RegradeRequest, request)
-        return private(await ask(store, lambda it: regrades.step(it, exercise, course, body)))
+        language = language_of(request)
+        return private(
+            await ask(store, lambda it: regrades.step(it, exercise, course, body, language))
+        )
 
     return router
 
@@ -212,13 +216,23 @@ class _Regrades:
         self._checked: tuple[Exercise, list[str]] | None = None
 
     async def step(
-        self, store: "AttemptStore", exercise: Exercise, course: str | None, body: RegradeRequest
+        self,
+        store: "AttemptStore",
+        exercise: Exercise,
+        course: str | None,
+        body: RegradeRequest,
+        language: Language,
     ) -> RegradeAnswer:
         """Do one step in a course, or in all. Raises ProblemError, StoreDownError."""
-        return await self._work.do(partial(self._step, store, exercise, course, body))
+        return await self._work.do(partial(self._step, store, exercise, course, body, language))
 
     def _step(
-        self, store: "AttemptStore", exercise: Exercise, course: str | None, body: RegradeRequest
+        self,
+        store: "AttemptStore",
+        exercise: Exercise,
+        course: str | None,
+        body: RegradeRequest,
+        language: Language,
     ) -> RegradeAnswer:
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
@@ -249,7 +263,7 @@ class _Regrades:
             regraded=len(done.regraded),
             left=done.left,
             changes=[AttemptChange.model_validate(each, from_attributes=True) for each in changed],
-            failures=failures or None,
+            failures=[told(each, language.translation) for each in failures] or None,
             next=done.following,
         )
 

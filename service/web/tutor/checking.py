@@ -9,7 +9,7 @@ from http import HTTPStatus
 from typing import IO, Final
 
 from service.api.http.problems import ProblemError
-from service.translations import ENGLISH, Language
+from service.translations import ENGLISH, Language, say
 from service.web.tutor.exercise_check import CheckRequest
 
 # Ten times what `exercises check` takes for the largest exercise of the catalogue.
@@ -148,16 +148,19 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 def _too_long(seconds: float) -> ProblemError:
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY,
-        f"The checks of this exercise take more than {seconds:g} seconds, so they were stopped. "
-        "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
+        say(
+            "The checks of this exercise take more than {seconds} seconds, so they were stopped. "
+            "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
+            seconds=f"{seconds:g}",
+        ),
         "checks-too-long",
-        "The checks take too long",
+        say("The checks take too long"),
     )
 
 
 def _ending() -> ProblemError:
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
-        "The service is shutting down. Send this request again in a minute.",
+        say("The service is shutting down. Send this request again in a minute."),
         headers={"Retry-After": "60"},
     )

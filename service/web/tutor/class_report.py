@@ -15,13 +15,13 @@ from typing import Annotated, Final
 from pydantic import Base64Bytes, BaseModel, ConfigDict, Field, ValidationError
 
 from service.api.http.lookup import Catalogue, require_exercise
-from service.api.http.problems import ProblemError, invalid
+from service.api.http.problems import ProblemError, invalid, message_of
 from service.formats.shared.graded import GradedSubmission
 from service.local_grading import GradingTerms, graded
 from service.submissions.assignment import PASS_MARK, Assignment, UnknownPartNameError, of_one
 from service.submissions.handed_in import MAX_FILES, HandedIn, all_handed_in
 from service.submissions.strict_json import MAX_BODY_SIZE
-from service.translations import ENGLISH, Language
+from service.translations import ENGLISH, Language, say
 
 # Bytes after unpacking. A body has at most 256 KiB, but similar submissions compress well.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
@@ -71,14 +71,19 @@ def unpacked(body: bytes) -> ClassUpload:
     try:
         content = unpacker.decompress(body, MAX_UPLOAD)
     except zlib.error as error:
-        raise _unusable("The body is not packed by gzip.") from error
+        raise _unusable(say("The body is not packed by gzip.")) from error
     if unpacker.unconsumed_tail or not unpacker.eof:
         raise _unusable(
-            f"The files are more than {MAX_UPLOAD // 1024 // 1024} MiB. Choose fewer, or use "
-            "dh-grader grade FOLDER --format html."
+            say(
+                "The files are more than {most} MiB. Choose fewer, or use dh-grader grade FOLDER "
+                "--format html.",
+                most=MAX_UPLOAD // 1024 // 1024,
+            )
         )
     if _marks(content) > _MOST_MARKS:
-        raise _unusable("The body holds more than the files of a class, their paths and contents.")
+        raise _unusable(
+            say("The body holds more than the files of a class, their paths and contents.")
+        )
     try:
         return ClassUpload.model_validate_json(content)
     except ValidationError as error:
@@ -105,17 +110,20 @@ def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language 
     try:
         assignment = of_one(exercise, upload.part)
     except UnknownPartNameError as error:
-        raise _unusable(str(error)) from error
+        raise _unusable(message_of(error)) from error
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         _write(upload, folder)
         found = list(all_handed_in([folder], parts=assignment.part_names))
         if not found:
-            raise _unusable("There is no submission among these files.")
+            raise _unusable(say("There is no submission among these files."))
         if len(found) > MAX_SUBMISSIONS:
             raise _unusable(
-                f"There are more than {MAX_SUBMISSIONS} submissions. Choose fewer, or use "
-                "dh-grader grade FOLDER --format html."
+                say(
+                    "There are more than {most} submissions. Choose fewer, or use dh-grader grade "
+                    "FOLDER --format html.",
+                    most=MAX_SUBMISSIONS,
+                )
             )
         return _archive(found, assignment, folder, language)
 
@@ -137,7 +145,9 @@ def _write(upload: ClassUpload, folder: Path) -> None:
                 output.write(file.content)
         except (OSError, ValueError) as error:
             shown = file.path[:60].encode("ascii", "backslashreplace").decode()
-            raise _unusable(f"A file has a name that cannot be used here: {shown}") from error
+            raise _unusable(
+                say("A file has a name that cannot be used here: {file}", file=shown)
+            ) from error
 
 
 def _archive(
@@ -186,8 +196,11 @@ def _all_graded(
     for handed in found:
         if time.monotonic() >= end:
             raise _unusable(
-                f"Grading these files takes more than {MOST_SECONDS:g} seconds. Choose fewer, or "
-                "use dh-grader grade FOLDER --format html."
+                say(
+                    "Grading these files takes more than {seconds} seconds. Choose fewer, or use "
+                    "dh-grader grade FOLDER --format html.",
+                    seconds=f"{MOST_SECONDS:g}",
+                )
             )
         submission = graded(handed, terms)
         files = tuple(
@@ -203,5 +216,5 @@ def _all_graded(
 
 def _unusable(detail: str) -> ProblemError:
     return ProblemError(
-        HTTPStatus.UNPROCESSABLE_ENTITY, detail, "unusable-files", "The files cannot be used"
+        HTTPStatus.UNPROCESSABLE_ENTITY, detail, "unusable-files", say("The files cannot be used")
     )

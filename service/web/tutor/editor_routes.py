@@ -16,6 +16,7 @@ from service.api.http.problems import ProblemError
 from service.api.permissions.access import is_at_the_machine
 from service.catalogue import CatalogueError
 from service.catalogue.drafts import Drafts
+from service.translations import say
 from service.web.assets import Assets
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
@@ -78,7 +79,7 @@ def editor_routes(
     async def import_robot(request: Request) -> Response:
         """Answer with the text of an exercise about a robot, which is not stored."""
         body = await read_body(ImportRequest, request)
-        content = await work.do(partial(imported, body))
+        content = await work.do(partial(imported, body, language_of(request)))
         return Response(content, headers=NO_STORE, media_type="application/json")
 
     @router.post("/drafts")
@@ -93,7 +94,8 @@ def editor_routes(
         """Save a file in the editor's folder."""
         if folder.can_write and not is_at_the_machine(request):
             raise ProblemError(
-                HTTPStatus.FORBIDDEN, "Files can be saved only from the machine of the service."
+                HTTPStatus.FORBIDDEN,
+                say("Files can be saved only from the machine of the service."),
             )
         body = await read_body(SaveRequest, request)
         mark = await work.do(partial(folder.save, body))
@@ -110,12 +112,12 @@ def _put(drafts: Drafts, body: DraftRequest) -> str:
     except CatalogueError as error:
         raise ProblemError(
             HTTPStatus.UNPROCESSABLE_ENTITY,
-            "The file cannot be used. Fix it first.",
+            say("The file cannot be used. Fix it first."),
             "unusable-exercise",
-            "There is nothing to preview",
+            say("There is nothing to preview"),
         ) from error
     except OSError as error:
         raise ProblemError(
             HTTPStatus.SERVICE_UNAVAILABLE,
-            "The service has no writable folder for temporary files. Set TMPDIR to one.",
+            say("The service has no writable folder for temporary files. Set TMPDIR to one."),
         ) from error

@@ -21,6 +21,7 @@ from service.catalogue import (
     is_exercise_id,
     read_regular,
 )
+from service.translations import say
 from service.web.tutor.exercise_check import MAX_CHARACTERS, CheckRequest, exercise_of
 
 # A character of the text has four bytes at most.
@@ -87,19 +88,21 @@ class ExerciseFolder:
         The file has the old content or the new one, never half of it.
         """
         if self._written is None:
-            raise _refused("This service cannot save files: DH_GRADER_EDITOR_DIR is not set.")
+            raise _refused(say("This service cannot save files: DH_GRADER_EDITOR_DIR is not set."))
         if not is_exercise_id(body.id):
-            raise _refused(f"This cannot be the id of an exercise: {ID_ADVICE}.")
+            raise _refused(say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE))
         try:
             exercise_of(body.id, body.text)
         except CatalogueError as error:
-            raise _refused("The file cannot be used. Fix it before you save it.") from error
+            raise _refused(say("The file cannot be used. Fix it before you save it.")) from error
         content = body.text.encode()
         with self._writing:
             try:
                 self._write(self._written / f"{body.id}.toml", content, body)
             except OSError as error:
-                raise _refused(f"The file cannot be saved: {error.strerror}.") from error
+                raise _refused(
+                    say("The file cannot be saved: {reason}.", reason=str(error.strerror))
+                ) from error
         return _mark(content)
 
     def _write(self, file: Path, content: bytes, body: SaveRequest) -> None:
@@ -116,7 +119,7 @@ class ExerciseFolder:
                 raise _changed(body.id)
             if own is None:
                 if body.id in self._files():
-                    raise _refused(f"The id {body.id} is taken. Choose another one.")
+                    raise _refused(say("The id {id} is taken. Choose another one.", id=body.id))
                 # Unlike a move, this fails if the file was created meanwhile.
                 os.link(written, file)
             else:
@@ -141,11 +144,14 @@ def _mark(content: bytes) -> str:
 
 
 def _refused(detail: str) -> ProblemError:
-    return ProblemError(HTTPStatus.CONFLICT, detail, "not-saved", "The file is not saved")
+    return ProblemError(HTTPStatus.CONFLICT, detail, "not-saved", say("The file is not saved"))
 
 
 def _changed(exercise_id: str) -> ProblemError:
     return _refused(
-        f"{exercise_id}.toml has changed since you opened it, so it was not overwritten. Download "
-        "your text, open the file again, and merge the two."
+        say(
+            "{exercise}.toml has changed since you opened it, so it was not overwritten. Download "
+            "your text, open the file again, and merge the two.",
+            exercise=exercise_id,
+        )
     )

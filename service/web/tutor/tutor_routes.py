@@ -19,6 +19,7 @@ from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, FeedbackLevel, Robot
 from service.catalogue.drafts import Drafts
+from service.translations import say
 from service.web.assets import Assets
 from service.web.page_answer import page_answer
 from service.web.page_headers import FORM_HEADERS, NO_STORE, PRIVATE_HEADERS
@@ -116,7 +117,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         """Answer with a drawing of the robot with the frames of the reference table."""
         exercise = exercise_or_404(catalogue, exercise_id)
         if not isinstance(exercise.reference, Robot):
-            raise ProblemError(HTTPStatus.NOT_FOUND, "The exercise has no frames to draw.")
+            raise ProblemError(HTTPStatus.NOT_FOUND, say("The exercise has no frames to draw."))
         key = (exercise.id, exercise.version, exercise.title, exercise.view)
         content = await figures.of(key, partial(_frames, exercise))
         return Response(content, headers=NO_STORE, media_type="image/svg+xml")

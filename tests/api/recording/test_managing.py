@@ -235,6 +235,8 @@ def test_an_exercise_that_fails_its_check_regrades_only_if_forced(
     assert refused.status_code == 409
     assert refused.json()["type"].endswith(":exercise-fails")
     assert preview["failures"][0] in refused.json()["detail"]
+    german = tutor.ask("POST", path, {}, **{"accept-language": "de"}).json()["failures"]
+    assert "table sollte die volle Punktzahl bekommen" in german[0]
     done = tutor.post(path, apply=True, force=True)
     assert (done["applied"], done["regraded"]) == (True, 1)
 

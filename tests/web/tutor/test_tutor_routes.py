@@ -216,6 +216,15 @@ def test_a_file_is_saved_only_in_the_editors_folder(
     assert save(SCARA, by=Tutor(catalogue)).status_code == 409
 
 
+def test_why_a_file_is_not_saved_is_told_in_the_language_of_the_reader(tutor: Tutor) -> None:
+    body = {"id": "scara", "text": SCARA, "before": ""}
+    refused = tutor.ask("POST", "/tutor/files", json=body, params={"lang": "de"})
+    assert (refused.json()["title"], refused.json()["detail"]) == (
+        "Die Datei ist nicht gespeichert",
+        "Die id scara ist vergeben. Wählen Sie eine andere.",
+    )
+
+
 @pytest.mark.long
 def test_a_shipped_exercise_is_copied_under_a_free_id(tutor: Tutor, tmp_path: Path) -> None:
     def shown() -> str:

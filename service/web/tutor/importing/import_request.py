@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from service.api.http.problems import ProblemError
+from service.api.http.problems import ProblemError, message_of
 from service.catalogue import ID_ADVICE, is_exercise_id
 from service.importing.robot_import import (
     ImportedRobot,
@@ -16,6 +16,7 @@ from service.importing.robot_import import (
 )
 from service.kinematics.dh import Convention
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.translations import ENGLISH, Language, say, told
 
 _Name = Annotated[str, Field(max_length=200)]
 _ROBOT: Final = TypeAdapter(ImportedRobot)
@@ -36,10 +37,10 @@ class ImportRequest(BaseModel):
     convention: Convention = Convention.STANDARD
 
 
-def imported(body: ImportRequest) -> bytes:
+def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
     """Return the exercise of a robot as JSON. Raises ProblemError with the reason of a refusal."""
     if not is_exercise_id(body.id):
-        raise _refused(f"This cannot be the id of an exercise: {ID_ADVICE}.")
+        raise _refused(say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE))
     options = ImportOptions(
         title=body.title or body.id,
         source="Imported from a URDF file" if body.kind == "urdf" else "Imported from a DH table",
@@ -54,8 +55,8 @@ def imported(body: ImportRequest) -> bytes:
         else:
             found = imported_table(body.text, options)
     except RefusedRobotError as error:
-        text = str(error).rstrip(".")
-        raise _refused(f"{text[:1].upper()}{text[1:]}.") from error
+        reason = told(message_of(error), language.translation).rstrip(".。")
+        raise _refused(say("{reason}.", reason=f"{reason[:1].upper()}{reason[1:]}")) from error
     return _ROBOT.dump_json(found)
 
 
@@ -64,5 +65,5 @@ def _refused(detail: str) -> ProblemError:
         HTTPStatus.UNPROCESSABLE_ENTITY,
         detail,
         "unusable-robot",
-        "The robot cannot become an exercise",
+        say("The robot cannot become an exercise"),
     )
