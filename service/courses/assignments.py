@@ -24,6 +24,7 @@ from service.courses.errors import CourseError
 from service.courses.terms import extended
 from service.courses.times import local, moment
 from service.submissions.lookup import nearest
+from service.translations import paragraph, say
 
 
 def add_assignment(
@@ -37,7 +38,10 @@ def add_assignment(
     values.setdefault("practice", "none" if new.limit or is_graded else "open")
     statement = insert_or_ignore(assignments)[connection.dialect.name].values(values)
     if not connection.execute(statement).rowcount:
-        raise CourseError("already-there", f"The course has an assignment {new.id} already.")
+        raise CourseError(
+            "already-there",
+            say("The course has an assignment {assignment} already.", assignment=new.id),
+        )
     return _checked(connection, course, new.id)
 
 
@@ -83,14 +87,17 @@ def extend(
         course_learners.c.learner == extension.learner
     )
     if connection.scalar(select(course_learners.c.learner).where(enrolled)) is None:
-        raise CourseError("unknown-learner", f"The course has no learner {extension.learner}.")
+        raise CourseError(
+            "unknown-learner",
+            say("The course has no learner {learner}.", learner=extension.learner),
+        )
     values = {
         "due": _moment(extension.due, zone),
         "closes": _moment(extension.closes, zone),
         "max_attempts": extension.limit,
     }
     if extension.closes is not None and extension.due is None and row.due is None:
-        raise CourseError("unusable", "closes says how long late attempts are taken: it needs due")
+        raise _closes_needs_due()
     own = (extensions.c.assignment == row.number) & (extensions.c.learner == extension.learner)
     connection.execute(delete(extensions).where(own))
     if any(each is not None for each in values.values()):
@@ -105,7 +112,10 @@ def assignment_of(connection: Connection, course: str, assignment: str) -> Cours
     for each in assignments_of(connection, course):
         if each.id == assignment:
             return each
-    raise CourseError("unknown-assignment", f"The course has no assignment {assignment}.")
+    raise CourseError(
+        "unknown-assignment",
+        say("The course has no assignment {assignment}.", assignment=assignment),
+    )
 
 
 def assignments_of(connection: Connection, course: str) -> list[CourseAssignment]:
@@ -153,7 +163,10 @@ def assignment_row(connection: Connection, course: str, assignment: str) -> Row[
     mine = (assignments.c.course == course) & (assignments.c.id == assignment)
     found = connection.execute(select(assignments).where(mine)).one_or_none()
     if found is None:
-        raise CourseError("unknown-assignment", f"The course has no assignment {assignment}.")
+        raise CourseError(
+            "unknown-assignment",
+            say("The course has no assignment {assignment}.", assignment=assignment),
+        )
     return found
 
 
@@ -188,26 +201,36 @@ def _check_exercises(chosen: list[str], known: Collection[str]) -> None:
     for i, exercise in enumerate(chosen):
         if exercise not in known:
             meant = nearest(exercise, known)
-            hint = f" Did you mean {meant}?" if meant else ""
-            message = (
-                f"There is no exercise {exercise}.{hint} A new file must be in a folder of "
-                "DH_GRADER_EXERCISES_DIR. The service reads it when it starts, or at once with "
-                "DH_GRADER_RELOAD_EXERCISES=true."
+            message = paragraph(
+                say("There is no exercise {exercise}.", exercise=exercise),
+                say("Did you mean {meant}?", meant=meant) if meant else "",
+                say(
+                    "A new file must be in a folder of DH_GRADER_EXERCISES_DIR. The service reads "
+                    "it when it starts, or at once with DH_GRADER_RELOAD_EXERCISES=true."
+                ),
             )
             raise CourseError("unusable", message)
         if exercise in chosen[:i]:
-            raise CourseError("unusable", f"The exercise {exercise} is there twice.")
+            raise CourseError(
+                "unusable", say("The exercise {exercise} is there twice.", exercise=exercise)
+            )
 
 
 def _checked(connection: Connection, course: str, assignment: str) -> CourseAssignment:
     """Return an assignment after a change. Raises CourseError if its dates have no order."""
     found = assignment_of(connection, course, assignment)
     if found.closes is not None and found.due is None:
-        raise CourseError("unusable", "closes says how long late attempts are taken: it needs due")
+        raise _closes_needs_due()
     moments = [each for each in (found.opens, found.due, found.closes) if each is not None]
     if moments != sorted(moments):
-        raise CourseError("unusable", "opens, due and closes must follow each other in this order")
+        order = say("opens, due and closes must follow each other in this order")
+        raise CourseError("unusable", order)
     return found
+
+
+def _closes_needs_due() -> CourseError:
+    message = say("closes says how long late attempts are taken: it needs due")
+    return CourseError("unusable", message)
 
 
 def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:

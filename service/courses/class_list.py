@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from service.contract.courses import MOST_LEARNERS, NewLearner
 from service.courses.errors import CourseError
 from service.formats.shared.plain_text import visible
+from service.translations import say
 
 # The headings of each field in small letters, the preferred one first, as English, German, Spanish,
 # French and Chinese lists have them. Sources: Canvas, "How do I export grades in the Gradebook?";
@@ -50,7 +51,7 @@ def decoded(data: bytes) -> str:
     try:
         return data.decode("cp1252")
     except UnicodeDecodeError as error:
-        raise CourseError("unusable", "The class list is not in UTF-8: save it so.") from error
+        raise CourseError("unusable", say("The class list is not in UTF-8: save it so.")) from error
 
 
 def read_class_list(text: str) -> list[NewLearner]:
@@ -64,13 +65,17 @@ def read_class_list(text: str) -> list[NewLearner]:
     try:
         rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=False))
     except csv.Error as error:
-        raise CourseError("unusable", f"The class list is not CSV: {error}.") from error
+        raise CourseError(
+            "unusable", say("The class list is not CSV: {reason}.", reason=str(error))
+        ) from error
     numbered = [(i, row) for i, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
     if not numbered:
-        raise CourseError("unusable", "The class list is empty.")
+        raise CourseError("unusable", say("The class list is empty."))
     columns = _columns(numbered[0][1])
     if len(numbered) > MOST_LEARNERS + 2:
-        raise CourseError("unusable", f"The class list has more than {MOST_LEARNERS} learners.")
+        raise CourseError(
+            "unusable", say("The class list has more than {most} learners.", most=MOST_LEARNERS)
+        )
     found = []
     for line, row in numbered[1:]:
         cells = {
@@ -96,7 +101,7 @@ def _columns(head: list[str]) -> dict[str, int]:
     if not has_name or columns.keys().isdisjoint({"learner", "email"}):
         raise CourseError(
             "unusable",
-            "The first line of a class list has the headings: name, and email or id.",
+            say("The first line of a class list has the headings: name, and email or id."),
         )
     return columns
 
@@ -108,7 +113,9 @@ def _learner(cells: dict[str, str], line: int) -> NewLearner:
     family = " ".join(last.split()) if first and not cells.get("name") else ""
     learner, email = cells.get("learner") or None, cells.get("email") or None
     if learner is None and email is None:
-        raise CourseError("unusable", f"Line {line} of the class list has no id and no e-mail.")
+        raise CourseError(
+            "unusable", say("Line {line} of the class list has no id and no e-mail.", line=line)
+        )
     try:
         return NewLearner(
             learner=learner,
@@ -118,5 +125,7 @@ def _learner(cells: dict[str, str], line: int) -> NewLearner:
         )
     except ValidationError as error:
         field = error.errors()[0]["loc"][0]
-        message = f"Line {line} of the class list has no usable {field}."
+        message = say(
+            "Line {line} of the class list has no usable {field}.", line=line, field=str(field)
+        )
         raise CourseError("unusable", message) from error

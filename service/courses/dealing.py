@@ -179,7 +179,11 @@ def deal_again(
     """Give a learner another variant of an exercise. Raises CourseError."""
     terms, own, _ = assigned_seed(connection, course, assignment, learner, exercise)
     if terms.variants is None or own.vary is None:
-        reason = f"The assignment {assignment} has no variants of {exercise.id}."
+        reason = say(
+            "The assignment {assignment} has no variants of {exercise}.",
+            assignment=assignment,
+            exercise=exercise.id,
+        )
         raise CourseError("unusable", reason)
     dealt = _number(connection, terms, learner, exercise.id)
     before = seed_of(
@@ -190,7 +194,8 @@ def deal_again(
         if seed != before:
             break
     else:
-        raise CourseError("unusable", f"There is no other deployed variant of {exercise.id}.")
+        reason = say("There is no other deployed variant of {exercise}.", exercise=exercise.id)
+        raise CourseError("unusable", reason)
     mine = {"assignment": terms.number, "learner": learner, "exercise": exercise.id}
     if dealt is None:
         connection.execute(insert(deals).values(mine | {"number": number}))

@@ -31,6 +31,7 @@ from service.courses import roll
 from service.courses.assignments import assignment_of
 from service.courses.errors import CourseError
 from service.courses.links import people
+from service.translations import say
 
 
 def delete_course(
@@ -50,7 +51,7 @@ def delete_course(
         attempts=_count(connection, attempts, attempts.c.assignment.in_(mine)),
     )
     if wanted.apply:
-        _require_none(data, wanted, f"The course {course}")
+        _require_none(data, wanted, say("The course {course}", course=course))
         _delete_assignments(connection, mine)
         # The next launch from there makes a new course.
         of_course = select(contexts.c.number).where(contexts.c.course == course)
@@ -77,7 +78,7 @@ def delete_assignment(
         attempts=_count(connection, attempts, attempts.c.assignment.in_(mine)),
     )
     if wanted.apply:
-        _require_none(data, wanted, f"The assignment {assignment}")
+        _require_none(data, wanted, say("The assignment {assignment}", assignment=assignment))
         _delete_assignments(connection, mine)
     return data
 
@@ -91,7 +92,9 @@ def remove_learner(
     """
     learner = wanted.learner
     if learner not in {each.learner for each in people(connection, course)}:
-        raise CourseError("unknown-learner", f"The course has no learner {learner}.")
+        raise CourseError(
+            "unknown-learner", say("The course has no learner {learner}.", learner=learner)
+        )
     mine = _assignments(connection, course, true())
     ending = (keys.c.course == course) & (keys.c.learner == learner) & keys.c.revoked_at.is_(None)
     extended = extensions.c.assignment.in_(mine) & (extensions.c.learner == learner)
@@ -144,7 +147,11 @@ def _delete_assignments(connection: Connection, numbers: Select[tuple[int]]) -> 
 
 def _require_none(data: DeletedData, wanted: DeletionRequest, what: str) -> None:
     if data.attempts and not wanted.with_attempts:
-        message = f"{what} has {data.attempts} recorded attempts. Delete them, too: with_attempts."
+        message = say(
+            "{what} has {count} recorded attempts. Delete them, too: with_attempts.",
+            what=what,
+            count=data.attempts,
+        )
         raise CourseError("has-attempts", message)
 
 

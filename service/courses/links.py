@@ -19,6 +19,7 @@ from service.contract.courses import LinksRequest, PersonalLink
 from service.courses.errors import CourseError
 from service.courses.names import place_of
 from service.formats.shared import spreadsheet
+from service.translations import say
 
 # The page of a learner, relative to the service. The key is in the fragment, which browsers neither
 # send to a server nor name as referrer.
@@ -92,7 +93,7 @@ def people(connection: Connection, course: str) -> list[Row[Any]]:
     Raises CourseError.
     """
     if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
-        raise CourseError("unknown-course", f"There is no course {course}.")
+        raise CourseError("unknown-course", say("There is no course {course}.", course=course))
     of_course = course_learners.c
     named = select(of_course.learner, of_course.name, of_course.family_name, of_course.email)
     return sorted(connection.execute(named.where(of_course.course == course)), key=place_of)
@@ -105,5 +106,7 @@ def _chosen(
     if only is None:
         return rows
     if unknown := sorted(set(only) - {row.learner for row in rows}):
-        raise CourseError("unknown-learner", f"The course has no learner {unknown[0]}.")
+        raise CourseError(
+            "unknown-learner", say("The course has no learner {learner}.", learner=unknown[0])
+        )
     return [row for row in rows if row.learner in set(only)]

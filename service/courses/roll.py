@@ -12,6 +12,7 @@ from service.contract.courses import Course, CourseChange, CourseLearner, NewCou
 from service.courses.errors import CourseError
 from service.courses.links import links_until, people
 from service.courses.times import zone_named
+from service.translations import say
 
 
 def add_course(connection: Connection, new: NewCourse, now: datetime) -> Course:
@@ -20,7 +21,9 @@ def add_course(connection: Connection, new: NewCourse, now: datetime) -> Course:
     values = new.model_dump() | {"created_at": now}
     added = connection.execute(insert_or_ignore(courses)[connection.dialect.name].values(values))
     if not added.rowcount:
-        raise CourseError("already-there", f"There is a course {new.id} already.")
+        raise CourseError(
+            "already-there", say("There is a course {course} already.", course=new.id)
+        )
     return course(connection, new.id)
 
 
@@ -38,7 +41,7 @@ def course(connection: Connection, course_id: str) -> Course:
     """Return a course. Raises CourseError."""
     for found in _courses(connection, courses.c.id == course_id):
         return found
-    raise CourseError("unknown-course", f"There is no course {course_id}.")
+    raise CourseError("unknown-course", say("There is no course {course}.", course=course_id))
 
 
 def all_courses(connection: Connection, only: str | None = None) -> list[Course]:

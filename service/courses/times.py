@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from service.courses.errors import CourseError
+from service.translations import say
 
 
 def zone_named(name: str) -> ZoneInfo:
@@ -11,7 +12,7 @@ def zone_named(name: str) -> ZoneInfo:
     try:
         return ZoneInfo(name)
     except (ZoneInfoNotFoundError, ValueError, OSError) as error:
-        message = f"There is no time zone {name}. Write one such as Europe/Berlin."
+        message = say("There is no time zone {name}. Write one such as Europe/Berlin.", name=name)
         raise CourseError("unusable", message) from error
 
 
@@ -27,11 +28,18 @@ def moment(written: datetime, zone: ZoneInfo) -> datetime:
         first, second = (written.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
         if first.astimezone(UTC).astimezone(zone).replace(tzinfo=None) != written:
             raise CourseError(
-                "unusable", f"The clocks of {zone} never show {written}: they are put forward."
+                "unusable",
+                say(
+                    "The clocks of {zone} never show {time}: they are put forward.",
+                    zone=str(zone),
+                    time=str(written),
+                ),
             )
         return second.astimezone(UTC)
     except OverflowError as error:
-        raise CourseError("unusable", f"{written} is no usable date.") from error
+        raise CourseError(
+            "unusable", say("{date} is no usable date.", date=str(written))
+        ) from error
 
 
 def local(when: datetime | None, zone: ZoneInfo) -> datetime | None:

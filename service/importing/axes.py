@@ -7,6 +7,7 @@ import numpy as np
 
 from service.importing.urdf import Arm
 from service.kinematics.transforms import Matrices, Numbers
+from service.translations import say
 
 PARALLEL = 1e-6
 # Axes that are less than this apart, in radians, but not parallel, are a maker's rounding: their
@@ -51,8 +52,13 @@ def home_axes(arm: Arm) -> tuple[list[HomeAxis], Matrices]:
         apart = float(np.linalg.norm(np.cross(first.direction, second.direction)))
         if PARALLEL <= apart < _NEARLY:
             raise UnclearAxesError(
-                f"the axes of joints {i} and {i + 1} are nearly parallel ({np.degrees(apart):.4f}° "
-                f"apart); write exact angles in the file"
+                say(
+                    "the axes of joints {first} and {second} are nearly parallel ({angle}° apart); "
+                    "write exact angles in the file",
+                    first=i,
+                    second=i + 1,
+                    angle=f"{np.degrees(apart):.4f}",
+                )
             )
     tip = pose @ arm.after
     return _sliding_axes_moved(axes, tip[:3, 3]), np.asarray(tip)

@@ -11,6 +11,7 @@ from service.grading.work_budget import WorkBudget
 from service.importing.home_statement import HomeRobot
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, standard_rows
 from service.kinematics.dh import Convention
+from service.translations import joined, say
 
 _MOST_JOINTS = 10
 _LETTER_LENGTHS = {"a": 0.5, "d": 0.3}
@@ -31,9 +32,9 @@ def robot_of_table(text: str, convention: Convention) -> HomeRobot:
     kinds = [_kind(first, i) for i in range(joints)]
     fixed = [i for i, kind in enumerate(kinds) if kind is None]
     if fixed and (fixed != [rows - 1] or rows == 1):
-        raise UnusableTableError(f"row {fixed[0] + 1} has no joint variable")
+        raise UnusableTableError(say("row {row} has no joint variable", row=fixed[0] + 1))
     if rows - len(fixed) > _MOST_JOINTS:
-        raise UnusableTableError(f"the table has more than {_MOST_JOINTS} joints")
+        raise UnusableTableError(say("the table has more than {most} joints", most=_MOST_JOINTS))
     structure = "".join(kind for kind in kinds if kind)
     scope = free_scope(structure)
     table = _read(text, scope)
@@ -44,12 +45,16 @@ def robot_of_table(text: str, convention: Convention) -> HomeRobot:
     }
     if convention is Convention.MODIFIED:
         if np.abs(numbers[0, [A, ALPHA]]).max() > 0:
-            raise UnusableTableError("a and alpha of row 1 must be 0: frame {0} lies on joint 1")
+            raise UnusableTableError(
+                say("a and alpha of row 1 must be 0: frame {{0}} lies on joint 1")
+            )
         numbers = np.array(standard_rows([tuple(row) for row in numbers], 0.0))
         letters = {(i - 1 if j in (A, ALPHA) else i, j): name for (i, j), name in letters.items()}
     repeated = len(set(letters.values())) < len(letters)
     if repeated:
-        raise UnusableTableError("a letter is in two cells; give each length a letter of its own")
+        raise UnusableTableError(
+            say("a letter is in two cells; give each length a letter of its own")
+        )
     return HomeRobot(numbers, structure, letters)
 
 
@@ -72,11 +77,11 @@ def _kind(table: StudentTable, i: int) -> str | None:
 
 def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple[float, str | None]:
     """Return the value of a cell at home, and its letter if it has one."""
-    place = f"row {i + 1}, column {COLUMNS[j]}"
+    place = say("row {row}, column {column}", row=i + 1, column=COLUMNS[j])
     entry = table.rows[i].entries[j]
     if entry.expression is None:
-        reason = entry.findings[0].hint if entry.findings else "nothing is written here"
-        raise UnusableTableError(f"{place}: {reason}")
+        reason = entry.findings[0].hint if entry.findings else say("nothing is written here")
+        raise UnusableTableError(joined(": ", [place, reason]))
     moving = {joint.variable for joint in scope.joints[i : i + 1]}
     own = moving if j in (D, THETA) else set[str]()
     others = sorted(entry.expression.symbols - own)
@@ -84,7 +89,8 @@ def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple
     if not others:
         return at_zero, None
     if len(others) > 1 or j in (ALPHA, THETA) or at_zero or abs(at_one) != 1:
-        raise UnusableTableError(f"{place}: write a number, or one letter with its sign")
+        reason = say("write a number, or one letter with its sign")
+        raise UnusableTableError(joined(": ", [place, reason]))
     return float(np.sign(at_one)) * _LETTER_LENGTHS[COLUMNS[j]], others[0]
 
 

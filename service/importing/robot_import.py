@@ -13,12 +13,13 @@ from service.importing.home_statement import HomeRobot, UnevenLettersError, numb
 from service.importing.pasted_robot import UnusableTableError, robot_of_table
 from service.importing.urdf import UnusableUrdfError, read_urdf, tips
 from service.kinematics.dh import Convention
+from service.translations import say
 
 _LARGEST_DIFFERENCE: Final = 1e-3
 _SAME: Final = 1e-6
 _MOST_LINKS: Final = 20
 _LONGEST_LINK: Final = 60
-_UNEVEN: Final = "with these angles, letters give no readable statement; do without letters"
+_UNEVEN: Final = say("with these angles, letters give no readable statement; do without letters")
 
 
 class RefusedRobotError(ValueError):
@@ -56,20 +57,26 @@ def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
         if not tip:
             ends = tips(data)
             if len(ends) != 1:
-                raise SeveralTipsError(f"name the tool's link; the tree ends at: {_shown(ends)}")
+                raise SeveralTipsError(
+                    say("name the tool's link; the tree ends at: {links}", links=_shown(ends))
+                )
             [tip] = ends
         arm, exact = read_urdf(data, tip, options.base or None)
         frames = placed(*home_axes(arm))
     except (UnusableUrdfError, UnclearAxesError) as error:
-        raise RefusedRobotError(str(error)) from error
+        raise RefusedRobotError(error.args[0]) from error
     length, angle = greatest_difference(frames, arm.structure, exact.pose)
     if not length <= _LARGEST_DIFFERENCE:
         raise RefusedRobotError(
-            f"the table would differ by {1000 * length:.2f} mm from the file; 1 mm is allowed"
+            say(
+                "the table would differ by {length} mm from the file; 1 mm is allowed",
+                length=f"{1000 * length:.2f}",
+            )
         )
-    accuracy = (
-        f"Largest difference to the URDF at 100 poses: {1000 * length:.4f} mm, "
-        f"{np.degrees(angle):.4f} degrees."
+    accuracy = say(
+        "Largest difference to the URDF at 100 poses: {length} mm, {angle} degrees.",
+        length=f"{1000 * length:.4f}",
+        angle=f"{np.degrees(angle):.4f}",
     )
     remarks = [accuracy, *_ends(frames, arm.base, arm.tip, len(arm.structure))]
     letters = letters_for(frames.table) if options.letters else {}
@@ -81,7 +88,7 @@ def imported_table(text: str, options: ImportOptions) -> ImportedRobot:
     try:
         robot = robot_of_table(text, options.convention)
     except UnusableTableError as error:
-        raise RefusedRobotError(str(error)) from error
+        raise RefusedRobotError(error.args[0]) from error
     return _written(robot, options, [])
 
 
@@ -99,10 +106,15 @@ def _written(robot: HomeRobot, options: ImportOptions, remarks: Sequence[str]) -
 
 def _ends(frames: Placed, base: str, tip: str, last: int) -> list[str]:
     """Return where the exercise's first and last frame lie if they are not those of the file."""
-    remarks = []
+    remarks: list[str] = []
     for pose, frame, link in ((frames.base, "{0}", base), (frames.tool, f"{{{last}}}", tip)):
         if np.abs(pose - np.eye(4)).max() > _SAME:
             rows = "; ".join(" ".join(number_text(each) for each in row) for row in pose[:3])
-            words = f"frame {frame} in the link {link}" if link == base else f"{link} in {frame}"
-            remarks.append(f"A constant transform is left out, {words}: {rows}.")
+            where = say("frame {frame} in the link {link}", frame=frame, link=link)
+            if link != base:
+                where = say("{link} in {frame}", link=link, frame=frame)
+            left_out = say(
+                "A constant transform is left out, {where}: {rows}.", where=where, rows=rows
+            )
+            remarks.append(left_out)
     return remarks

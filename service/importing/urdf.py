@@ -11,6 +11,7 @@ import numpy as np
 
 from service.importing.snapping import snapped_angle, snapped_direction, snapped_length
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
+from service.translations import say
 
 MOST_BYTES: Final = 2**20
 _MOST_LINKS: Final = 200
@@ -97,26 +98,32 @@ class _Collector:
     _elements: int = 0
 
     def doctype(self, *_declaration: object) -> None:
-        raise UnusableUrdfError("the file has a DOCTYPE; a URDF needs none")
+        raise UnusableUrdfError(say("the file has a DOCTYPE; a URDF needs none"))
 
     def start(self, tag: str, attributes: Mapping[str, str]) -> None:
         self._elements += 1
         if self._elements > _MOST_ELEMENTS or len(self._path) > _DEEPEST:
             raise UnusableUrdfError(
-                f"the file has more than {_MOST_ELEMENTS} elements or is too deep"
+                say("the file has more than {most} elements or is too deep", most=_MOST_ELEMENTS)
             )
         if "xacro" in tag or any("${" in value or "$(" in value for value in attributes.values()):
             raise UnusableUrdfError(
-                "the file is a xacro template; expand it first: xacro arm.urdf.xacro > arm.urdf"
+                say(
+                    "the file is a xacro template; expand it first: xacro arm.urdf.xacro > arm.urdf"
+                )
             )
         if not self._path and tag != "robot":
-            raise UnusableUrdfError(f"the file begins with <{tag[:_SHOWN]}>, not with <robot>")
+            raise UnusableUrdfError(
+                say("the file begins with <{tag}>, not with <robot>", tag=tag[:_SHOWN])
+            )
         self._path.append(tag)
         match self._path:
             case ["robot", "link"]:
                 self.links.append(attributes.get("name", ""))
                 if len(self.links) > _MOST_LINKS:
-                    raise UnusableUrdfError(f"the file has more than {_MOST_LINKS} links")
+                    raise UnusableUrdfError(
+                        say("the file has more than {most} links", most=_MOST_LINKS)
+                    )
             case ["robot", "joint"]:
                 self.joints.append(_Joint(attributes.get("name", ""), attributes.get("type", "")))
             case ["robot", "joint", part]:
@@ -142,7 +149,7 @@ class _Collector:
 
 def _collected(data: bytes) -> _Collector:
     if len(data) > MOST_BYTES:
-        raise UnusableUrdfError(f"the file is larger than {MOST_BYTES // 2**10} KiB")
+        raise UnusableUrdfError(say("the file is larger than {most} KiB", most=MOST_BYTES // 2**10))
     collector = _Collector()
     # Without namespaces, because many files use prefixes such as drake: that they do not declare.
     parser = expat.ParserCreate()
@@ -152,11 +159,13 @@ def _collected(data: bytes) -> _Collector:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise UnusableUrdfError(f"the file is not well-formed XML: {error}") from None
+        raise UnusableUrdfError(
+            say("the file is not well-formed XML: {reason}", reason=str(error))
+        ) from None
     except (LookupError, ValueError) as error:
         if isinstance(error, UnusableUrdfError):
             raise
-        raise UnusableUrdfError("the file has an unknown text encoding") from None
+        raise UnusableUrdfError(say("the file has an unknown text encoding")) from None
     return collector
 
 
@@ -179,7 +188,11 @@ def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]
     for name in (tip, base):
         if name is not None and name not in collected.links:
             ends = ", ".join(each[:_SHOWN] for each in _ends(collected)[:_MOST_ENDS])
-            reason = f"the file has no link {name[:_SHOWN]!r}; its tree ends at: {ends}"
+            reason = say(
+                "the file has no link {link!r}; its tree ends at: {ends}",
+                link=name[:_SHOWN],
+                ends=ends,
+            )
             raise UnusableUrdfError(reason)
     path = _path(collected, tip, base)
     first = path[0].parent if path else tip
@@ -192,7 +205,7 @@ def _path(collected: _Collector, tip: str, base: str | None) -> list[_Joint]:
     for joint in collected.joints:
         if joint.child in before:
             raise UnusableUrdfError(
-                f"two joints move the link {joint.child[:_SHOWN]!r}: a closed loop"
+                say("two joints move the link {link!r}: a closed loop", link=joint.child[:_SHOWN])
             )
         before[joint.child] = joint
     path: list[_Joint] = []
@@ -201,9 +214,15 @@ def _path(collected: _Collector, tip: str, base: str | None) -> list[_Joint]:
         path.append(before[link])
         link = path[-1].parent
         if len(path) > _MOST_LINKS:
-            raise UnusableUrdfError("the links form a closed loop")
+            raise UnusableUrdfError(say("the links form a closed loop"))
     if base is not None and link != base:
-        raise UnusableUrdfError(f"the link {base[:_SHOWN]!r} is not on the way to {tip[:_SHOWN]!r}")
+        raise UnusableUrdfError(
+            say(
+                "the link {link!r} is not on the way to {tip!r}",
+                link=base[:_SHOWN],
+                tip=tip[:_SHOWN],
+            )
+        )
     return path[::-1]
 
 
@@ -216,13 +235,20 @@ def _arm(path: list[_Joint], base: str, tip: str, *, snap: bool) -> Arm:
             continue
         if joint.kind not in (*_TURNING, "prismatic"):
             raise UnusableUrdfError(
-                f"the joint {joint.name[:_SHOWN]!r} is of type {joint.kind[:_SHOWN]!r}; "
-                f"only revolute, continuous, prismatic and fixed joints can be imported"
+                say(
+                    "the joint {joint!r} is of type {kind!r}; only revolute, continuous, prismatic "
+                    "and fixed joints can be imported",
+                    joint=joint.name[:_SHOWN],
+                    kind=joint.kind[:_SHOWN],
+                )
             )
         if joint.follows:
             raise UnusableUrdfError(
-                f"the joint {joint.name[:_SHOWN]!r} follows another joint (mimic); "
-                f"a DH table has independent joints only"
+                say(
+                    "the joint {joint!r} follows another joint (mimic); a DH table has independent "
+                    "joints only",
+                    joint=joint.name[:_SHOWN],
+                )
             )
         joints.append(
             UrdfJoint(joint.name, joint.kind == "prismatic", fixed, _axis(joint, snap=snap))
@@ -230,8 +256,14 @@ def _arm(path: list[_Joint], base: str, tip: str, *, snap: bool) -> Arm:
         fixed = np.eye(4)
     if not 1 <= len(joints) <= _MOST_JOINTS:
         raise UnusableUrdfError(
-            f"between {base[:_SHOWN]!r} and {tip[:_SHOWN]!r} are {len(joints)} moving joints; "
-            f"an exercise has 1 to {_MOST_JOINTS}"
+            say(
+                "between {base!r} and {tip!r} are {count} moving joints; an exercise has 1 to "
+                "{most}",
+                base=base[:_SHOWN],
+                tip=tip[:_SHOWN],
+                count=len(joints),
+                most=_MOST_JOINTS,
+            )
         )
     return Arm(base, tip, tuple(joints), fixed)
 
@@ -249,7 +281,9 @@ def _axis(joint: _Joint, *, snap: bool) -> Numbers:
     axis = np.array([float(text) for text in _numbers(joint, joint.axis)])
     length = float(np.linalg.norm(axis))
     if not length > 0:
-        raise UnusableUrdfError(f"the axis of joint {joint.name[:_SHOWN]!r} has no direction")
+        raise UnusableUrdfError(
+            say("the axis of joint {joint!r} has no direction", joint=joint.name[:_SHOWN])
+        )
     return snapped_direction(axis / length) if snap else axis / length
 
 
@@ -258,8 +292,14 @@ def _numbers(joint: _Joint, text: str) -> Iterator[str]:
     words = text.split() if len(text) <= _LONGEST_TEXT else []
     if len(words) != 3 or not all(_NUMBER.fullmatch(word) for word in words):
         raise UnusableUrdfError(
-            f"the joint {joint.name[:_SHOWN]!r} has {text[:_SHOWN]!r} in place of three numbers"
+            say(
+                "the joint {joint!r} has {text!r} in place of three numbers",
+                joint=joint.name[:_SHOWN],
+                text=text[:_SHOWN],
+            )
         )
     if any(abs(float(word)) > 1e6 for word in words):
-        raise UnusableUrdfError(f"the joint {joint.name[:_SHOWN]!r} has a number over a million")
+        raise UnusableUrdfError(
+            say("the joint {joint!r} has a number over a million", joint=joint.name[:_SHOWN])
+        )
     yield from words

@@ -32,6 +32,7 @@ from service.lti.problems import LtiError
 from service.lti.registrations import add_deployments, deployments_of
 from service.lti.roles import LtiRole
 from service.lti.scores.line_items import ensure_line_item, try_refused_again
+from service.translations import say
 
 # The lifetime of the key of a course, and how long before its end the next one is made.
 _KEY_LIFETIME: Final = timedelta(days=400)
@@ -182,7 +183,7 @@ def assign(
         .where(tables.resource_links.c.number == link)
     ).one_or_none()
     if row is None:
-        raise CourseError("unknown-assignment", "The resource link is not there any more.")
+        raise CourseError("unknown-assignment", say("The resource link is not there any more."))
     found = linked_assignment(connection, row.course, row.assignment)
     if found is not None:
         return found

@@ -4,6 +4,8 @@ import pytest
 
 from service.courses.class_list import decoded, read_class_list
 from service.courses.errors import CourseError
+from tests.courses.conftest import Class
+from tests.courses.results.test_workbook import as_tutor
 
 CANVAS = """\
 Student,ID,SIS User ID,SIS Login ID,Section,Homework 0 (17)
@@ -86,6 +88,18 @@ def test_lists_with_two_columns_have_family_names() -> None:
 def test_an_unusable_class_list_is_refused_with_the_line(text: str, reason: str) -> None:
     with pytest.raises(CourseError, match=reason):
         read_class_list(text)
+
+
+def test_refusals_are_told_in_the_language_of_the_reader(class_: Class) -> None:
+    path = "/v1/courses/robots/learners?lang=de"
+    refused = as_tutor(class_).ask("POST", path, "tutor", csv="name,id\nAda,7\nBo,\n")
+    assert refused.json()["detail"] == (
+        "Zeile 3 der Kursliste hat keine id und keine E-Mail-Adresse."
+    )
+    path = "/v1/courses/robots/assignments?lang=de"
+    twice = [{"exercise": "scara", "points": 1}] * 2
+    refused = as_tutor(class_).ask("POST", path, "tutor", id="h", title="H", exercises=twice)
+    assert refused.json()["detail"] == "Die Aufgabe scara kommt zweimal vor."
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-be", "cp1252"])

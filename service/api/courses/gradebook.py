@@ -13,6 +13,7 @@ from service.contract.attempts import Learner
 from service.contract.courses import Gradebook, GradebookFormat, MissingList
 from service.contract.own_courses import OwnCourses
 from service.courses.errors import CourseError
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -96,7 +97,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         now = datetime.now(UTC)
         view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))
         if not view.courses:
-            message = f"The course has no learner {learner}."
+            message = say("The course has no learner {learner}.", learner=learner)
             raise course_problem(CourseError("unknown-learner", message))
         return private(view)
 

@@ -11,6 +11,7 @@ from service.api.permissions.access import Access
 from service.api.recording.store import private
 from service.contract.courses import LinkList, LinksRequest, RevokedLinks, RevokeLinksRequest
 from service.courses.errors import CourseError
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -39,7 +40,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         body = await read_body(LinksRequest, request)
         secret = None if access.keys is None else access.keys.secret
         if secret is None:
-            message = "Personal links need a secret: set DH_GRADER_SECRET."
+            message = say("Personal links need a secret: set DH_GRADER_SECRET.")
             raise course_problem(CourseError("unusable", message))
         known, address, now = secret, str(request.base_url), datetime.now(UTC)
         return private(

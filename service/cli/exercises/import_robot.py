@@ -75,7 +75,7 @@ def command(
         else:
             found = imported_urdf(data, options)
     except SeveralTipsError as error:
-        give_up(say("{file}: {reason}. Use --tip LINK.", file=str(file), reason=str(error)))
+        give_up(say("{file}: {reason}. Use --tip LINK.", file=str(file), reason=error.args[0]))
     except RefusedRobotError as error:
         give_up(joined(": ", [str(file), str(error.args[0])]))
     made = write_new(output, name, found.text)

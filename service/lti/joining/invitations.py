@@ -67,7 +67,7 @@ def invite(
     try:
         zone_named(zone)
     except CourseError as error:
-        raise RegistrationError(str(error)) from error
+        raise RegistrationError(error.args[0]) from error
     text = f"{_HELD if waits else ''}{secrets.token_urlsafe(24)}"
     values = {"digest": digest(text), "name": name, "address": address, "zone": zone}
     times = {"created_at": now, "expires_at": now + timedelta(days=days)}

@@ -16,7 +16,7 @@ from service.contract.attempts import Learner
 from service.contract.courses import LinksRequest
 from service.contract.scores import SendAgainRequest
 from service.courses.errors import CourseError
-from service.translations import Language
+from service.translations import Language, say
 from service.web.assets import Assets
 from service.web.courses.course_pages import (
     CourseState,
@@ -133,7 +133,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         def drawn(connection: "Connection") -> bytes:
             view = own_view(connection, learner, course_id, catalogue, now, language)
             if not view.courses:
-                message = f"The course has no learner {learner}."
+                message = say("The course has no learner {learner}.", learner=learner)
                 raise CourseError("unknown-learner", message)
             [own] = view.courses
             variants = {
@@ -156,7 +156,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         one = fields.get("learner")
         secret = None if access.keys is None else access.keys.secret
         if secret is None:
-            message = "Personal links need a secret: set DH_GRADER_SECRET."
+            message = say("Personal links need a secret: set DH_GRADER_SECRET.")
             raise course_problem(CourseError("unusable", message))
         wanted = validated(LinksRequest, {"learners": one, "renew": one is not None})
         known = secret

@@ -11,7 +11,7 @@ from service.api.courses.asking import CourseId, course_problem, read, write
 from service.api.http.language import language_of
 from service.api.http.problems import message_of
 from service.courses.errors import CourseError
-from service.translations import told
+from service.translations import say, told
 from service.web.assets import Assets
 from service.web.courses.course_pages import roster_page
 from service.web.page_answer import page_answer
@@ -39,7 +39,7 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
         shows_names = "names" in await form_fields(request)
         secret = None if access.keys is None else access.keys.secret
         if secret is None:
-            message = "Rosters need a secret: set DH_GRADER_SECRET."
+            message = say("Rosters need a secret: set DH_GRADER_SECRET.")
             raise course_problem(CourseError("unusable", message))
         known, now, language = secret, datetime.now(UTC), language_of(request)
         course = await read(store, lambda it: roll.course(it, course_id))

@@ -1,5 +1,6 @@
 """A URDF file or a pasted DH table -> the text of an exercise file, for the editor."""
 
+from dataclasses import replace
 from http import HTTPStatus
 from typing import Annotated, Final, Literal
 
@@ -57,7 +58,8 @@ def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
     except RefusedRobotError as error:
         reason = told(message_of(error), language.translation).rstrip(".。")
         raise _refused(say("{reason}.", reason=f"{reason[:1].upper()}{reason[1:]}")) from error
-    return _ROBOT.dump_json(found)
+    remarks = [told(each, language.translation) for each in found.remarks]
+    return _ROBOT.dump_json(replace(found, remarks=remarks))
 
 
 def _refused(detail: str) -> ProblemError:

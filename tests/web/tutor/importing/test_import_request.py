@@ -63,3 +63,13 @@ def test_other_refusals_have_their_reasons(tutor: Tutor) -> None:
     assert "cannot be the id of an exercise" in named.json()["detail"]
     unknown = tutor.ask("POST", "/tutor/import", json={**table, "text": PASTED, "kind": "sdf"})
     assert unknown.status_code == 422
+
+
+def test_refusals_are_told_in_the_language_of_the_reader(tutor: Tutor) -> None:
+    for kind, text, said in (
+        ("table", "a,alpha,d,theta\n1,0,0,0\n1,0,0,theta2\n", "Zeile 1 hat keine Gelenkvariable."),
+        ("urdf", "<sdf/>", "Die Datei beginnt mit <sdf>, nicht mit <robot>."),
+    ):
+        body = {"kind": kind, "text": text, "id": "arm", "tip": "l1"}
+        refused = tutor.ask("POST", "/tutor/import", json=body, params={"lang": "de"})
+        assert refused.json()["detail"] == said
