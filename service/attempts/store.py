@@ -34,6 +34,7 @@ from service.attempts.tutoring import (
     override,
 )
 from service.contract.statistics import ExerciseStatistics
+from service.translations import say
 
 R = TypeVar("R")
 
@@ -69,7 +70,11 @@ class AttemptStore:
             with engine.begin() as connection:
                 connection.execute(_ALIVE)
         except SQLAlchemyError as error:
-            problem = f"{safe_url(engine)}: attempts cannot be recorded there: {reason(error)}"
+            problem = say(
+                "{url}: attempts cannot be recorded there: {reason}",
+                url=safe_url(engine),
+                reason=reason(error),
+            )
             raise UnusableDatabaseError(problem) from error
         finally:
             # Child processes that start later must not inherit a connection.

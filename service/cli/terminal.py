@@ -37,11 +37,6 @@ def stdout() -> Console:
     return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 
 
-def counted(count: int, noun: str) -> str:
-    """Return a count with its noun, such as "1 learner" or "2 learners"."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"
-
-
 def unwritable(file: Path | str, error: OSError) -> Sentence:
     """Return the message that a file cannot be written."""
     return say("{file}: cannot be written: {reason}", file=str(file), reason=str(error.strerror))

@@ -17,6 +17,7 @@ from service.catalogue.drafts import Drafts
 from service.server.turns.admission import FairAdmission
 from service.server.watching.access_log import set_up_access_log
 from service.settings import Settings, SettingsError
+from service.translations import joined
 from service.web import Tutoring, web_routes
 
 if TYPE_CHECKING:  # it imports the database drivers
@@ -43,7 +44,7 @@ def installed_app(
         try:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:
-            raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
+            raise SettingsError(joined(": ", ["DH_GRADER_DATABASE", error.args[0]])) from error
         if settings.keep_months is not None:
             _delete_old(store, settings.keep_months)
     metrics = None

@@ -12,6 +12,7 @@ from service.authoring.answers import failed_checks, model_answer
 from service.authoring.lazy import lazy_answers, lazy_shares
 from service.authoring.remarks import Remark
 from service.catalogue import Exercise
+from service.translations import say
 from service.variants.comparison import Form, VariantDifficulty, difficulty_of, form_of
 from service.variants.variant import built
 
@@ -96,8 +97,13 @@ def deploy(
             return [seed for seed, own in scores.items() if own == score]
     most = levels[level] if level is not None else max(levels.values(), default=0)
     raise TooFewVariantsError(
-        f"{exercise.plain_id} has only {most} different variants of one difficulty among "
-        f"{_DRAWS * count} draws; vary more, or deploy {most} at most."
+        say(
+            "{exercise} has only {most} different variants of one difficulty among {draws} draws; "
+            "vary more, or deploy {most} at most.",
+            exercise=exercise.plain_id,
+            most=most,
+            draws=_DRAWS * count,
+        )
     )
 
 

@@ -47,7 +47,7 @@ from service.contract.tutoring import (
 from service.translations import Language, paragraph, say, told
 
 if TYPE_CHECKING:  # they load the drivers of databases
-    from service.attempts.regrades.outdated import Regrading
+    from service.attempts.regrades.outdated import RegradedAttempt, Regrading
     from service.attempts.store import AttemptStore
 
 # Bytes of an export that are sent at once.
@@ -262,7 +262,7 @@ class _Regrades:
             applied=body.apply,
             regraded=len(done.regraded),
             left=done.left,
-            changes=[AttemptChange.model_validate(each, from_attributes=True) for each in changed],
+            changes=[_change(each, language) for each in changed],
             failures=[told(each, language.translation) for each in failures] or None,
             next=done.following,
         )
@@ -281,6 +281,12 @@ class _Regrades:
         if self._last is None or self._last[0] is not exercise or self._last[1] != course:
             self._last = (exercise, course, Regrading(exercise, self._ceiling, course))
         return self._last[2]
+
+
+def _change(changed: "RegradedAttempt", language: Language) -> AttemptChange:
+    reasons = [told(each, language.translation) for each in changed.reasons]
+    made = AttemptChange.model_validate(changed, from_attributes=True)
+    return made.model_copy(update={"reasons": reasons})
 
 
 async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:

@@ -42,6 +42,7 @@ from service.attempts.storage.score_queue import Priority, queue_scores
 from service.attempts.storage.tables import assignments, attempts, earlier_reports, regrade_queue
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.submissions.body import GradeRequest
+from service.translations import say
 from service.variants.pinned import pinned
 from service.variants.variant import NoVariantError, hidden_variant, values_of, variant_of
 from service.version import VERSION
@@ -345,16 +346,14 @@ def _results(report: Mapping[str, Any]) -> PartResults:
 
 def _reasons(old: PartResults, new: PartResults) -> list[str]:
     """The parts whose results differ, each described in a few words."""
-    reasons = []
+    reasons: list[str] = []
     for name in dict.fromkeys((*old, *new)):
         if name not in new:
-            reasons.append(f"{name} is no part any more")
+            reasons.append(say("{name} is no part any more", name=name))
         elif name not in old:
-            reasons.append(f"{name} is new, {new[name][0]}")
+            reasons.append(say("{name} is new, {verdict}", name=name, verdict=new[name][0]))
         elif old[name] != new[name]:
-            reasons.append(f"{name} {_change(old[name][0], new[name][0])}")
+            before, after = old[name][0], new[name][0]
+            other_points = say("{name} {verdict}, other points", name=name, verdict=after)
+            reasons.append(other_points if before == after else f"{name} {before} → {after}")
     return reasons
-
-
-def _change(before: str, after: str) -> str:
-    return f"{before}, other points" if before == after else f"{before} → {after}"

@@ -17,6 +17,7 @@ from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
 from service.attempts.errors import UnusableDatabaseError
 from service.attempts.storage.database_file import DatabaseFile, make_private
+from service.translations import joined, say
 
 R = TypeVar("R")
 
@@ -50,22 +51,22 @@ def open_database(url: str, *, create: bool = True) -> Engine:
     is_sqlite = engine.dialect.name == "sqlite"
     if is_sqlite and not _is_there(path := engine.url.database or ""):
         if not create:
-            raise UnusableDatabaseError(f"{safe_url(engine)}: there is no such file")
+            raise UnusableDatabaseError(_at(engine, say("there is no such file")))
         make_private(path)
     try:
         file = DatabaseFile(engine) if is_sqlite else None
         with engine.connect() as connection:
             if file is not None and not file.note(connection):
-                raise UnusableDatabaseError("would be kept in memory and lost; name a file")
+                raise UnusableDatabaseError(say("would be kept in memory and lost; name a file"))
             connection.rollback()
             _migrate(connection)
     except ValueError as error:
-        raise UnusableDatabaseError("has parts that the database does not know") from error
+        raise UnusableDatabaseError(say("has parts that the database does not know")) from error
     except SQLAlchemyError as error:
-        raise UnusableDatabaseError(f"{safe_url(engine)}: {reason(error)}") from error
+        raise UnusableDatabaseError(_at(engine, reason(error))) from error
     except CommandError as error:
-        newer = "its tables are those of a newer version of the program"
-        raise UnusableDatabaseError(f"{safe_url(engine)}: {newer}") from error
+        newer = say("its tables are those of a newer version of the program")
+        raise UnusableDatabaseError(_at(engine, newer)) from error
     finally:
         engine.dispose()
     return engine
@@ -85,7 +86,12 @@ def unmigrated_database(url: str) -> Engine:
         return _engine(url)
     except (ArgumentError, ValueError) as error:
         # Do not repeat the URL: it may contain a password.
-        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
+        problem = say("is no URL of a database and no path of a file")
+        raise UnusableDatabaseError(problem) from error
+
+
+def _at(engine: Engine, problem: str) -> str:
+    return joined(": ", [safe_url(engine), problem])
 
 
 def _is_there(path: str) -> bool:
@@ -118,7 +124,7 @@ def _engine(url: str) -> Engine:
             )
         case _:
             raise UnusableDatabaseError(
-                f"{parsed.drivername} is not supported; use SQLite or PostgreSQL"
+                say("{driver} is not supported; use SQLite or PostgreSQL", driver=parsed.drivername)
             )
 
 

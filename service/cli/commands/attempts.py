@@ -82,7 +82,7 @@ def database(*, create: bool = False) -> Iterator[Engine]:
     try:
         engine = open_database(url.get_secret_value(), create=create)
     except UnusableDatabaseError as error:
-        give_up(f"DH_GRADER_DATABASE: {error}")
+        give_up(joined(": ", ["DH_GRADER_DATABASE", error.args[0]]))
     try:
         yield engine
     except SQLAlchemyError as error:
@@ -367,17 +367,23 @@ def forget_learner(
                 paragraph(say("Nothing is recorded of this learner."), _STILL_THERE if left else "")
             )
         if not yes:
-            question = f"Delete {visible(learner)} permanently? {_counts(found)}."
-            typer.confirm(question, abort=True)
+            question = say(
+                "Delete {name} permanently? {counts}.", name=visible(learner), counts=_counts(found)
+            )
+            typer.confirm(spoken(question), abort=True)
         deleted = in_transaction(engine, lambda connection: forget(connection, learner))
         erased = overwrite_deleted(engine)
-    typer.echo(f"Deleted: {_counts(deleted)}.")
+    typer.echo(spoken(say("Deleted: {counts}.", counts=_counts(deleted))))
     if erased is False:
         typer.echo(spoken(_STILL_THERE))
 
 
 def _counts(data: LearnerData) -> str:
-    return (
-        f"attempts: {data.attempts}, earlier reports: {data.earlier_reports}, "
-        f"points given by tutors: {data.overrides}, courses: {data.courses}"
+    return say(
+        "attempts: {attempts}, earlier reports: {reports}, points given by tutors: {overrides}, "
+        "courses: {courses}",
+        attempts=data.attempts,
+        reports=data.earlier_reports,
+        overrides=data.overrides,
+        courses=data.courses,
     )

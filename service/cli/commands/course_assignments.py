@@ -1,6 +1,6 @@
 """`dh-grader courses assignments`: the assignments of a course, and extensions."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -10,16 +10,15 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 from sqlalchemy import Connection
 
-from service.attempts.storage.database import in_transaction
 from service.catalogue import FeedbackLevel
-from service.cli.commands.attempts import database, encodable
+from service.cli.commands.attempts import encodable
 from service.cli.exercises.new_file import warn_of_unread
+from service.cli.operations.course_changes import changed, deleted
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
 from service.contract.courses import (
     AssignedPoints,
     AssignmentChange,
     CourseAssignment,
-    DeletedData,
     DeletionRequest,
     Extension,
     NewAssignment,
@@ -27,15 +26,12 @@ from service.contract.courses import (
     ShowSolution,
 )
 from service.courses import assignments, dealing, deletion
-from service.courses.errors import CourseError
 from service.formats.shared.plain_text import number, visible
 from service.submissions.assignment import Assignment, load_assignment
 from service.submissions.lookup import find_exercise
 from service.translations import say
 
-D = TypeVar("D", bound=DeletionRequest)
 M = TypeVar("M", bound=BaseModel)
-R = TypeVar("R")
 
 commands = typer.Typer(help="The assignments of a course.", no_args_is_help=True)
 
@@ -87,35 +83,6 @@ HintPricesOption = Annotated[
     str | None,
     typer.Option(help="What each step of a hint costs, as shares of the points: 0,0.05,0.1."),
 ]
-
-
-def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
-    """Return the result of ``work`` in a transaction; end the program with the reason of an error.
-
-    A missing database file is created only with ``create``.
-    """
-    with database(create=create) as engine:
-        try:
-            return in_transaction(engine, work)
-        except CourseError as error:
-            give_up(error)
-
-
-def deleted(
-    name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
-) -> None:
-    """Print what ``work`` would delete, ask, and delete it."""
-    found = changed(lambda it: work(it, wanted))
-    if not wanted.with_attempts:
-        # They stay, or they prevent the deletion.
-        found = found.model_copy(update={"attempts": 0})
-    numbers = found.model_dump(exclude={"deleted"})
-    told = ", ".join(f"{kind}: {count}" for kind, count in numbers.items() if count)
-    if not yes:
-        typer.confirm(f"Delete {visible(name)} permanently? {told}", abort=True)
-    apply = wanted.model_copy(update={"apply": True})
-    changed(lambda it: work(it, apply))
-    typer.echo(f"Deleted {visible(name)}: {told}.")
 
 
 def checked(model: type[M], **fields: Any) -> M:
@@ -233,7 +200,7 @@ def delete(
     yes: YesOption = False,
 ) -> None:
     """Delete an assignment with its extensions; with --with-attempts also with its attempts."""
-    name = f"the assignment {assignment}"
+    name = say("the assignment {assignment}", assignment=visible(assignment))
     deleted(
         name,
         lambda it, wanted: deletion.delete_assignment(it, course, assignment, wanted),

@@ -12,13 +12,12 @@ from service.cli.commands.attempts import encodable
 from service.cli.commands.course_assignments import (
     WithAttempts,
     YesOption,
-    changed,
     checked,
-    deleted,
 )
 from service.cli.files.output import write
 from service.cli.language import spoken
-from service.cli.terminal import complain, counted, give_up, stdout
+from service.cli.operations.course_changes import changed, deleted
+from service.cli.terminal import complain, give_up, stdout
 from service.contract.courses import (
     LONGEST_LINK_DAYS,
     Course,
@@ -38,7 +37,7 @@ from service.courses.results.gradebook import gradebook, missing, written_gradeb
 from service.courses.results.workbook import gradebook_workbook
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
-from service.translations import joined, say
+from service.translations import joined, say, say_count
 
 commands = typer.Typer(
     help="Courses: learners, links, assignments, gradebook.",
@@ -95,8 +94,11 @@ def show(course: CourseIdArgument) -> None:
 
 
 def _counts(course: Course) -> str:
-    assignments = counted(len(course.assignments), "assignment")
-    return f"{counted(course.learners, 'learner')}, {assignments}"
+    learners = say_count("{count} learner", "{count} learners", count=course.learners)
+    assignments = say_count(
+        "{count} assignment", "{count} assignments", count=len(course.assignments)
+    )
+    return spoken(joined(", ", [learners, assignments]))
 
 
 @commands.command("change")
@@ -117,7 +119,7 @@ def delete(
 ) -> None:
     """Delete a course, and end its keys and links; with --with-attempts also its attempts."""
     deleted(
-        f"the course {course}",
+        say("the course {course}", course=visible(course)),
         lambda it, wanted: deletion.delete_course(it, course, wanted, datetime.now(UTC)),
         DeletionRequest(with_attempts=with_attempts),
         yes=yes,
@@ -136,7 +138,11 @@ def remove_learner(
     Without --with-attempts the attempts stay, and count again if the learner comes back.
     """
     deleted(
-        f"the learner {learner} of the course {course}",
+        say(
+            "the learner {learner} of the course {course}",
+            learner=visible(learner),
+            course=visible(course),
+        ),
         lambda it, wanted: deletion.remove_learner(it, course, wanted, datetime.now(UTC)),
         checked(RemovalRequest, learner=learner, with_attempts=with_attempts),
         yes=yes,
@@ -160,7 +166,13 @@ def import_learners(
     except CourseError as error:
         give_up(joined(": ", [str(file), str(error.args[0])]))
     count = changed(lambda it: roll.add_learners(it, course, listed))
-    typer.echo(f"{counted(len(listed), 'learner')}, {count} of them new.")
+    imported = say_count(
+        "{count} learner, {added} of them new.",
+        "{count} learners, {added} of them new.",
+        count=len(listed),
+        added=count,
+    )
+    typer.echo(spoken(imported))
 
 
 @commands.command("links")
@@ -183,7 +195,12 @@ def links(
     now = datetime.now(UTC)
     if revoke:
         count = changed(lambda it: revoke_links(it, course, learner, now))
-        typer.echo(f"{counted(count, 'link')} ended. Each running service knows it within seconds.")
+        ended = say_count(
+            "{count} link ended. Each running service knows it within seconds.",
+            "{count} links ended. Each running service knows it within seconds.",
+            count=count,
+        )
+        typer.echo(spoken(ended))
         return
     secret = load_settings().known_secret()
     if secret is None:
@@ -241,4 +258,7 @@ def show_missing(
         ]
         told = ", ".join((*each.exercises, *dates))
         screen.print(f"{visible(names[each.learner])}: {told}", soft_wrap=True)
-    screen.print(f"Not complete: {counted(len(found), 'learner')}.")
+    incomplete = say_count(
+        "Not complete: {count} learner.", "Not complete: {count} learners.", count=len(found)
+    )
+    screen.print(spoken(incomplete))

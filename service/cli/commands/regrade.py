@@ -11,10 +11,12 @@ from service.attempts.errors import UnusableDatabaseError
 from service.attempts.regrades.outdated import BATCH, RegradedAttempt, Regrading
 from service.attempts.storage.database import in_transaction, open_database
 from service.catalogue import Exercise
+from service.cli.language import spoken
 from service.cli.running.progress import progress
 from service.cli.terminal import installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible
 from service.settings import load_settings
+from service.translations import say
 
 # The time between two counts of the queue, and to wait for other processes at the end (seconds).
 _PAUSE: Final = 0.2
@@ -39,7 +41,7 @@ def show_what_would_change(engine: Engine, exercise: Exercise, course: str | Non
         points = (
             f"{number(counted.before)} → {number(counted.after)} of {number(counted.max_points)}"
         )
-        why = "; ".join(each.reasons) or "what a late attempt earns"
+        why = "; ".join(map(spoken, each.reasons)) or spoken(say("what a late attempt earns"))
         if counted.awarded is not None:
             why += f"; a tutor's {number(counted.awarded)} stays"
         screen.print(f"{visible(each.learner)}, attempt {each.ordinal or '-'}: {points} ({why})")
@@ -84,7 +86,7 @@ def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: in
         for each in others:
             each.kill()
             each.join()
-    stdout().print(f"Regraded: {total}. The reports before are kept.")
+    stdout().print(spoken(say("Regraded: {total}. The reports before are kept.", total=total)))
 
 
 def work(exercise_id: str, course: str | None) -> None:

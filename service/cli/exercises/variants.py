@@ -1,10 +1,10 @@
 """`dh-grader exercises check --seeds` and `deploy`: many variants of one exercise."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 from rich.console import Console
@@ -13,9 +13,10 @@ from rich.text import Text
 
 from service.authoring import Level
 from service.catalogue import Exercise, load_exercise
+from service.cli.language import spoken
 from service.cli.terminal import give_up, installed_file, stdout, unwritable
 from service.figures.figure import exercise_figure
-from service.translations import say
+from service.translations import joined, say
 from service.variants.deployment import (
     CheckedVariant,
     TooFewVariantsError,
@@ -29,6 +30,15 @@ from service.variants.variant import NoVariantError, built
 _SHOWN = 10
 # Variants are of about equal difficulty if their scores differ by at most this share.
 _SPREAD = 0.2
+# The rows of the table, by the fields of VariantDifficulty.
+_ROWS: Final[Mapping[str, str]] = {
+    "joints": say("joints"),
+    "sliding": say("sliding"),
+    "turns": say("turns"),
+    "odd_twists": say("odd twists"),
+    "lengths": say("lengths"),
+    "free": say("free"),
+}
 
 
 def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
@@ -41,26 +51,46 @@ def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
     for each in checked:
         for remark in each.remarks:
             if remark.level is Level.FAILED:
-                faults[f"{remark.field}: {remark.text}"].append(each.seed)
+                faults[joined(": ", [remark.field, remark.text])].append(each.seed)
     different = len({each.form for each in checked})
     scores = Counter(each.difficulty.score for each in checked)
-    console.print(
-        Text.assemble((exercise.plain_id, "bold"), f": {count} seeds, {different} different"),
-        soft_wrap=True,
-    )
+    found = spoken(say("{count} seeds, {different} different", count=count, different=different))
+    console.print(Text.assemble((exercise.plain_id, "bold"), f": {found}"), soft_wrap=True)
     console.print(_table(checked))
     low, high = min(scores), max(scores)
     if high - low > _SPREAD * high:
-        hint = "deploy chooses variants of one difficulty"
-        console.print(Text(f"  warning: the scores differ from {low} to {high}; {hint}", "yellow"))
+        _warn(
+            console,
+            say(
+                "the scores differ from {low} to {high}; deploy chooses variants of one difficulty",
+                low=str(low),
+                high=str(high),
+            ),
+        )
     warned = sum(any(r.level is Level.WARNING for r in each.remarks) for each in checked)
     if warned:
-        told = "give much for an answer of only zeros and joint variables"
-        console.print(Text(f"  warning: {warned} of {count} variants {told}", "yellow"))
+        _warn(
+            console,
+            say(
+                "{warned} of {count} variants give much for an answer of only zeros and joint "
+                "variables",
+                warned=warned,
+                count=count,
+            ),
+        )
     for fault, seeds in list(faults.items())[:_SHOWN]:
-        line = f"  failed: {len(seeds)} variants, such as {exercise.plain_id}~{seeds[0]}: {fault}"
-        console.print(Text(line, "red"), soft_wrap=True)
+        line = say(
+            "{count} variants, such as {variant}: {fault}",
+            count=len(seeds),
+            variant=f"{exercise.plain_id}~{seeds[0]}",
+            fault=fault,
+        )
+        console.print(Text(f"  failed: {spoken(line)}", "red"), soft_wrap=True)
     return bool(faults)
+
+
+def _warn(console: Console, warning: str) -> None:
+    console.print(Text(f"  warning: {spoken(warning)}", "yellow"))
 
 
 def _table(checked: Sequence[CheckedVariant]) -> Table:
@@ -69,14 +99,17 @@ def _table(checked: Sequence[CheckedVariant]) -> Table:
     rows: dict[str, list[float]] = defaultdict(list)
     for each in checked:
         for name, number in asdict(each.difficulty).items():
-            rows[name.replace("_", " ")].append(number)
-        rows["score"].append(each.difficulty.score)
-        rows["lazy points"].append(round(each.lazy, 2))
-    table.add_row("", "least", "greatest", "the usual one", style="dim")
+            rows[_ROWS[name]].append(number)
+        rows[say("score")].append(each.difficulty.score)
+        rows[say("lazy points")].append(round(each.lazy, 2))
+    heads = (say("least"), say("greatest"), say("the usual one"))
+    table.add_row("", *map(spoken, heads), style="dim")
     for name, numbers in rows.items():
         usual, times = Counter(numbers).most_common(1)[0]
-        share = f"{usual:g} ({times} of {len(numbers)})"
-        table.add_row(name, f"{min(numbers):g}", f"{max(numbers):g}", share)
+        share = say(
+            "{usual} ({times} of {count})", usual=f"{usual:g}", times=times, count=len(numbers)
+        )
+        table.add_row(spoken(name), f"{min(numbers):g}", f"{max(numbers):g}", spoken(share))
     return table
 
 
@@ -111,7 +144,7 @@ def deploy_command(
     console = stdout()
     for each in checked:
         faults = [remark.text for remark in each.remarks if remark.level is Level.FAILED]
-        told = "".join(f"; failed: {fault}" for fault in faults)
+        told = "".join(f"; failed: {spoken(fault)}" for fault in faults)
         console.print(f"{exercise.id}~{each.seed}: {each.title}{told}", soft_wrap=True)
     console.print(_table(checked))
     if figures is not None:
@@ -131,7 +164,8 @@ def deploy_command(
         file.write_text(text, encoding="utf-8")
     except OSError as error:
         give_up(unwritable(file, error))
-    console.print(f"{file}: deployed = {len(seeds)} seeds", soft_wrap=True)
+    written = say("{file}: deployed = {count} seeds", file=str(file), count=len(seeds))
+    console.print(spoken(written), soft_wrap=True)
 
 
 def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
-from service.cli.commands.course_assignments import CourseOption, changed
+from service.cli.commands.course_assignments import CourseOption
 from service.cli.language import spoken, user_language
+from service.cli.operations.course_changes import changed
 from service.cli.terminal import stdout
 from service.contract.scores import SendAgainRequest
 from service.formats.shared.plain_text import number, visible

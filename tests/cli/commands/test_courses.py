@@ -35,6 +35,19 @@ def test_counts_have_the_right_number(course: str, tmp_path: Path) -> None:
     assert learners(course, tmp_path / "c.csv", "ada", "bo") == "2 learners, 1 of them new.\n"
 
 
+def test_counts_and_questions_are_in_the_language(
+    course: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
+    assert learners(course, tmp_path / "c.csv", "ada") == "1 Person, davon neu: 1.\n"
+    assert run("list").stdout.endswith("  1 Person, 0 Übungsblätter\n")
+    # Nobody answers the question.
+    assert run("delete", course).stdout.startswith("Kurs robots endgültig löschen? Lernende: 1 [")
+    assert run("delete", course, "--yes").stdout == "Kurs robots gelöscht: Lernende: 1.\n"
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "none.db"))
+    assert run("list").stderr.endswith("none.db: diese Datei gibt es nicht\n")
+
+
 def test_links_without_an_address_say_that_they_are_local(course: str, tmp_path: Path) -> None:
     learners(course, tmp_path / "c.csv", "ada")
     local = run("links", course)

@@ -30,6 +30,16 @@ def test_check_counts_seeds_and_what_differs(run: Run, arm: Path) -> None:
     assert re.search(r"lengths +2 +2 +2 \(4 of 4\)", checked.stdout)
 
 
+def test_what_differs_is_in_the_language(
+    run: Run, arm: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
+    checked = run("exercises", "check", arm, "--seeds", 4)
+    assert re.search(r"arm: 4 Seeds, [1-4] verschiedene", checked.stdout)
+    assert re.search(r"kleinster Wert +größter Wert +häufigster Wert", checked.stdout)
+    assert re.search(r"Längen +2 +2 +2 \(4 von 4\)", checked.stdout)
+
+
 def test_check_names_a_variant_in_which_a_check_fails(run: Run, arm: Path) -> None:
     # Right for the first choice of a1 only.
     text = arm.read_text(encoding="utf-8")

@@ -1,0 +1,60 @@
+"""Changes and deletions in courses by the command line."""
+
+from collections.abc import Callable, Mapping
+from typing import Final, TypeVar
+
+import typer
+from sqlalchemy import Connection
+
+from service.attempts.storage.database import in_transaction
+from service.cli.commands.attempts import database
+from service.cli.language import spoken
+from service.cli.terminal import give_up
+from service.contract.courses import DeletedData, DeletionRequest
+from service.courses.errors import CourseError
+from service.translations import Sentence, joined, say, template
+
+D = TypeVar("D", bound=DeletionRequest)
+R = TypeVar("R")
+
+# What a deletion counts, by the fields of DeletedData.
+_COUNTS: Final[Mapping[str, str]] = {
+    "assignments": template("assignments: {count}"),
+    "learners": template("learners: {count}"),
+    "extensions": template("extensions: {count}"),
+    "keys": template("keys: {count}"),
+    "attempts": template("attempts: {count}"),
+}
+
+
+def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
+    """Return the result of ``work`` in a transaction; end the program with the reason of an error.
+
+    A missing database file is created only with ``create``.
+    """
+    with database(create=create) as engine:
+        try:
+            return in_transaction(engine, work)
+        except CourseError as error:
+            give_up(error)
+
+
+def deleted(
+    name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
+) -> None:
+    """Print what ``work`` would delete, ask, and delete it. ``name`` is visible text."""
+    found = changed(lambda it: work(it, wanted))
+    if not wanted.with_attempts:
+        # They stay, or they prevent the deletion.
+        found = found.model_copy(update={"attempts": 0})
+    numbers = found.model_dump(exclude={"deleted"})
+    counts = joined(
+        ", ",
+        [Sentence(_COUNTS[kind], {"count": count}) for kind, count in numbers.items() if count],
+    )
+    if not yes:
+        question = say("Delete {name} permanently? {counts}", name=name, counts=counts)
+        typer.confirm(spoken(question), abort=True)
+    apply = wanted.model_copy(update={"apply": True})
+    changed(lambda it: work(it, apply))
+    typer.echo(spoken(say("Deleted {name}: {counts}.", name=name, counts=counts)))
