@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -17,12 +16,14 @@ from service.access.open_access import OPEN_HERE
 from service.api.application import application
 from service.api.permissions.access import Access
 from service.attempts.storage.database import in_transaction
+from service.attempts.storage.tables import metadata
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
 from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.courses.links import issue_links
+from tests.attempts.databases import TEMPLATE, new_database, new_file
 
 SECRET = Secret("0123456789abcdef" * 4)
 NOW = datetime.now(UTC)
@@ -75,14 +76,61 @@ class Class:
         return course["assignments"][0]["exercises"][0]
 
 
+class Services:
+    """A service for each kind of database and catalogue: to build it takes longer than a test."""
+
+    def __init__(self, url: Callable[[str], str]) -> None:
+        self._url = url
+        # The catalogue is kept with its service: its identity is in the key.
+        self._built: dict[tuple[str, int], tuple[Any, AttemptStore, KeyRing, object]] = {}
+
+    def empty(self, kind: str, catalogue: Mapping[str, Exercise]) -> tuple[Any, AttemptStore]:
+        """Return the application and its store, without any row."""
+        place = kind, id(catalogue)
+        if place not in self._built:
+            self._built[place] = self._build(AttemptStore.open(self._url(kind)), catalogue)
+        app, store, *_ = self._built[place]
+        with store.engine.begin() as connection:
+            for table in reversed(metadata.sorted_tables):
+                connection.execute(table.delete())
+        return app, store
+
+    def close(self) -> None:
+        for _, store, ring, _ in self._built.values():
+            ring.close()
+            store.close()
+
+    def _build(
+        self, store: AttemptStore, catalogue: Mapping[str, Exercise]
+    ) -> tuple[Any, AttemptStore, KeyRing, object]:
+        ring = KeyRing(store.engine, SECRET, seconds=0.01)
+        ring.expect_keys()
+        access = Access(OPEN_HERE, read_attempts=None, keys=ring)
+        app = application(catalogue, access=access, store=store)
+        store.start()
+        return app, store, ring, catalogue
+
+
+@pytest.fixture(scope="session")
+def services(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Services]:
+    def url(kind: str) -> str:
+        if kind == "sqlite":
+            return new_file(tmp_path_factory.mktemp("courses"))
+        return new_database(request.getfixturevalue("postgresql"), "courses", TEMPLATE)
+
+    made = Services(url)
+    yield made
+    made.close()
+
+
 @pytest.fixture(params=["sqlite"])
 def class_(
-    request: pytest.FixtureRequest, catalogue: Mapping[str, Exercise], tmp_path: Path
-) -> Iterator[Class]:
+    request: pytest.FixtureRequest, services: Services, catalogue: Mapping[str, Exercise]
+) -> Class:
     """The class, in the kind of database of the parameter."""
-    is_sqlite = request.param == "sqlite"
-    url = str(tmp_path / "attempts.db") if is_sqlite else request.getfixturevalue("postgresql_url")
-    store = AttemptStore.open(url)
+    app, store = services.empty(request.param, catalogue)
 
     def set_up(connection: Connection) -> dict[str, str]:
         course = NewCourse(id="robots", title="Robots", zone="Europe/Berlin")
@@ -92,15 +140,7 @@ def class_(
         links = issue_links(connection, "robots", LinksRequest(), SECRET, ADDRESS, NOW)
         return {each.learner: each.link.partition("#")[2] for each in links}
 
-    keys = in_transaction(store.engine, set_up)
-    ring = KeyRing(store.engine, SECRET, seconds=0.01)
-    app = application(
-        catalogue, access=Access(OPEN_HERE, read_attempts=None, keys=ring), store=store
-    )
-    store.start()
-    yield Class(store, keys, app)
-    ring.close()
-    store.close()
+    return Class(store, in_transaction(store.engine, set_up), app)
 
 
 def days(count: float) -> str:

@@ -41,7 +41,7 @@ BASE = "/v1/courses/robots/assignments/homework"
 HAND_IN = f"{BASE}/attempts"
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def catalogue(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
     return {"scara": catalogue["scara"], "arm": varied()}
 
