@@ -157,25 +157,31 @@ OTHER_READINGS = [
         2,
         (0,),
     ),
-    # The row of the tool is missing, which an empty row before it hides.
+    # Without the row of the tool, a wrong row before it could lead to any tool.
     OtherReading(
         Robot(
-            "RRR without its tool row",
-            "RRR",
-            MODIFIED,
-            ("q1", "q2", "q3"),
+            "RRPR without its tool row",
+            "RRPR",
+            STANDARD,
+            ("q1", "q2", "q3", "q4"),
             (
-                ("l1", "0", "0", "q1"),
-                ("l1", "0", "l2", "q2"),
-                ("0.90", "0", "l3", "q3"),
-                ("0", "0", "0", "0"),
+                ("0.598", "pi/2", "0", "q1"),
+                ("0", "pi/2", "0.314", "q2"),
+                ("0", "-pi/2", "q3", "0"),
+                ("0", "pi", "0", "q4+-pi/2"),
             ),
-            ("l1", "l2", "l3"),
+            (),
         ),
         GIVEN,
         MODIFIED,
-        [["l1", "pi", "0", "-q1"], ["l1", "pi", "l2", "q2"], ["l2", "0", "0", "pi/6"]],
-        2,
+        [
+            ["0", "0", "0", "q1"],
+            ["0.598", "pi/2", "0.314", "q2"],
+            ["0", "pi/2", "q3", "0"],
+            ["0.12", "-pi/2", "0", "q4 - pi/2"],
+            ["0", "-pi/2", "0", "0"],
+        ],
+        4,
     ),
     # Two cells of one row are wrong; with more of its cells wrong, it needs no geometry.
     OtherReading(

@@ -49,7 +49,6 @@ def with_fair_points(
     """
     budget = grading.reader.budget
     unread = np.isnan(answer.values).any(axis=-1)
-    given_up = partial(_row_given_up, part, answer, judged, judged_again, AGAIN * work, grading)
     if missing := _missing_at_end(part, answer, judged, grading):
         # A missing row counts as a wrong one.
         if judged.count_wrong == missing * len(COLUMNS):
@@ -57,8 +56,7 @@ def with_fair_points(
         budget.charge_search(work)
         full = with_wrong_rows(answer, missing, grading)
         fair = with_fair_points(part, full, judged_again(full), judged_again, work, grading)
-        # If a row is empty, it may not be seen that another one is missing.
-        return replace(judged, at_most=fair, at_least=None if unread.any() else given_up(fair))
+        return replace(judged, at_most=fair, at_least=None if unread.any() else fair)
     if unread.any():
         empty = empty_cells(answer)
         # A table without any readable cell earns nothing anyway.
@@ -69,23 +67,23 @@ def with_fair_points(
         others += [] if judged.at_most is None else [judged.at_most]
         most = max(others, key=partial(steps_lost, part))
         return replace(judged, at_most=most, at_least=None)
-    best = given_up(judged)
+    best = _best_without_a_row(part, answer, judged, judged_again, AGAIN * work, grading)
     return judged if best is judged else replace(judged, at_least=best)
 
 
-def _row_given_up(
+def _best_without_a_row(
     part: DhTableSpec,
     answer: StudentTable,
     judged: Judged,
     judged_again: Callable[[StudentTable], Judged],
     work: float,
     grading: Grading,
-    best: Judged,
 ) -> Judged:
-    """Return ``best``, or the judgement with one row given up if that loses less.
+    """Return the judgement, or the one with one row given up that loses least, if it loses less.
 
     To judge again costs ``work``.
     """
+    best = judged
     counts = _counts_wrong(judged)
     # All tables that differ from the answer in as few cells, or in one row, have been compared.
     is_searched = _has_given_ends(part, judged) and (
