@@ -10,7 +10,7 @@ import threading
 import traceback
 from contextlib import suppress
 
-from service.translations import LANGUAGES
+from service.translations import ENGLISH, LANGUAGES
 from service.web.tutor.checking import DONE, IDLE_SECONDS, READY, received, send
 from service.web.tutor.exercise_check import CheckRequest, checked
 
@@ -35,7 +35,7 @@ def main() -> None:
         while True:
             code, _, body = bodies.get(timeout=IDLE_SECONDS).partition(b"\n")
             try:
-                language = LANGUAGES[code.decode()]
+                language = LANGUAGES.get(code.decode(), ENGLISH)
                 content = checked(CheckRequest.model_validate_json(body), language)
             except Exception:  # noqa: BLE001 - the service answers 500, and the log says why
                 traceback.print_exc()
