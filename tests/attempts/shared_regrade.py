@@ -48,7 +48,17 @@ def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: 
     """
     dice = random.Random(1)
     settings = {"DH_GRADER_DATABASE": url, "DH_GRADER_EXERCISES_DIR": str(folder)}
-    command = [sys.executable, "-m", "service", "attempts", "regrade", "scara", "--apply"]
+    # By another marking rule, the exercise's own check expects other points.
+    command = [
+        sys.executable,
+        "-m",
+        "service",
+        "attempts",
+        "regrade",
+        "scara",
+        "--apply",
+        "--force",
+    ]
     with store.engine.connect() as connection:
         total = connection.scalar(select(func.count()).select_from(attempts)) or 0
     begun = time.monotonic()
