@@ -7,7 +7,6 @@ any frames. A table with empty cells earns at most as much as with such numbers 
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -47,6 +46,10 @@ def with_fair_points(
 
     ``judged_again`` judges another table, which costs ``work``.
     """
+
+    def lost(other: Judged) -> int:
+        return steps_lost(part, other)
+
     budget = grading.reader.budget
     unread = np.isnan(answer.values).any(axis=-1)
     if missing := _missing_at_end(part, answer, judged, grading):
@@ -65,46 +68,27 @@ def with_fair_points(
         budget.charge_search(work)
         others = [judged_again(with_wrong_cells(answer, empty, grading))]
         others += [] if judged.at_most is None else [judged.at_most]
-        most = max(others, key=partial(steps_lost, part))
-        return replace(judged, at_most=most, at_least=None)
-    best = _best_without_a_row(part, answer, judged, judged_again, AGAIN * work, grading)
-    return judged if best is judged else replace(judged, at_least=best)
-
-
-def _best_without_a_row(
-    part: DhTableSpec,
-    answer: StudentTable,
-    judged: Judged,
-    judged_again: Callable[[StudentTable], Judged],
-    work: float,
-    grading: Grading,
-) -> Judged:
-    """Return the judgement, or the one with one row given up that loses least, if it loses less.
-
-    To judge again costs ``work``.
-    """
+        return replace(judged, at_most=max(others, key=lost), at_least=None)
     best = judged
     counts = _counts_wrong(judged)
     # All tables that differ from the answer in as few cells, or in one row, have been compared.
     is_searched = _has_given_ends(part, judged) and (
         sum(counts) <= FEW or np.count_nonzero(counts) == 1
     )
-    rows = _wrong_rows(part, judged, len(answer.rows))
-    for row, content in _content_in_any_frames(part, answer, rows, grading):
-        lost = steps_lost(part, best)
-        if lost <= least_lost(part, judged, content) or (content and is_searched):
+    wrong = _wrong_rows(part, judged, len(answer.rows))
+    for row, content in _content_in_any_frames(part, answer, wrong, grading):
+        if lost(best) <= least_lost(part, judged, content) or (content and is_searched):
             continue
-        if not grading.reader.budget.affords_search(work):
+        if not budget.affords_search(AGAIN * work):
             break
-        cells = np.zeros((len(answer.rows), len(COLUMNS)), np.bool_)
+        cells = np.zeros(unread.shape, np.bool_)
         cells[row] = True
         other = judged_again(with_wrong_cells(answer, cells, grading))
         if other.is_right:
             # The row may be anything, such as the last one if the tool is free.
             other = judged_again(with_empty_cells(answer, cells))
-        if steps_lost(part, other) < lost:
-            best = other
-    return best
+        best = min(best, other, key=lost)
+    return judged if best is judged else replace(judged, at_least=best)
 
 
 def _missing_at_end(
@@ -144,8 +128,8 @@ def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
         # The other rows determine this row.
         return []
     # If base, tool or directions are free, a wrong row may make another one look wrong.
-    is_any = not has_given_ends and sum(counts) > FEW
-    return sorted((i for i in range(rows) if counts[i] or is_any), key=lambda i: -counts[i])
+    takes_all = not has_given_ends and sum(counts) > FEW
+    return sorted((i for i in range(rows) if counts[i] or takes_all), key=lambda i: -counts[i])
 
 
 def _counts_wrong(judged: Judged) -> list[int]:
