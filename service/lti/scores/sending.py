@@ -53,7 +53,8 @@ class BackgroundSending:
         self._thread.join()
 
     def _committed(self, connection: Connection) -> None:
-        if connection.info.pop(self._queued, False):
+        # One that is closed leaves the note to its successor.
+        if not self._closed.is_set() and connection.info.pop(self._queued, False):
             self._wake.set()
 
     def _run(self) -> None:
