@@ -35,9 +35,8 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
         yield failed(
             fields[part],
             say(
-                "the right answer to {part} has an entry of more than the {most} characters "
-                "that are read, so nobody can submit it; ask for less, such as the pose of a "
-                "frame in between",
+                "nobody can submit the right answer to {part}: an entry of it has more than {most} "
+                "characters; ask for less, such as the pose of an earlier frame",
                 part=part,
                 most=LIMITS.characters,
             ),

@@ -74,25 +74,21 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
         )
     joints = {joint.index for joint in exercise.joints}
     if _SHORTHAND.fullmatch(name) and set(map(int, name[1:])) <= joints:
-        yield (
-            say(
-                "takes the place of the shorthand {name} for {function}: students who write "
-                "{name} for that are marked wrong; rename it",
-                name=name,
-                function=_MISLEADING[name[0].lower()],
-            )
+        yield say(
+            "takes the place of the shorthand {name} for {function}: students who write "
+            "{name} for that are marked wrong; rename it",
+            name=name,
+            function=_MISLEADING[name[0].lower()],
         )
     if variable.joint is None:
         for joint in exercise.joints:
             names = {f"q{joint.index}", f"{'d' if joint.prismatic else 'theta'}{joint.index}"}
             if name in names and name != joint.variable:
-                yield (
-                    say(
-                        "is also what students call {variable}, the variable of joint {joint}; "
-                        "rename one of them",
-                        variable=joint.variable,
-                        joint=joint.index,
-                    )
+                yield say(
+                    "is also what students call {variable}, the variable of joint {joint}; "
+                    "rename one of them",
+                    variable=joint.variable,
+                    joint=joint.index,
                 )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NoReturn
 
+import typer
 from rich.console import Console
 
 from service.catalogue import Exercise, exercise_files, load_catalogue, load_exercise
@@ -45,6 +46,11 @@ def unwritable(file: Path | str, error: OSError) -> Sentence:
 def unreadable(file: Path | str, error: OSError) -> Sentence:
     """Return the message that a file cannot be read."""
     return say("{file}: cannot be read: {reason}", file=str(file), reason=str(error.strerror))
+
+
+def tell(message: str) -> None:
+    """Write a message to standard output, in the language of the user."""
+    typer.echo(spoken(message))
 
 
 def complain(message: str | Exception) -> None:

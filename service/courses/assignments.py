@@ -20,7 +20,7 @@ from service.contract.courses import (
     NewAssignment,
 )
 from service.courses import roll
-from service.courses.errors import CourseError
+from service.courses.errors import CourseError, unknown_assignment, unknown_learner
 from service.courses.terms import extended
 from service.courses.times import local, moment
 from service.submissions.lookup import nearest
@@ -87,10 +87,7 @@ def extend(
         course_learners.c.learner == extension.learner
     )
     if connection.scalar(select(course_learners.c.learner).where(enrolled)) is None:
-        raise CourseError(
-            "unknown-learner",
-            say("The course has no learner {learner}.", learner=extension.learner),
-        )
+        raise unknown_learner(extension.learner)
     values = {
         "due": _moment(extension.due, zone),
         "closes": _moment(extension.closes, zone),
@@ -112,10 +109,7 @@ def assignment_of(connection: Connection, course: str, assignment: str) -> Cours
     for each in assignments_of(connection, course):
         if each.id == assignment:
             return each
-    raise CourseError(
-        "unknown-assignment",
-        say("The course has no assignment {assignment}.", assignment=assignment),
-    )
+    raise unknown_assignment(assignment)
 
 
 def assignments_of(connection: Connection, course: str) -> list[CourseAssignment]:
@@ -163,10 +157,7 @@ def assignment_row(connection: Connection, course: str, assignment: str) -> Row[
     mine = (assignments.c.course == course) & (assignments.c.id == assignment)
     found = connection.execute(select(assignments).where(mine)).one_or_none()
     if found is None:
-        raise CourseError(
-            "unknown-assignment",
-            say("The course has no assignment {assignment}.", assignment=assignment),
-        )
+        raise unknown_assignment(assignment)
     return found
 
 

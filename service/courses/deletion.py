@@ -29,9 +29,16 @@ from service.attempts.storage.tables import (
 from service.contract.courses import DeletedData, DeletionRequest, RemovalRequest
 from service.courses import roll
 from service.courses.assignments import assignment_of
-from service.courses.errors import CourseError
+from service.courses.errors import CourseError, unknown_learner
 from service.courses.links import people
-from service.translations import say
+from service.translations import say, template
+
+_COURSE_HAS_ATTEMPTS = template(
+    "The course {name} has {count} recorded attempts. Delete them, too: with_attempts."
+)
+_ASSIGNMENT_HAS_ATTEMPTS = template(
+    "The assignment {name} has {count} recorded attempts. Delete them, too: with_attempts."
+)
 
 
 def delete_course(
@@ -51,7 +58,7 @@ def delete_course(
         attempts=_count(connection, attempts, attempts.c.assignment.in_(mine)),
     )
     if wanted.apply:
-        _require_none(data, wanted, say("The course {course}", course=course))
+        _require_none(data, wanted, _COURSE_HAS_ATTEMPTS, course)
         _delete_assignments(connection, mine)
         # The next launch from there makes a new course.
         of_course = select(contexts.c.number).where(contexts.c.course == course)
@@ -78,7 +85,7 @@ def delete_assignment(
         attempts=_count(connection, attempts, attempts.c.assignment.in_(mine)),
     )
     if wanted.apply:
-        _require_none(data, wanted, say("The assignment {assignment}", assignment=assignment))
+        _require_none(data, wanted, _ASSIGNMENT_HAS_ATTEMPTS, assignment)
         _delete_assignments(connection, mine)
     return data
 
@@ -92,9 +99,7 @@ def remove_learner(
     """
     learner = wanted.learner
     if learner not in {each.learner for each in people(connection, course)}:
-        raise CourseError(
-            "unknown-learner", say("The course has no learner {learner}.", learner=learner)
-        )
+        raise unknown_learner(learner)
     mine = _assignments(connection, course, true())
     ending = (keys.c.course == course) & (keys.c.learner == learner) & keys.c.revoked_at.is_(None)
     extended = extensions.c.assignment.in_(mine) & (extensions.c.learner == learner)
@@ -145,14 +150,9 @@ def _delete_assignments(connection: Connection, numbers: Select[tuple[int]]) -> 
     connection.execute(delete(assignments).where(assignments.c.number.in_(numbers)))
 
 
-def _require_none(data: DeletedData, wanted: DeletionRequest, what: str) -> None:
+def _require_none(data: DeletedData, wanted: DeletionRequest, told: str, name: str) -> None:
     if data.attempts and not wanted.with_attempts:
-        message = say(
-            "{what} has {count} recorded attempts. Delete them, too: with_attempts.",
-            what=what,
-            count=data.attempts,
-        )
-        raise CourseError("has-attempts", message)
+        raise CourseError("has-attempts", say(told, name=name, count=data.attempts))
 
 
 def _count(connection: Connection, table: Table, condition: ColumnElement[bool]) -> int:

@@ -2,6 +2,8 @@
 
 from typing import Literal
 
+from service.translations import say
+
 CourseFault = Literal[
     "unknown-course",
     "unknown-assignment",
@@ -19,3 +21,26 @@ class CourseError(Exception):
     def __init__(self, name: CourseFault, message: str) -> None:
         self.name = name
         super().__init__(message)
+
+
+def unknown_course(course: str) -> CourseError:
+    """Return the error that there is no such course."""
+    return CourseError("unknown-course", say("There is no course {course}.", course=course))
+
+
+def unknown_learner(learner: str) -> CourseError:
+    """Return the error that a course has no such learner."""
+    message = say("The course has no learner {learner}.", learner=learner)
+    return CourseError("unknown-learner", message)
+
+
+def unknown_assignment(assignment: str) -> CourseError:
+    """Return the error that a course has no such assignment."""
+    message = say("The course has no assignment {assignment}.", assignment=assignment)
+    return CourseError("unknown-assignment", message)
+
+
+def links_need_a_secret() -> CourseError:
+    """Return the error that the service has no secret to sign links."""
+    message = say("Personal links need a secret: set DH_GRADER_SECRET.")
+    return CourseError("unusable", message)

@@ -16,10 +16,9 @@ from service.access.key_table import insert_key, link_keys, settle
 from service.access.keys import WRONG_SECRET, Key, Secret
 from service.attempts.storage.tables import course_learners, courses, keys
 from service.contract.courses import LinksRequest, PersonalLink
-from service.courses.errors import CourseError
+from service.courses.errors import CourseError, unknown_course, unknown_learner
 from service.courses.names import place_of
 from service.formats.shared import spreadsheet
-from service.translations import say
 
 # The page of a learner, relative to the service. The key is in the fragment, which browsers neither
 # send to a server nor name as referrer.
@@ -93,7 +92,7 @@ def people(connection: Connection, course: str) -> list[Row[Any]]:
     Raises CourseError.
     """
     if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
-        raise CourseError("unknown-course", say("There is no course {course}.", course=course))
+        raise unknown_course(course)
     of_course = course_learners.c
     named = select(of_course.learner, of_course.name, of_course.family_name, of_course.email)
     return sorted(connection.execute(named.where(of_course.course == course)), key=place_of)
@@ -106,7 +105,5 @@ def _chosen(
     if only is None:
         return rows
     if unknown := sorted(set(only) - {row.learner for row in rows}):
-        raise CourseError(
-            "unknown-learner", say("The course has no learner {learner}.", learner=unknown[0])
-        )
+        raise unknown_learner(unknown[0])
     return [row for row in rows if row.learner in set(only)]

@@ -9,7 +9,7 @@ from sqlalchemy import ColumnElement, Connection, func, insert, select, true, up
 from service.attempts.recording import insert_or_ignore
 from service.attempts.storage.tables import assignments, course_learners, courses
 from service.contract.courses import Course, CourseChange, CourseLearner, NewCourse, NewLearner
-from service.courses.errors import CourseError
+from service.courses.errors import CourseError, unknown_course
 from service.courses.links import links_until, people
 from service.courses.times import zone_named
 from service.translations import say
@@ -41,7 +41,7 @@ def course(connection: Connection, course_id: str) -> Course:
     """Return a course. Raises CourseError."""
     for found in _courses(connection, courses.c.id == course_id):
         return found
-    raise CourseError("unknown-course", say("There is no course {course}.", course=course_id))
+    raise unknown_course(course_id)
 
 
 def all_courses(connection: Connection, only: str | None = None) -> list[Course]:

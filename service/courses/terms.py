@@ -14,9 +14,8 @@ from service.attempts.storage.tables import assignments, course_learners, course
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
 from service.contract.courses import AssignmentState, Practice, ShowSolution
-from service.courses.errors import CourseError
+from service.courses.errors import unknown_assignment, unknown_course, unknown_learner
 from service.courses.times import local
-from service.translations import say
 
 _EXTENDED: Final = ("due", "closes", "max_attempts")
 _OWN: Final = and_(
@@ -115,15 +114,10 @@ def terms_of(connection: Connection, course: str, assignment: str, learner: str)
         return _terms(found)
     enrolled = and_(course_learners.c.course == course, course_learners.c.learner == learner)
     if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
-        raise CourseError("unknown-course", say("There is no course {course}.", course=course))
+        raise unknown_course(course)
     if connection.scalar(select(course_learners.c.course).where(enrolled)) is None:
-        raise CourseError(
-            "unknown-learner", say("The course has no learner {learner}.", learner=learner)
-        )
-    raise CourseError(
-        "unknown-assignment",
-        say("The course has no assignment {assignment}.", assignment=assignment),
-    )
+        raise unknown_learner(learner)
+    raise unknown_assignment(assignment)
 
 
 def learner_terms(

@@ -9,13 +9,13 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import reduce
 from os.path import commonpath
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
+from service.catalogue.files.refusals import alternatives
 from service.submissions.assignment import AssignedExercise, Assignment
 from service.submissions.body import GradeRequest
 from service.submissions.file_content import (
@@ -296,9 +296,7 @@ def read_body(
             say(
                 "is the pasted answer to one part: name the file after it, as in {names}, or name "
                 "the part with --part",
-                names=reduce(
-                    lambda one, other: say("{one} or {other}", one=one, other=other), names
-                ),
+                names=alternatives(names),
             )
         )
     if content.is_pasted or not isinstance(value, dict) or "answers" not in value:

@@ -81,34 +81,34 @@ class Services:
 
     def __init__(self, url: Callable[[str], str]) -> None:
         self._url = url
-        # The catalogue is kept with its service: its identity is in the key.
-        self._built: dict[tuple[str, int], tuple[Any, AttemptStore, KeyRing, object]] = {}
+        # An application keeps its catalogue, so no other one gets the same identity.
+        self._built: dict[tuple[str, int], tuple[Any, AttemptStore, KeyRing]] = {}
 
     def empty(self, kind: str, catalogue: Mapping[str, Exercise]) -> tuple[Any, AttemptStore]:
         """Return the application and its store, without any row."""
         place = kind, id(catalogue)
         if place not in self._built:
             self._built[place] = self._build(AttemptStore.open(self._url(kind)), catalogue)
-        app, store, *_ = self._built[place]
+        app, store, _ = self._built[place]
         with store.engine.begin() as connection:
             for table in reversed(metadata.sorted_tables):
                 connection.execute(table.delete())
         return app, store
 
     def close(self) -> None:
-        for _, store, ring, _ in self._built.values():
+        for _, store, ring in self._built.values():
             ring.close()
             store.close()
 
     def _build(
         self, store: AttemptStore, catalogue: Mapping[str, Exercise]
-    ) -> tuple[Any, AttemptStore, KeyRing, object]:
+    ) -> tuple[Any, AttemptStore, KeyRing]:
         ring = KeyRing(store.engine, SECRET, seconds=0.01)
         ring.expect_keys()
         access = Access(OPEN_HERE, read_attempts=None, keys=ring)
         app = application(catalogue, access=access, store=store)
         store.start()
-        return app, store, ring, catalogue
+        return app, store, ring
 
 
 @pytest.fixture(scope="session")

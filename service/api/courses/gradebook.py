@@ -12,8 +12,7 @@ from service.api.recording.store import private, private_json
 from service.contract.attempts import Learner
 from service.contract.courses import Gradebook, GradebookFormat, MissingList
 from service.contract.own_courses import OwnCourses
-from service.courses.errors import CourseError
-from service.translations import say
+from service.courses.errors import unknown_learner
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -97,8 +96,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         now = datetime.now(UTC)
         view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))
         if not view.courses:
-            message = say("The course has no learner {learner}.", learner=learner)
-            raise course_problem(CourseError("unknown-learner", message))
+            raise course_problem(unknown_learner(learner))
         return private(view)
 
     return router

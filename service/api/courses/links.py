@@ -10,8 +10,7 @@ from service.api.http.bodies import read_body
 from service.api.permissions.access import Access
 from service.api.recording.store import private
 from service.contract.courses import LinkList, LinksRequest, RevokedLinks, RevokeLinksRequest
-from service.courses.errors import CourseError
-from service.translations import say
+from service.courses.errors import links_need_a_secret
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -40,8 +39,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         body = await read_body(LinksRequest, request)
         secret = None if access.keys is None else access.keys.secret
         if secret is None:
-            message = say("Personal links need a secret: set DH_GRADER_SECRET.")
-            raise course_problem(CourseError("unusable", message))
+            raise course_problem(links_need_a_secret())
         known, address, now = secret, str(request.base_url), datetime.now(UTC)
         return private(
             LinkList(

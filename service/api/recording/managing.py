@@ -196,10 +196,8 @@ def routes(
         exercise = exercise_or_404(catalogue, exercise_id.partition("~")[0])
         course = course_of(access.caller(request), course)
         body = await read_body(RegradeRequest, request)
-        language = language_of(request)
-        return private(
-            await ask(store, lambda it: regrades.step(it, exercise, course, body, language))
-        )
+        step = partial(regrades.step, exercise, course, body, language_of(request))
+        return private(await ask(store, lambda it: regrades.work.do(partial(step, it))))
 
     return router
 
@@ -209,31 +207,21 @@ class _Regrades:
 
     def __init__(self, ceiling: FeedbackLevel) -> None:
         self._ceiling = ceiling
-        self._work = BoundedWork()
+        self.work = BoundedWork()
         # The regrade of the last step, which has memoized the reports on equal answers.
         self._last: tuple[Exercise, str | None, Regrading] | None = None
         # The exercise that was checked last.
         self._checked: tuple[Exercise, list[str]] | None = None
 
-    async def step(
+    def step(
         self,
-        store: "AttemptStore",
         exercise: Exercise,
         course: str | None,
         body: RegradeRequest,
         language: Language,
+        store: "AttemptStore",
     ) -> RegradeAnswer:
         """Do one step in a course, or in all. Raises ProblemError, StoreDownError."""
-        return await self._work.do(partial(self._step, store, exercise, course, body, language))
-
-    def _step(
-        self,
-        store: "AttemptStore",
-        exercise: Exercise,
-        course: str | None,
-        body: RegradeRequest,
-        language: Language,
-    ) -> RegradeAnswer:
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 

@@ -354,6 +354,9 @@ def _reasons(old: PartResults, new: PartResults) -> list[str]:
             reasons.append(say("{name} is new, {verdict}", name=name, verdict=new[name][0]))
         elif old[name] != new[name]:
             before, after = old[name][0], new[name][0]
-            other_points = say("{name} {verdict}, other points", name=name, verdict=after)
-            reasons.append(other_points if before == after else f"{name} {before} → {after}")
+            reasons.append(
+                say("{name} {verdict}, other points", name=name, verdict=after)
+                if before == after
+                else f"{name} {before} → {after}"
+            )
     return reasons

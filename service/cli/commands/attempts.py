@@ -32,7 +32,7 @@ from service.attempts.tutoring import (
 )
 from service.cli.files.output import write
 from service.cli.language import spoken
-from service.cli.terminal import complain, give_up, installed, installed_exercise, stdout
+from service.cli.terminal import complain, give_up, installed, installed_exercise, stdout, tell
 from service.formats.shared.plain_text import number, visible, whole_percent
 from service.settings import load_settings
 from service.translations import joined, paragraph, say
@@ -95,7 +95,7 @@ def database(*, create: bool = False) -> Iterator[Engine]:
 def migrate() -> None:
     """Create or update the tables. The service does so, too, when it starts."""
     with database(create=True):
-        typer.echo(spoken(say("The tables are those of this version.")))
+        tell(say("The tables are those of this version."))
 
 
 @commands.command("list")
@@ -289,7 +289,7 @@ def override_points(
     done = say("Withdrawn.")
     if points is not None:
         done = say("The attempt has {points} points.", points=number(points))
-    typer.echo(spoken(done))
+    tell(done)
 
 
 @commands.command("expire")
@@ -314,39 +314,33 @@ def expire(
                 old = select(func.count(attempts.c.number)).where(attempts.c.at < before)
                 count = connection.scalar(old.where(is_older(before))) or 0
                 kept = (connection.scalar(old) or 0) - count
-            typer.echo(
-                spoken(
-                    say(
-                        "{count} attempts are from before {date}. --apply deletes them.",
-                        count=count,
-                        date=f"{before:%Y-%m-%d}",
-                    )
+            tell(
+                say(
+                    "{count} attempts are from before {date}. --apply deletes them.",
+                    count=count,
+                    date=f"{before:%Y-%m-%d}",
                 )
             )
             if kept:
-                typer.echo(
-                    spoken(
-                        say(
-                            "{kept} older attempts are kept: their assignments have no due date, "
-                            "or were closed later.",
-                            kept=kept,
-                        )
+                tell(
+                    say(
+                        "{kept} older attempts are kept: their assignments have no due date, "
+                        "or were closed later.",
+                        kept=kept,
                     )
                 )
             return
         count = in_transaction(engine, lambda connection: delete_older(connection, before))
         erased = overwrite_deleted(engine)
-    typer.echo(
-        spoken(
-            say(
-                "Deleted: {count} attempts from before {date}.",
-                count=count,
-                date=f"{before:%Y-%m-%d}",
-            )
+    tell(
+        say(
+            "Deleted: {count} attempts from before {date}.",
+            count=count,
+            date=f"{before:%Y-%m-%d}",
         )
     )
     if erased is False:
-        typer.echo(spoken(_STILL_THERE))
+        tell(_STILL_THERE)
 
 
 @commands.command("forget")
@@ -373,9 +367,9 @@ def forget_learner(
             typer.confirm(spoken(question), abort=True)
         deleted = in_transaction(engine, lambda connection: forget(connection, learner))
         erased = overwrite_deleted(engine)
-    typer.echo(spoken(say("Deleted: {counts}.", counts=_counts(deleted))))
+    tell(say("Deleted: {counts}.", counts=_counts(deleted)))
     if erased is False:
-        typer.echo(spoken(_STILL_THERE))
+        tell(_STILL_THERE)
 
 
 def _counts(data: LearnerData) -> str:

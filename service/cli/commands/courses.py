@@ -17,7 +17,7 @@ from service.cli.commands.course_assignments import (
 from service.cli.files.output import write
 from service.cli.language import spoken
 from service.cli.operations.course_changes import changed, deleted
-from service.cli.terminal import complain, give_up, stdout
+from service.cli.terminal import complain, give_up, stdout, tell
 from service.contract.courses import (
     LONGEST_LINK_DAYS,
     Course,
@@ -68,7 +68,7 @@ def new(
     """Create a course. Its id has small letters, digits and hyphens."""
     body = checked(NewCourse, id=course, title=title, zone=zone)
     changed(lambda it: roll.add_course(it, body, datetime.now(UTC)), create=True)
-    typer.echo(spoken(say("The course {course} is there.", course=course)))
+    tell(say("The course {course} is there.", course=course))
 
 
 @commands.command("list")
@@ -110,7 +110,7 @@ def change(
     """Change the title or the time zone of a course."""
     body = checked(CourseChange, title=title, zone=zone)
     changed(lambda it: roll.change_course(it, course, body))
-    typer.echo(spoken(say("Changed.")))
+    tell(say("Changed."))
 
 
 @commands.command("delete")
@@ -172,7 +172,7 @@ def import_learners(
         count=len(listed),
         added=count,
     )
-    typer.echo(spoken(imported))
+    tell(imported)
 
 
 @commands.command("links")
@@ -200,7 +200,7 @@ def links(
             "{count} links ended. Each running service knows it within seconds.",
             count=count,
         )
-        typer.echo(spoken(ended))
+        tell(ended)
         return
     secret = load_settings().known_secret()
     if secret is None:

@@ -8,8 +8,7 @@ import typer
 
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
-from service.cli.language import spoken
-from service.cli.terminal import give_up, stdout
+from service.cli.terminal import give_up, stdout, tell
 from service.lti.joining.invitations import LONGEST_DAYS, allow, invite
 from service.lti.joining.tool_configuration import canvas_configuration
 from service.lti.registrations import RegistrationError, unusable
@@ -51,7 +50,7 @@ def allow_platform(
             in_transaction(engine, lambda it: allow(it, registration))
         except RegistrationError as error:
             give_up(error)
-    typer.echo(spoken(say("Allowed.")))
+    tell(say("Allowed."))
 
 
 def canvas(

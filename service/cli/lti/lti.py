@@ -13,10 +13,9 @@ from sqlalchemy import Connection
 from service.access.keys import Secret
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
-from service.cli.language import spoken
 from service.cli.lti import joining
 from service.cli.lti.scores import scores
-from service.cli.terminal import give_up, stdout
+from service.cli.terminal import give_up, stdout, tell
 from service.formats.shared.plain_text import visible
 from service.lti import registrations
 from service.lti.checking import check_registration
@@ -137,11 +136,7 @@ def show(registration: RegistrationId) -> None:
 def remove(registration: RegistrationId) -> None:
     """Remove a registration. Its courses and their attempts stay, and launch no more."""
     _done(lambda it: registrations.remove_registration(it, registration))
-    typer.echo(
-        spoken(
-            say("Removed. Pages that are open work until their tokens end, at most twelve hours.")
-        )
-    )
+    tell(say("Removed. Pages that are open work until their tokens end, at most twelve hours."))
 
 
 @commands.command("check")
@@ -176,15 +171,13 @@ def roster(
     except RosterError as error:
         give_up(error)
     change = _done(lambda it: enrol_members(it, asked, members, secret, shows_names=names))
-    typer.echo(
-        spoken(
-            say(
-                "{learners} learners: {added} new, {removed} removed, {renamed} renamed.",
-                learners=change.learners,
-                added=change.added,
-                removed=change.removed,
-                renamed=change.renamed,
-            )
+    tell(
+        say(
+            "{learners} learners: {added} new, {removed} removed, {renamed} renamed.",
+            learners=change.learners,
+            added=change.added,
+            removed=change.removed,
+            renamed=change.renamed,
         )
     )
 
@@ -194,9 +187,7 @@ def rotate_keys() -> None:
     """Add a new key. It is published for a day before it signs; the oldest key is removed."""
     secret, now = _secret(), datetime.now(UTC)
     signs_from = _done(lambda it: rotate(it, secret, now), create=True)
-    typer.echo(
-        spoken(say("The new key signs from {time} UTC on.", time=f"{signs_from:%Y-%m-%d %H:%M}"))
-    )
+    tell(say("The new key signs from {time} UTC on.", time=f"{signs_from:%Y-%m-%d %H:%M}"))
 
 
 @_keys.command("list")

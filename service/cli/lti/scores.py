@@ -6,9 +6,9 @@ from typing import Annotated
 import typer
 
 from service.cli.commands.course_assignments import CourseOption
-from service.cli.language import spoken, user_language
+from service.cli.language import user_language
 from service.cli.operations.course_changes import changed
-from service.cli.terminal import stdout
+from service.cli.terminal import stdout, tell
 from service.contract.scores import SendAgainRequest
 from service.formats.shared.plain_text import number, visible
 from service.lti.scores.overview import scores_of, send_again
@@ -26,7 +26,7 @@ def scores(
     wanted, now = SendAgainRequest(failed=failed), datetime.now(UTC)
     if again:
         queued = changed(lambda it: send_again(it, course, wanted, now))
-        typer.echo(spoken(say("Scores that are sent again: {queued}.", queued=queued)))
+        tell(say("Scores that are sent again: {queued}.", queued=queued))
         return
     for each in changed(lambda it: scores_of(it, course, wanted, user_language())):
         points = "-" if each.sent_points is None else number(each.sent_points)

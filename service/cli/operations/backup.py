@@ -8,8 +8,7 @@ import typer
 
 from service.attempts.storage.database_file import copy_into
 from service.cli.commands.attempts import database
-from service.cli.language import spoken
-from service.cli.terminal import give_up
+from service.cli.terminal import give_up, tell
 from service.translations import say
 
 commands = typer.Typer(add_completion=False)
@@ -35,12 +34,10 @@ def command(
         except (OSError, sqlite3.Error) as error:
             file.unlink(missing_ok=True)
             give_up(say("{file}: cannot be written: {reason}", file=str(file), reason=str(error)))
-    typer.echo(
-        spoken(
-            say(
-                "{file}: {size} bytes. Only you can read it. Keep it safe.",
-                file=str(file),
-                size=file.stat().st_size,
-            )
+    tell(
+        say(
+            "{file}: {size} bytes. Only you can read it. Keep it safe.",
+            file=str(file),
+            size=file.stat().st_size,
         )
     )

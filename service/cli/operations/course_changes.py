@@ -9,7 +9,7 @@ from sqlalchemy import Connection
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database
 from service.cli.language import spoken
-from service.cli.terminal import give_up
+from service.cli.terminal import give_up, tell
 from service.contract.courses import DeletedData, DeletionRequest
 from service.courses.errors import CourseError
 from service.translations import Sentence, joined, say, template
@@ -57,4 +57,4 @@ def deleted(
         typer.confirm(spoken(question), abort=True)
     apply = wanted.model_copy(update={"apply": True})
     changed(lambda it: work(it, apply))
-    typer.echo(spoken(say("Deleted {name}: {counts}.", name=name, counts=counts)))
+    tell(say("Deleted {name}: {counts}.", name=name, counts=counts))

@@ -11,9 +11,8 @@ from sqlalchemy import make_url
 from service.attempts.errors import UnusableDatabaseError
 from service.attempts.storage.database import open_database
 from service.attempts.storage.database_file import copy_into, is_in_use
-from service.cli.language import spoken
 from service.cli.operations.backup import USE_POSTGRESQL
-from service.cli.terminal import give_up
+from service.cli.terminal import give_up, tell
 from service.settings import load_settings
 from service.translations import joined, say
 
@@ -53,9 +52,7 @@ def command(
         if old.exists():
             old.rename(kept)
     new.rename(target)
-    typer.echo(
-        spoken(say("{target} has the content of {file}.", target=str(target), file=str(file)))
-    )
+    tell(say("{target} has the content of {file}.", target=str(target), file=str(file)))
 
 
 def _copy(file: Path, target: Path) -> Path:

@@ -15,8 +15,8 @@ from service.api.http.lookup import Catalogue
 from service.contract.attempts import Learner
 from service.contract.courses import LinksRequest
 from service.contract.scores import SendAgainRequest
-from service.courses.errors import CourseError
-from service.translations import Language, say
+from service.courses.errors import links_need_a_secret, unknown_learner
+from service.translations import Language
 from service.web.assets import Assets
 from service.web.courses.course_pages import (
     CourseState,
@@ -133,8 +133,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         def drawn(connection: "Connection") -> bytes:
             view = own_view(connection, learner, course_id, catalogue, now, language)
             if not view.courses:
-                message = say("The course has no learner {learner}.", learner=learner)
-                raise CourseError("unknown-learner", message)
+                raise unknown_learner(learner)
             [own] = view.courses
             variants = {
                 each.id: learner_variants(connection, course_id, each.id, learner, catalogue)
@@ -156,8 +155,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         one = fields.get("learner")
         secret = None if access.keys is None else access.keys.secret
         if secret is None:
-            message = say("Personal links need a secret: set DH_GRADER_SECRET.")
-            raise course_problem(CourseError("unusable", message))
+            raise course_problem(links_need_a_secret())
         wanted = validated(LinksRequest, {"learners": one, "renew": one is not None})
         known = secret
         base, now = str(request.base_url), datetime.now(UTC)

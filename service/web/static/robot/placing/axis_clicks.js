@@ -3,7 +3,7 @@
 
 import { h } from "../../shared/dom.js";
 import { directionText, nearestAxes } from "./axis_words.js";
-import { Marks } from "./marks.js";
+import { FINGER, Marks } from "./marks.js";
 import { Offers } from "./offers.js";
 import { along } from "./place_choices.js";
 import { worded } from "../../shared/words/words.js";
@@ -21,13 +21,11 @@ const HINTS = {
     worded("Frame {frame}: click the end of an arrow for x, or its dot to choose another origin.", { frame }),
 };
 const ALL_PLACED = worded("All frames are placed. To change one by clicks, first select one of its cells.");
-// The length in pixels of the longest arrow for x. Its ends are apart, for fingers.
+// The length of the longest arrow for x, in pixels: its ends are apart, for fingers.
 const ARROW = 72;
-// The width of a finger in pixels: the arrow of z ends so far from all dots.
-const FINGER = 44;
-// The most steps to a place for this end, an eighth of a finger each.
+// The arrow of z ends a finger away from all dots. The most steps to such a place, an eighth of a finger each.
 const FAR = 80;
-// A pointer that moved farther, in pixels, has turned the view.
+// A pointer that has moved farther than this, in pixels, has turned the view and has not clicked.
 const STILL = 4;
 
 export class AxisClicks {

@@ -2,8 +2,8 @@
 // the canvas, which gets the clicks.
 
 const SVG = "http://www.w3.org/2000/svg";
-// Half the width of a finger, in pixels.
-const FINGER = 22;
+// The width of a finger, in pixels.
+export const FINGER = 44;
 
 export class Marks {
   /** @param {HTMLElement} stage */
@@ -35,7 +35,7 @@ export class Marks {
    */
   nearest(at) {
     const far = (/** @type {Front.PlaceMark} */ mark) => Math.hypot(mark.at[0] - at[0], mark.at[1] - at[1]);
-    return this.shown.filter((mark) => far(mark) <= FINGER).sort((one, other) => far(one) - far(other))[0];
+    return this.shown.filter((mark) => far(mark) <= FINGER / 2).sort((one, other) => far(one) - far(other))[0];
   }
 
   close() {

@@ -3,7 +3,7 @@
 import { directionText } from "./axis_words.js";
 import { along, isSame, namedPoints, sumOf, sumText, xDirections } from "./place_choices.js";
 
-// Dragged joints rest for so many milliseconds before the places are asked for.
+// How long the joints must rest before the service is asked for the places, in milliseconds.
 const REST = 200;
 
 export class Offers {
