@@ -98,4 +98,9 @@ def postgresql() -> Iterator[Any]:
 @pytest.fixture
 def postgresql_url(postgresql: Any) -> str:
     """The URL of a PostgreSQL database with migrated, empty tables."""
+    return migrated_database(postgresql)
+
+
+def migrated_database(postgresql: Any) -> str:
+    """Create a database with migrated, empty tables on the server; return its URL."""
     return new_database(postgresql, f"attempts{next(_number)}", TEMPLATE)

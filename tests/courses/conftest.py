@@ -11,21 +11,18 @@ import pytest
 from sqlalchemy import Connection
 
 from service.access.key_ring import KeyRing
-from service.access.keys import Secret
 from service.access.open_access import OPEN_HERE
 from service.api.application import application
 from service.api.permissions.access import Access
 from service.attempts.storage.database import in_transaction
-from service.attempts.storage.tables import metadata
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
 from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.courses.links import issue_links
-from tests.attempts.databases import TEMPLATE, new_database, new_file
+from tests.access.kept_services import SECRET, KeptServices
 
-SECRET = Secret("0123456789abcdef" * 4)
 NOW = datetime.now(UTC)
 ADDRESS = "http://127.0.0.1:8000"
 RIGHT = {"table": "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
@@ -76,61 +73,27 @@ class Class:
         return course["assignments"][0]["exercises"][0]
 
 
-class Services:
-    """A service for each kind of database and catalogue: to build it takes longer than a test."""
-
-    def __init__(self, url: Callable[[str], str]) -> None:
-        self._url = url
-        # An application keeps its catalogue, so no other one gets the same identity.
-        self._built: dict[tuple[str, int], tuple[Any, AttemptStore, KeyRing]] = {}
-
-    def empty(self, kind: str, catalogue: Mapping[str, Exercise]) -> tuple[Any, AttemptStore]:
-        """Return the application and its store, without any row."""
-        place = kind, id(catalogue)
-        if place not in self._built:
-            self._built[place] = self._build(AttemptStore.open(self._url(kind)), catalogue)
-        app, store, _ = self._built[place]
-        with store.engine.begin() as connection:
-            for table in reversed(metadata.sorted_tables):
-                connection.execute(table.delete())
-        return app, store
-
-    def close(self) -> None:
-        for _, store, ring in self._built.values():
-            ring.close()
-            store.close()
-
-    def _build(
-        self, store: AttemptStore, catalogue: Mapping[str, Exercise]
-    ) -> tuple[Any, AttemptStore, KeyRing]:
-        ring = KeyRing(store.engine, SECRET, seconds=0.01)
-        ring.expect_keys()
-        access = Access(OPEN_HERE, read_attempts=None, keys=ring)
-        app = application(catalogue, access=access, store=store)
-        store.start()
-        return app, store, ring
-
-
 @pytest.fixture(scope="session")
 def services(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Services]:
-    def url(kind: str) -> str:
-        if kind == "sqlite":
-            return new_file(tmp_path_factory.mktemp("courses"))
-        return new_database(request.getfixturevalue("postgresql"), "courses", TEMPLATE)
-
-    made = Services(url)
+) -> Iterator[KeptServices]:
+    made = KeptServices(request, tmp_path_factory)
     yield made
     made.close()
 
 
 @pytest.fixture(params=["sqlite"])
 def class_(
-    request: pytest.FixtureRequest, services: Services, catalogue: Mapping[str, Exercise]
+    request: pytest.FixtureRequest, services: KeptServices, catalogue: Mapping[str, Exercise]
 ) -> Class:
     """The class, in the kind of database of the parameter."""
-    app, store = services.empty(request.param, catalogue)
+
+    def build(store: AttemptStore, keys: KeyRing) -> Any:
+        access = Access(OPEN_HERE, read_attempts=None, keys=keys)
+        return application(catalogue, access=access, store=store)
+
+    app, store, ring = services.empty(request.param, catalogue, build)
+    ring.expect_keys()
 
     def set_up(connection: Connection) -> dict[str, str]:
         course = NewCourse(id="robots", title="Robots", zone="Europe/Berlin")

@@ -33,8 +33,9 @@ from service.courses.results.gradebook import gradebook, missing, written_gradeb
 from service.translations import ENGLISH
 from service.web.assets import load_assets
 from service.web.courses.course_pages import CourseState, assignment_page
+from tests.access.kept_services import SECRET
 from tests.attempts.databases import KINDS
-from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, SECRET, Class, days
+from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, Class, days
 from tests.courses.results.test_workbook import as_tutor
 
 

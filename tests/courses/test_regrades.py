@@ -17,8 +17,9 @@ from service.contract.courses import LinksRequest, NewAssignment, NewCourse, New
 from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.courses.links import issue_links
+from tests.access.kept_services import SECRET
 from tests.attempts.databases import KINDS
-from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, SECRET, Class
+from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, Class
 from tests.courses.results.test_workbook import as_tutor
 
 PATH = "/v1/exercises/scara/regrade"

@@ -14,23 +14,21 @@ import pytest
 from sqlalchemy import Connection, func, select
 
 from service.access.key_ring import KeyRing
-from service.access.keys import Secret
 from service.access.open_access import OPEN_HERE
 from service.api.application import application
 from service.api.permissions.access import Access
 from service.attempts.storage import lti_tables as tables
 from service.attempts.storage.database import in_transaction
-from service.attempts.storage.tables import course_learners, courses, metadata
+from service.attempts.storage.tables import course_learners, courses
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.lti.own_keys import ensure_key
 from service.lti.registrations import NewRegistration, add_registration
 from service.web import Tutoring, web_routes
-from tests.attempts.databases import TEMPLATE, new_database, new_file
+from tests.access.kept_services import SECRET, KeptServices
+from tests.attempts.databases import new_file
 from tests.lti.platform import Platform, running
 
-SECRET_TEXT = "0123456789abcdef" * 4
-SECRET = Secret(SECRET_TEXT)
 ADDRESS = "http://127.0.0.1:8000"
 RECORDED = (
     tables.contexts,
@@ -134,69 +132,50 @@ class Tool:
             }
 
 
-class Services:
-    """The service on each kind of database: built once, because that takes longer than a test."""
-
-    def __init__(self, catalogue: Mapping[str, Exercise], url: Callable[[str], str]) -> None:
-        self._catalogue, self._url = catalogue, url
-        self._built: dict[str, tuple[Any, AttemptStore, KeyRing]] = {}
-        self._own_key: dict[str, Any] = {}
-
-    def empty(self, kind: str) -> tuple[Any, AttemptStore]:
-        """Return the application and its store, with a key that signs and no other row."""
-        if kind not in self._built:
-            self._built[kind] = self._build(AttemptStore.open(self._url(kind)))
-        app, store, ring = self._built[kind]
-        ring.has_keys = False
-        in_transaction(store.engine, self._renew)
-        return app, store
-
-    def close(self) -> None:
-        for _, store, ring in self._built.values():
-            ring.close()
-            store.close()
-
-    def _build(self, store: AttemptStore) -> tuple[Any, AttemptStore, KeyRing]:
-        ring = KeyRing(store.engine, SECRET, seconds=0.01)
-        access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
-        tutoring = Tutoring(access, records=True, store=store)
-        pages = web_routes(self._catalogue, tutoring)
-        app = application(self._catalogue, access=access, store=store, pages=pages)
-        store.start()
-        return app, store, ring
-
-    def _renew(self, connection: Connection) -> None:
-        for table in reversed(metadata.sorted_tables):
-            connection.execute(table.delete())
-        if self._own_key:
-            connection.execute(tables.own_keys.insert(), self._own_key)
-            return
-        ensure_key(connection, SECRET, datetime.now(UTC))
-        self._own_key = connection.execute(select(tables.own_keys)).one()._asdict()
-
-
 @pytest.fixture(scope="session")
 def services(
-    request: pytest.FixtureRequest,
-    catalogue: Mapping[str, Exercise],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[Services]:
-    def url(kind: str) -> str:
-        if kind == "sqlite":
-            return new_file(tmp_path_factory.mktemp("lti"))
-        return new_database(request.getfixturevalue("postgresql"), "lti", TEMPLATE)
-
-    made = Services(catalogue, url)
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[KeptServices]:
+    made = KeptServices(request, tmp_path_factory)
     yield made
     made.close()
 
 
+@pytest.fixture(scope="session")
+def own_key(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """The row of a key that signs: to make one takes longer than a test."""
+    store = AttemptStore.open(new_file(tmp_path_factory.mktemp("own-key")))
+    in_transaction(store.engine, lambda it: ensure_key(it, SECRET, datetime.now(UTC)))
+    with store.engine.connect() as connection:
+        found = connection.execute(select(tables.own_keys)).one()._asdict()
+    store.close()
+    return found
+
+
 @pytest.fixture(params=["sqlite"])
-def tool(request: pytest.FixtureRequest, services: Services, platform: Platform) -> Tool:
+def tool(
+    request: pytest.FixtureRequest,
+    services: KeptServices,
+    own_key: dict[str, Any],
+    catalogue: Mapping[str, Exercise],
+    platform: Platform,
+) -> Tool:
     """The service, in the kind of database of the parameter, where the platform is registered."""
-    app, store = services.empty(request.param)
+
+    def build(store: AttemptStore, keys: KeyRing) -> Any:
+        access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)
+        pages = web_routes(catalogue, Tutoring(access, records=True, store=store))
+        return application(catalogue, access=access, store=store, pages=pages)
+
+    app, store, ring = services.empty(request.param, catalogue, build)
+    ring.has_keys = False
     new = NewRegistration.model_validate(platform.registration)
-    in_transaction(store.engine, lambda it: add_registration(it, new, datetime.now(UTC)))
+
+    def set_up(connection: Connection) -> None:
+        connection.execute(tables.own_keys.insert(), own_key)
+        add_registration(connection, new, datetime.now(UTC))
+
+    in_transaction(store.engine, set_up)
     return Tool(app, store, platform)
 
 

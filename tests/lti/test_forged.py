@@ -386,7 +386,7 @@ def test_two_platforms_and_two_courses_with_the_same_user(tool: Tool, platform: 
 
 def test_a_learner_is_a_platform_and_its_user() -> None:
     from service.lti.linking import pseudonym
-    from tests.lti.conftest import SECRET
+    from tests.access.kept_services import SECRET
 
     one, two = (pseudonym(each, "user 1", SECRET) for each in ("moodle", "canvas"))
     assert one != two

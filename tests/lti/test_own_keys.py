@@ -7,7 +7,8 @@ from service.access.keys import Secret
 from service.attempts.storage.lti_tables import own_keys
 from service.lti.own_keys import ensure_key, published_keys, rotate, signing_key
 from service.lti.problems import LtiError
-from tests.lti.conftest import SECRET, Tool
+from tests.access.kept_services import SECRET
+from tests.lti.conftest import Tool
 
 NOW = datetime.now(UTC)
 DAY = timedelta(days=1)

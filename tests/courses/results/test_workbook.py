@@ -20,7 +20,8 @@ from service.access.key_text import new_key_text
 from service.cli.program import program
 from service.contract.courses import NewLearner
 from service.courses import roll
-from tests.courses.conftest import NOW, SECRET, Class, days
+from tests.access.kept_services import SECRET
+from tests.courses.conftest import NOW, Class, days
 
 _NAMES = {
     "m": "http://schemas.openxmlformats.org/spreadsheetml/2006/main",

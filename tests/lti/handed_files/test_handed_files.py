@@ -25,7 +25,8 @@ from service.lti.own_keys import published_keys
 from service.lti.registrations import registration, remove_registration
 from service.lti.scores.sending import BackgroundSending
 from service.translations import ENGLISH
-from tests.lti.conftest import SECRET, Tool, hidden
+from tests.access.kept_services import SECRET
+from tests.lti.conftest import Tool, hidden
 from tests.lti.handed_files.file_store import LTI, FileStore
 from tests.lti.platform import DL, MEMBER, deep_linking, public_jwk, rsa_key
 from tests.lti.scores.conftest import Clock

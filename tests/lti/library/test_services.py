@@ -10,7 +10,8 @@ from sqlalchemy import select, update
 from service.attempts.storage.lti_tables import registrations
 from service.attempts.storage.tables import course_learners
 from service.lti.roster.enrolment import ask_for_roster, enrol_members, read_roster
-from tests.lti.conftest import SECRET, Tool, token_of
+from tests.access.kept_services import SECRET
+from tests.lti.conftest import Tool, token_of
 from tests.lti.library.services import Configuration, Launch, OtherPlatform, Preflight
 from tests.lti.platform import MEMBER, rsa_key, running
 from tests.lti.scores.conftest import WRONG, Journey

@@ -25,10 +25,10 @@ from rich.console import Console
 
 from service.attempts.storage.database import in_transaction, open_database
 from service.lti.registrations import NewRegistration, add_registration
+from tests.access.kept_services import SECRET_TEXT
 from tests.attempts.databases import KINDS
 from tests.guards import ANSWER
 from tests.load.__main__ import database
-from tests.lti.conftest import SECRET_TEXT
 from tests.lti.platform import Platform, running
 from tests.server.raw import Service, service
 

@@ -14,7 +14,8 @@ from service.attempts.storage import lti_tables as tables
 from service.lti.linking import pseudonym
 from service.lti.own_keys import published_keys
 from service.lti.scores.sender import ScoreSender
-from tests.lti.conftest import SECRET, Tool, token_of
+from tests.access.kept_services import SECRET
+from tests.lti.conftest import Tool, token_of
 from tests.lti.gradebook import Gradebook
 
 # An answer that earns points, and one that earns none.

@@ -20,9 +20,9 @@ from service.attempts.storage.score_queue import QUEUED
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.lti.scores.sending import BackgroundSending
+from tests.access.kept_services import SECRET_TEXT
 from tests.attempts.databases import new_file
 from tests.guards import ANSWER
-from tests.lti.conftest import SECRET_TEXT
 from tests.lti.scores.conftest import Journey
 
 USERS = ("ada", "grace", "edsger", "barbara")
