@@ -202,7 +202,7 @@ declare namespace Front {
     symbols: Record<string, number>;
     motions: Frame[];
   };
-  type AxisClicks = import("../static/robot/placing/axis_clicks.js").AxisClicks;
+  type FrameClicks = import("../static/robot/placing/frame_clicks.js").FrameClicks;
   type RowPlayer = import("../static/robot/rows/row_player.js").RowPlayer;
   type RowHost = { host: ViewHost; isFlat(): boolean; draw(): void; build(): void };
   type LabelRoom = import("../static/robot/frames/label_places.js").Room;

@@ -179,7 +179,7 @@ def open_view(page: Page, service: str, exercise: str, *, tap: bool = False) -> 
     open_exercise(page, service, exercise)
     button = page.get_by_role("button", name="Move it in 3D")
     (button.tap if tap else button.click)()
-    expect(page.locator(".axis-hint")).to_have_text(
+    expect(page.locator(".frame-hint")).to_have_text(
         "Frame 1: click a joint axis, so that z lies along it."
     )
 
@@ -236,7 +236,7 @@ def test_frames_are_placed_by_clicks_alone_right_or_wrong(
     open_view(page, service, exercise)
     for row, frame in enumerate(PLACES[exercise]):
         place_by_clicks(page, row, frame)
-    expect(page.locator(".axis-hint")).to_contain_text("All frames are placed.")
+    expect(page.locator(".frame-hint")).to_contain_text("All frames are placed.")
     check(page)
     badge = part(page, 0).locator(".badge").first
     expect(badge).to_have_text("correct")
@@ -259,7 +259,7 @@ def test_frames_are_placed_by_touch_and_an_origin_is_chosen_again(
     place_by_clicks(page, 0, ("1", "+z", "0", "0", "0", "+x"), tap=True)
     click_mark(page, "2", tap=True)
     click_mark(page, "l1 + l2 + l3, 0, 0", tap=True)
-    hint = page.locator(".axis-hint")
+    hint = page.locator(".frame-hint")
     expect(hint).to_contain_text("Frame 2: click the end of an arrow")
     origin = cells(page).nth(8)
     # A click on the chosen dot changes no cell.
@@ -288,7 +288,7 @@ def test_dots_move_with_the_link_of_their_frame(visit: Opening, service: str) ->
     for row, axis in ((1, "3"), (2, "4")):
         cells(page).nth(6 * row).fill(axis)
         cells(page).nth(6 * row + 2).focus()
-        expect(page.locator(".axis-hint")).to_contain_text(f"Frame {row + 1}: click a dot")
+        expect(page.locator(".frame-hint")).to_contain_text(f"Frame {row + 1}: click a dot")
         heights.append(height())
     low, high = heights
     assert high - low > 60

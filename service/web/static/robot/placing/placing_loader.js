@@ -1,10 +1,10 @@
-// Clicks on joint axes are loaded only if the exercise asks for frames and the browser draws in 3D.
+// Clicks that place frames are loaded only if the exercise asks for frames and the browser draws in 3D.
 
 import { worded } from "../../shared/words/words.js";
 
 export class PlacingLoader {
   #closed = false;
-  /** @type {Front.AxisClicks | null} */
+  /** @type {Front.FrameClicks | null} */
   #clicks = null;
 
   /** @param {Front.ViewHost} host @param {Front.Stage} stage @param {() => Front.ShownValues} shown */
@@ -19,9 +19,9 @@ export class PlacingLoader {
     const [part, { scene }] = [this.host.placing?.(), this.stage];
     if (!part || !scene) return;
     try {
-      const { AxisClicks } = await import("./axis_clicks.js");
+      const { FrameClicks } = await import("./frame_clicks.js");
       if (this.#closed) return;
-      this.#clicks = new AxisClicks(this.host, part, scene, this.shown);
+      this.#clicks = new FrameClicks(this.host, part, scene, this.shown);
       this.stage.element.after(this.#clicks.hint);
     } catch {
       this.host.announce(worded("Clicks on joint axes could not be loaded"));

@@ -28,7 +28,7 @@ const FAR = 80;
 // A pointer that has moved farther than this, in pixels, has turned the view and has not clicked.
 const STILL = 4;
 
-export class AxisClicks {
+export class FrameClicks {
   // What the student or the last click has chosen; null for the first frame that is not complete.
   /** @type {{ row: Front.RowView, step: Front.FrameStep } | null} */
   #chosen = null;
@@ -48,7 +48,7 @@ export class AxisClicks {
     this.scene = scene;
     this.marks = new Marks(scene.stage);
     this.offers = new Offers(host, part, shown, () => this.#draw());
-    this.hint = h("p", { class: "quiet axis-hint" });
+    this.hint = h("p", { class: "quiet frame-hint" });
     scene.drawn = () => this.#draw();
     const { signal } = this.#stop;
     let from = [0, 0];
