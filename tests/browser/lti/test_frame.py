@@ -2,36 +2,57 @@
 
 import jwt
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Request, expect
 
 from tests.browser.lti.conftest import Course
 from tests.lti.platform import DL, deep_linking
 
-# Return how much the page has stored; Chromium may deny the access of a frame of another site.
-KEPT = "() => { try { return sessionStorage.length; } catch { return 0; } }"
+# Return what the page has stored; Chromium mostly denies the access to a frame of another site.
+KEPT = """() => {
+  try { return JSON.stringify([{ ...sessionStorage }, { ...localStorage }]); } catch { return ""; }
+}"""
+
+
+def sent_keys(course: Course) -> set[str]:
+    """Return the keys that the pages of the course send, while they send them."""
+    keys: set[str] = set()
+
+    def note(request: Request) -> None:
+        if sent := request.headers.get("authorization"):
+            keys.add(sent.removeprefix("Bearer "))
+
+    course.context.on("request", note)
+    return keys
 
 
 @pytest.mark.long
 def test_a_learner_gets_in_by_the_storage_of_the_platform(course: Course) -> None:
+    keys = sent_keys(course)
     page = course.opened("ada")
     frame = page.frame_locator("iframe")
     expect(frame.get_by_role("button", name="Hand in")).to_be_visible()
-    # The key is neither in the address nor in the page, and there is no cookie.
+    [key] = keys
+    # The key is neither in the address nor stored nor in the data of the page; no cookie is set.
     [inner] = [each for each in page.frames if each.name == "tool"]
     assert inner.url.startswith(f"{course.platform.tool}/lti/launch#/lti-")
+    assert key not in inner.url
     assert inner.evaluate("document.querySelector('[data-key]')") is None
-    assert inner.evaluate(KEPT) == 0
+    assert key not in inner.evaluate(KEPT)
     assert course.context.cookies(course.platform.tool) == []
 
 
 @pytest.mark.long
 def test_without_storage_the_exercise_opens_in_a_window(course: Course) -> None:
     course.platform.storage = False
+    keys = sent_keys(course)
     page = course.opened("ada")
     button = page.frame_locator("iframe").get_by_role("link", name="Open in a new window")
     with course.context.expect_page() as opened:
         button.click()
     expect(opened.value.get_by_role("button", name="Hand in")).to_be_visible()
+    # Here Chromium always gives access to what is stored.
+    [key] = keys
+    assert key not in opened.value.evaluate(KEPT)
 
 
 @pytest.mark.long
