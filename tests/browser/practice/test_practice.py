@@ -79,6 +79,22 @@ def test_a_student_solves_a_robot_and_takes_another(
     expect(page.locator(".practice-done")).to_contain_text("✓ Done")
 
 
+@pytest.mark.long
+def test_back_is_followed_though_a_robot_has_just_loaded(visit: Opening, service: str) -> None:
+    """The address changes a moment before the page hears of it; a robot may be ready in between."""
+    page = visit().page
+    page.goto(f"{service}/practice#practice-1-standard~5")
+    expect(page.locator("#title")).to_have_text("Practice robot 5, level 1")
+    page.evaluate(
+        """() => {
+            location.hash = "practice-2-standard~6";
+            document.querySelector("dh-exercise").dispatchEvent(new CustomEvent("ready"));
+        }"""
+    )
+    expect(page.locator("#title")).to_have_text("Practice robot 6, level 2")
+    assert robot(page) == "practice-2-standard~6"
+
+
 def test_a_link_shares_one_robot(visit: Opening, service: str) -> None:
     page = visit().page
     page.goto(f"{service}/practice#practice-3-modified~1a")
