@@ -149,6 +149,7 @@ def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
     return [each for each in told if isinstance(each, Caller)]
 
 
+@pytest.mark.long
 def test_a_valid_key_is_found_among_many_invented_ones(engine: Engine) -> None:
     known, new = made(engine), made(engine)
     ring = KeyRing(engine, SECRET, 0.0)

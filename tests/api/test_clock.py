@@ -117,6 +117,7 @@ def problem(response: httpx.Response) -> tuple[int, str]:
     return response.status_code, response.json()["type"].rpartition(":")[2]
 
 
+@pytest.mark.long
 def test_attempts_keep_their_order_and_their_keys(
     store: AttemptStore, clock: Clock, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -144,6 +145,7 @@ def test_attempts_keep_their_order_and_their_keys(
     assert (step["regraded"], step["left"]) == (0, 0)
 
 
+@pytest.mark.long
 def test_deadlines_and_tokens_follow_the_clock_and_come_back_with_it(
     store: AttemptStore, clock: Clock, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -42,6 +42,7 @@ def alone(client: httpx.Client, submission: Mapping[str, Any]) -> httpx.Response
     return client.post(f"/v1/exercises/{submission['exercise']}/grade", json=body)
 
 
+@pytest.mark.long
 def test_each_gets_the_report_that_it_gets_alone_in_order(client: httpx.Client) -> None:
     submissions = [WRONG, RIGHT, OTHER, {**WRONG, "echo": True}, {**RIGHT, "angle_unit": "degrees"}]
     expected = [{"report": alone(client, each).json()} for each in submissions]
@@ -135,6 +136,7 @@ def test_the_bound_lets_a_full_request_through(client: httpx.Client) -> None:
     assert text.count("[") + text.count("{") < MAX_BRACKETS
 
 
+@pytest.mark.long
 def test_no_report_tells_more_than_the_service_allows(
     catalogue: Mapping[str, Exercise], client_of: Callable[[FastAPI], httpx.Client]
 ) -> None:

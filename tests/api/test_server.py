@@ -80,6 +80,7 @@ def receive(connection: socket.socket) -> bytes:
         return b""
 
 
+@pytest.mark.long
 def test_a_bad_exercise_file_prevents_startup(tmp_path: Path) -> None:
     (tmp_path / "broken.toml").write_text('title = "x"\n', encoding="utf-8")
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}

@@ -1,8 +1,11 @@
 """A small sample of `make fuzz`."""
 
+import pytest
+
 from tests.attack.hostile import Case, Found, Reading, group, groups, sample
 
 
+@pytest.mark.long
 def test_hostile_texts_grids_and_requests() -> None:
     found = sample(250, "hostile")
     assert found.escaped == []

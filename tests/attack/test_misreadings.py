@@ -5,6 +5,7 @@ import pytest
 from tests.attack.misreadings import REFUSED, SECTIONS, Tally, tallied
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("section", "count"), [("spellings", 30), ("grids", 3), ("submissions", 4)]
 )

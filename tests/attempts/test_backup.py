@@ -152,6 +152,7 @@ def test_only_the_owner_reads_a_new_file_and_an_earlier_one_keeps_its_mode(tmp_p
         os.umask(before)
 
 
+@pytest.mark.long
 def test_a_dump_made_while_recording_is_complete(
     postgresql: Any, postgresql_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -43,7 +43,7 @@ def test_a_correct_file_gets_no_remarks(make_exercise: Make) -> None:
     assert remarks_on(make_exercise, GOOD) == []
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(
     "exercise_id", sampled(sorted(file.stem for file in shipped_folder().glob("*.toml")), 9)
 )
@@ -268,6 +268,7 @@ def test_a_reference_that_lost_a_degree_of_freedom_gets_a_warning(
     assert said in only([remark], Level.WARNING).text
 
 
+@pytest.mark.long
 def test_a_redundant_arm_with_six_degrees_of_freedom_gets_no_warning(
     catalogue: Mapping[str, Exercise],
 ) -> None:

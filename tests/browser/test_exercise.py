@@ -79,6 +79,7 @@ def test_an_exercise_is_solved_by_keyboard(
     assert count == sum(map(len, answers.values()))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", one_in(4, OTHER_KINDS))
 def test_every_kind_of_answer_has_its_input(
     visit: Opening, service: str, catalogue: Mapping[str, Exercise], name: str
@@ -196,6 +197,7 @@ def test_answers_are_previewed_marked_saved_and_shared(
     expect(cells(page).nth(4)).to_have_value("l3")
 
 
+@pytest.mark.long
 def test_a_preview_follows_each_key_at_once(
     visit: Opening, service: str, figure: Callable[[str], None]
 ) -> None:

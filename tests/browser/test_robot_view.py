@@ -149,6 +149,7 @@ def test_a_phone_shows_the_given_frames_with_their_names(
     assert not is_cut(page)
 
 
+@pytest.mark.long
 def test_a_browser_without_webgl_shows_the_drawing(
     browser: Browser, chromium: Chromium, service: str
 ) -> None:

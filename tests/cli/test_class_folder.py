@@ -60,6 +60,7 @@ def test_submissions_are_sorted_by_name(entries: list[dict[str, Any]], folder: P
     assert names == sorted(names)
 
 
+@pytest.mark.long
 def test_broken_files_are_reported_without_a_traceback(
     run: subprocess.CompletedProcess[bytes],
 ) -> None:

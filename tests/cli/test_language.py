@@ -89,7 +89,7 @@ def test_the_environment_names_the_language(variables: Mapping[str, str], code: 
     assert user_language(variables).code == code
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("code", CODES)
 def test_all_help_is_in_the_language(code: str) -> None:
     printed = all_help(code)
@@ -113,7 +113,7 @@ def test_the_pseudo_language_covers_all_help() -> None:
     assert left == []
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("locale", ["C", "C.UTF-8", "xx", "it_IT.UTF-8", ""])
 def test_other_locales_give_english(locale: str) -> None:
     arguments = ("-m", "service", "exercises", "check", "--help")
@@ -130,6 +130,7 @@ def test_names_of_commands_and_options_stay() -> None:
     assert options[0] == options[1]
 
 
+@pytest.mark.long
 def test_json_is_the_same_in_every_locale(tmp_path: Path) -> None:
     file = tmp_path / "a.json"
     file.write_text(json.dumps({"answers": {"table": "nonsense"}}), encoding="utf-8")
@@ -149,6 +150,7 @@ def wrong_table(folder: Path) -> tuple[object, ...]:
     return "-m", "service", "grade", file, "--exercise", "planar-rrr"
 
 
+@pytest.mark.long
 def test_a_report_on_the_screen_is_in_the_language_throughout(tmp_path: Path) -> None:
     grade = wrong_table(tmp_path)
     english = process(*grade, LANG="C").stdout.splitlines()
@@ -159,7 +161,7 @@ def test_a_report_on_the_screen_is_in_the_language_throughout(tmp_path: Path) ->
     assert [line for line in german if line in english and line.strip()] == []
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["json", "jsonl", "csv", "markdown", "junit"])
 def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> None:
     grade = (*wrong_table(tmp_path), "--format", form)
@@ -186,6 +188,7 @@ def test_errors_are_in_the_language(arguments: str, german: str) -> None:
     assert german in result.stderr
 
 
+@pytest.mark.long
 def test_findings_on_an_exercise_are_in_the_language(tmp_path: Path) -> None:
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     texts = {
@@ -205,6 +208,7 @@ def test_findings_on_an_exercise_are_in_the_language(tmp_path: Path) -> None:
     assert "there is no key 'pionts' here; did you mean 'points'?" in english.stderr
 
 
+@pytest.mark.long
 def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
     handed = {"anna/table.csv": b"\xff", "anna/pose.csv": b" ", "ben/a.docx": b"PK"}
     for name, content in handed.items():
@@ -229,6 +233,7 @@ def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.long
 def test_the_list_of_exercises_is_in_the_language() -> None:
     result = process("-m", "service", "exercises", "list", LANG="de_DE.UTF-8")
     assert "Gelenke  Titel und Teilaufgaben (Punkte)\nHier beginnen\n" in result.stdout

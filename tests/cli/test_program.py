@@ -108,6 +108,7 @@ def test_a_pipe_gets_text_without_colour_in_80_columns(answer: Path) -> None:
     assert max(map(len, text.splitlines())) <= 80
 
 
+@pytest.mark.long
 def test_an_ascii_terminal_gets_the_whole_report(answer: Path) -> None:
     greek = answer.rename(answer.with_name("θ.json"))
     arguments = ("grade", greek, greek, "--exercise", "planar-rrr")
@@ -118,6 +119,7 @@ def test_an_ascii_terminal_gets_the_whole_report(answer: Path) -> None:
     assert b"+ correct   x incorrect" in result.stdout
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 @pytest.mark.parametrize("arguments", [("exercises", "list"), ("--help",)])
 def test_a_full_disk_is_reported_in_one_line(arguments: tuple[str, ...]) -> None:
@@ -135,6 +137,7 @@ def test_a_full_disk_is_reported_in_one_line(arguments: tuple[str, ...]) -> None
     assert done.returncode == 2
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
 def test_closed_streams_do_not_prevent_the_output_file(answer: Path, tmp_path: Path) -> None:
     output = tmp_path / "points.csv"

@@ -60,6 +60,7 @@ def test_an_exercise_has_the_shapes_of_its_answers(server: Served, using: Using)
     ]  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.campaign)])
 def test_a_report_over_http_equals_a_local_report(
     server: Served, catalogue: Mapping[str, Exercise], every: int

@@ -50,6 +50,7 @@ def test_an_assignment_file_is_taken_whole_or_refused(
     assert ("homework-5" in listed) is (said == "")
 
 
+@pytest.mark.long
 def test_an_assignment_file_may_set_variants(
     class_: Class, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -87,6 +88,7 @@ def test_a_mistyped_assignment_is_refused_with_advice(
     assert said in " ".join(told.output.split())
 
 
+@pytest.mark.long
 def test_the_command_says_when_a_service_reads_a_new_file(
     class_: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -105,6 +107,7 @@ def test_the_command_says_when_a_service_reads_a_new_file(
     assert "restart" not in said
 
 
+@pytest.mark.long
 def test_the_command_says_which_rules_have_no_effect(
     class_: Class, monkeypatch: pytest.MonkeyPatch
 ) -> None:

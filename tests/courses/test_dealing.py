@@ -129,6 +129,7 @@ def test_the_answer_to_another_variant_is_wrong(
     assert answer.json()["report"]["points"] < 8
 
 
+@pytest.mark.long
 def test_no_learner_sees_a_seed_that_counts(
     class_: Class, catalogue: Mapping[str, Exercise], caplog: pytest.LogCaptureFixture
 ) -> None:

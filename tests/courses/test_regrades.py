@@ -55,7 +55,7 @@ def versions(class_: Class) -> dict[str, bool]:
     return {course: version == "old" for course, version in class_.do(lambda it: it.execute(rows))}
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @BOTH
 def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
     both = set_up(class_)
@@ -94,6 +94,7 @@ def test_a_course_leaves_the_queue_of_the_others_alone(
     assert versions(both) == {"robots": False, "others": True}
 
 
+@pytest.mark.long
 def test_the_command_regrades_one_course(class_: Class, monkeypatch: pytest.MonkeyPatch) -> None:
     both = set_up(class_)
     monkeypatch.setenv("DH_GRADER_DATABASE", str(both.store.engine.url.database))

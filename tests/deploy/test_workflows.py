@@ -63,6 +63,7 @@ def test_the_action_grades_a_repository(repository: Path) -> None:
     assert "8 / 16" in summary.read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_the_component_grades_a_project(repository: Path) -> None:
     job = COMPONENT["grade"]
     [script] = job["script"]

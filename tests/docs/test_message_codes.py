@@ -84,6 +84,7 @@ def test_every_code_of_the_program_is_on_the_page() -> None:
     assert {use.code for use in program()} - {line.code for line in LINES} == set()
 
 
+@pytest.mark.long
 def test_every_code_on_the_page_exists() -> None:
     assert {line.code for line in LINES} - {use.code for use in program()} == set()
 
@@ -130,6 +131,7 @@ def test_a_formula_is_read_with_a_note(line: Line) -> None:
     assert line.code in {note.code for note in read(line.example[0], ROBOT).notes}
 
 
+@pytest.mark.long
 @examples(PASTED_UNREAD, PASTED_NOTED)
 def test_a_pasted_text_has_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, text = catalogue["planar-rr"], line.example[0].replace(" ↵ ", "\n")

@@ -58,6 +58,7 @@ def test_a_sample_of_the_fuzz_campaign_gives_one_result() -> None:
         _check(text)
 
 
+@pytest.mark.long
 @together("text", HOSTILE)
 def test_hostile_texts_give_one_result(text: str) -> None:
     _check(text)

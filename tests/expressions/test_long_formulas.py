@@ -65,13 +65,14 @@ def _entries() -> Iterator[sympy.Expr]:
         yield sympy.expand(entry)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("printer", PRINTERS)
 def test_a_whole_pose_is_read(printer: str) -> None:
     texts = [PRINTERS[printer](sympy.expand(entry)) for entry in _pose()]
     assert 8_000 < sum(map(reading_cost, texts)) < MAX_SYMBOLS
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("printer", PRINTERS)
 def test_a_long_entry_is_read(printer: str) -> None:
     longest = 0

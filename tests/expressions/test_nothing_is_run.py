@@ -43,6 +43,7 @@ def found(source: str) -> list[str]:
     return calls
 
 
+@pytest.mark.long
 @together("file", FILES)
 def test_no_evaluator_is_called(file: Path) -> None:
     allowed = ALLOWED.get(file.relative_to(ROOT).as_posix(), set())

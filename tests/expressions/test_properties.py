@@ -159,6 +159,7 @@ PIECES = [
 ]
 
 
+@pytest.mark.long
 @given(
     st.text(max_size=40)
     | st.lists(st.sampled_from(PIECES), max_size=20).map("".join)

@@ -45,7 +45,7 @@ def entries(seed: int, count: int) -> list[sympy.Expr]:
     return [entry(random) for _ in range(count)]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("printer", PRINTERS)
 def test_a_printed_formula_has_its_value(printer: str) -> None:
     count = 0
@@ -73,6 +73,7 @@ def test_a_rewritten_formula_has_the_same_value(rewriting: str) -> None:
     assert changed >= 3
 
 
+@pytest.mark.long
 def test_latex_of_an_expression_is_read_back() -> None:
     for expression in entries(3, 40):
         ours = read(str(expression), ROBOT).latex()

@@ -112,6 +112,7 @@ def test_no_labels_overlap(name: str) -> None:
         assert abs(x - u) >= (wide + other) / 2 or abs(y - v) >= 11
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) -> None:
     """Frames {0} with the axes that the statement speaks of, lengths, and joint variables."""
@@ -265,6 +266,7 @@ def sight(view: View) -> Numbers:
     return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
 
 
+@pytest.mark.long
 def test_the_author_may_choose_the_view() -> None:
     exercise = SHIPPED["spatial-rrr"]
     other = exercise_figure(replace(exercise, view=ViewSpec(azimuth=-100, elevation=20)))
@@ -304,6 +306,7 @@ def test_a_figure_is_a_picture_with_a_title_and_a_description(name: str) -> None
     assert not re.search(r"nan|inf\b|<script|\bon\w+=|style=|href", drawn(name))
 
 
+@pytest.mark.long
 def test_frames_are_drawn_for_tutors() -> None:
     framed = texts(reference_figure(SHIPPED["stanford-arm"]))
     names = {name for text in framed for name in text.split(", ")}

@@ -49,6 +49,7 @@ def commands(line: str) -> Iterator[str]:
     yield from re.findall(r"##(?:vso|teamcity|\w*)\[", line)
 
 
+@pytest.mark.long
 @together("case", cases())
 @together("name", sorted(FORMAT_NAMES))
 def test_no_output_has_commands_or_control_characters(name: str, case: str) -> None:

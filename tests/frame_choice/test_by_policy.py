@@ -5,13 +5,14 @@ import pytest
 from tests.frame_choice.by_policy import MISJUDGED, UNSTEADY, VALID, WRONG, Counts, lines, run
 from tests.frame_choice.robots import POLICIES
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def sample() -> Counts:
     return run(range(1), seed=1, seeds=2)
 
 
-@pytest.mark.sampled(4)
 @pytest.mark.parametrize("policy", [policy.name for policy in POLICIES])
 def test_no_table_is_misjudged(sample: Counts, policy: str) -> None:
     for truth in (VALID, WRONG):

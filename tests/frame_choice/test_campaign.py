@@ -16,6 +16,7 @@ def test_all_figures_hold() -> None:
     assert [str(figure) for figure in found if not figure.holds] == []
 
 
+@pytest.mark.long
 def test_a_small_campaign_counts_what_it_draws() -> None:
     robots = [robot for robot in ROBOTS if robot.name == "SCARA"]
     given, free = whole_campaign(tables=2, free_tables=1, robots=robots, jobs=1)

@@ -125,6 +125,7 @@ def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
     assert len(seen) > 5
 
 
+@pytest.mark.long
 def test_the_cells_that_repair_a_table() -> None:
     """Closed form and least squares give the same cells."""
     shared = with_cell(RRRP, 1, D, "0.3")  # d1, d2, d3 lie on parallel axes

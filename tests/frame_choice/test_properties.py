@@ -15,6 +15,8 @@ from tests.frame_choice.figures import HEAD, line
 from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, conventions
 from tests.frame_choice.trials import Tally, run
 
+pytestmark = pytest.mark.long
+
 # For each robot and convention: how many tables, and how many of them also with slips.
 GIVEN_TABLES, GIVEN_SLIPS = 4, 3
 FREE_TABLES, FREE_SLIPS = 2, 1
@@ -54,7 +56,6 @@ def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
     return "\n\n".join(str(miss) for miss in tally.misses if chosen(miss.what))[:4000]
 
 
-@pytest.mark.sampled(2)
 def test_every_valid_table_gets_full_marks_and_no_error_message(either: Tally) -> None:
     assert either.counts["valid"] >= 60
     assert either.counts["valid accepted"] == either.counts["valid"], first_misses(

@@ -34,6 +34,7 @@ def test_there_is_an_exercise_of_each_kind() -> None:
     assert {bare.kind for bare in BARE} | OF_A_ROBOT == set(SPECS)
 
 
+@pytest.mark.long
 @together("bare", BARE)
 def test_right_numbers_get_full_marks_and_wrong_ones_do_not(
     bare: BareExercise, make_exercise: Make
@@ -48,6 +49,7 @@ def test_right_numbers_get_full_marks_and_wrong_ones_do_not(
             assert wrong.points < wrong.max_points
 
 
+@pytest.mark.long
 @together("bare", BARE)
 def test_unreadable_numbers_get_a_report(bare: BareExercise, make_exercise: Make) -> None:
     exercise = make_exercise(bare.text)

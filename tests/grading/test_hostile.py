@@ -125,6 +125,7 @@ def check_cost(spent: float) -> None:
 PLACES = {(str(i + 1), ("a", "alpha", "d", "theta")[i % 4]) for i in range(6)}
 
 
+@pytest.mark.long
 @together("name", UNREADABLE)
 def test_an_unreadable_value_affects_only_its_cells(
     name: str, given_frames: Mapping[str, Exercise]
@@ -294,6 +295,7 @@ ROWS = st.lists(
 MATRICES = st.lists(st.lists(JSON_VALUES, min_size=3, max_size=5) | JSON_VALUES, max_size=5)
 
 
+@pytest.mark.long
 @given(
     table_answer=st.builds(lambda rows: {"rows": rows}, ROWS) | JSON_VALUES,
     pose_answer=MATRICES | JSON_VALUES,

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -31,6 +32,7 @@ def pastes(draw: st.DrawFn) -> str:
     return text
 
 
+@pytest.mark.long
 @given(text=pastes() | st.text(max_size=80), level=st.sampled_from(list(FeedbackLevel)))
 def test_any_paste_gets_a_report(
     catalogue: Mapping[str, Exercise], text: str, level: FeedbackLevel

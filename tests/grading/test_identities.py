@@ -56,6 +56,7 @@ def pose_with(exercise: str, text: str, time: int) -> list[list[object]]:
     return matrix
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("times", TIMES)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
 def test_a_zero_written_as_an_identity_is_always_right_in_a_pose(
@@ -107,6 +108,7 @@ def test_a_small_number_for_a_zero_is_always_wrong_in_a_pose(
     assert wrong == times
 
 
+@pytest.mark.long
 def test_a_small_number_beside_large_entries_is_always_wrong(
     catalogue: Mapping[str, Exercise],
 ) -> None:

@@ -293,6 +293,7 @@ frames = "{frames}"
 LINK = {"a": "0.5", "alpha": "90deg", "d": "0.4", "theta": "30deg"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("frames", ["given", "free"])
 @together(("column", "true", "right", "wrong"), EDGES)
 def test_decimals_are_right_up_to_the_limit_of_rounding(

@@ -49,7 +49,7 @@ def test_a_thief_gains_nothing(
         assert after == before, (thief.part.id, thief.stolen)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("exercise_id", sampled(IDS, 20))
 @pytest.mark.parametrize("first", FIRST)
 def test_a_thief_with_all_hints_gains_nothing(
@@ -65,6 +65,7 @@ def test_a_thief_with_all_hints_gains_nothing(
     assert had
 
 
+@pytest.mark.long
 def test_a_thief_gets_the_table_at_full(catalogue: Mapping[str, Exercise]) -> None:
     """A thief succeeds at the level full, so that the test above can fail."""
     table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")

@@ -106,7 +106,7 @@ def graded_table(robot: Robot, policy: Policy, rows: list[list[str]], name: str)
 TRIES = [(robot, name) for robot in ROBOTS for name in conventions(robot, GIVEN)]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("robot", "name"), one_in(4, TRIES), ids=lambda each: getattr(each, "name", each)
 )

@@ -53,7 +53,7 @@ def told(report: Report) -> list[str]:
     return [part.part for part in report.parts for m in part.feedback if m.code == "work_limit"]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHIPPED)
 def test_marks_are_the_same_without_any_explanation(
     name: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch

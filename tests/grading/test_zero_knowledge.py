@@ -136,7 +136,7 @@ def best_together(exercise: Exercise) -> dict[str, float]:
     return best
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("exercise_id", SAMPLED)
 def test_zero_knowledge_earns_little(
     exercise_id: str, catalogue: Mapping[str, Exercise], figure: Callable[[str], None]

@@ -141,5 +141,6 @@ def test_long_repetitions_give_a_grid_or_an_error(before: str, unit: str) -> Non
     check(text[: GRID_LIMITS.characters - 1] + ("]" if before == "[" else ""))
 
 
+@pytest.mark.long
 def test_a_text_far_beyond_the_limit_is_refused_at_once() -> None:
     check("[" * 10_000_000)

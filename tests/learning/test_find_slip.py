@@ -102,6 +102,7 @@ def is_one_slip(exercise: Exercise, given: Texts, drawn: DrawnSlip) -> bool:
     return codes == {drawn.misconception} and wrong in map(set, drawn.places)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "seeds",
     [

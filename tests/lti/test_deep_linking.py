@@ -65,6 +65,7 @@ def launched(tool: Tool, item: dict[str, Any], link: str) -> dict[str, Any]:
     return {each["title"]: each for each in course["assignments"]}
 
 
+@pytest.mark.long
 @KINDS
 def test_two_exercises_are_linked_and_launched(tool: Tool) -> None:
     before = tool.counts()
@@ -141,6 +142,7 @@ def test_a_link_gives_each_learner_a_variant(tool: Tool) -> None:
     assert list(json.loads(row.choices)) == ["planar-rr-numbers"]
 
 
+@pytest.mark.long
 def test_what_the_platform_does_not_take_is_not_sent(tool: Tool) -> None:
     page = picker(tool, accept_multiple=False, accept_lineitem=False, data=None).text
     assert "a link for each exercise" not in page

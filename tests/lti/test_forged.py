@@ -361,6 +361,7 @@ def test_every_reason_says_what_to_do() -> None:
         )
 
 
+@pytest.mark.long
 def test_two_platforms_and_two_courses_with_the_same_user(tool: Tool, platform: Platform) -> None:
     """Each platform has learners of its own; two courses of one platform have the same one."""
     other = platform.registration | {"id": "second", "client_id": "client-2"}

@@ -75,6 +75,7 @@ def test_a_tutor_sets_up_a_link_and_opens_the_course(tool: Tool) -> None:
     assert answer.status_code == 403
 
 
+@pytest.mark.long
 def test_the_page_is_in_the_language_that_the_user_has_on_the_platform(
     tool: Tool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -208,6 +209,7 @@ def test_a_tutor_reviews_the_attempts_of_a_learner(tool: Tool) -> None:
     assert tool.launch("turing").status_code == 403
 
 
+@pytest.mark.long
 @KINDS
 def test_launches_of_a_class_share_no_row_that_changes(tool: Tool) -> None:
     """Otherwise, they would wait for each other in PostgreSQL."""

@@ -15,6 +15,7 @@ DAY = timedelta(days=1)
 KINDS = pytest.mark.parametrize("tool", ["sqlite", "postgresql"], indirect=True)
 
 
+@pytest.mark.long
 @KINDS
 def test_a_new_key_is_published_for_a_day_before_it_signs(tool: Tool) -> None:
     def ids() -> list[str]:

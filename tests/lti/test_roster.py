@@ -46,6 +46,7 @@ class Reader:
         return {row.learner: row.name for row in rows}
 
 
+@pytest.mark.long
 def test_a_roster_of_1200_comes_in_pages(tool: Tool) -> None:
     reader, platform = Reader(tool), tool.platform
     assert "Read the roster" in tool.send("GET", reader.path, headers=reader.headers).text
@@ -113,6 +114,7 @@ def test_only_learners_are_enrolled(tool: Tool) -> None:
     assert "2 learners: 2 new" in reader.read()
 
 
+@pytest.mark.long
 def test_an_unusable_roster_changes_nothing(tool: Tool, monkeypatch: pytest.MonkeyPatch) -> None:
     reader, platform = Reader(tool), tool.platform
     platform.members = [member(i) for i in range(120)]

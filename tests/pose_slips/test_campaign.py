@@ -15,7 +15,7 @@ ROBOTS = {robot.name: robot for robot in robots()}
 SAMPLE = {"scara": 9, "stanford-arm": 29, "planar-rrr": 13, "skew": 17, "sliding": 13}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "every"), SAMPLE.items())
 def test_slips_are_named(name: str, every: int, figure: Callable[[str], None]) -> None:
     found = list(trials(ROBOTS[name], lambda k: k % every == 0))

@@ -75,6 +75,7 @@ def test_costly_requests_on_sixteen_connections_hardly_delay_honest_clients(
         assert ratio <= 5, (address, again, gradings, ratio)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slower", [0.7, 1.0, 2.5])
 def test_99_percent_of_wrong_tables_on_eight_connections_wait_for_at_most_twenty_gradings(
     monkeypatch: pytest.MonkeyPatch, slower: float
@@ -128,6 +129,7 @@ def test_a_class_at_once_is_answered_within_the_time_of_its_gradings(
     assert max(found) == pytest.approx(sum(costs), abs=1.5 * FIRST_SLICE)
 
 
+@pytest.mark.long
 def test_a_costly_answer_waits_no_longer_than_its_share(monkeypatch: pytest.MonkeyPatch) -> None:
     process = Process(monkeypatch)
     found: Waits = []

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 
 from service.catalogue import Exercise
 from service.grading import Submission, grade
@@ -57,6 +58,7 @@ def link(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_the_numbers_equal_those_of_the_chain(make_exercise: Callable[[str], Exercise]) -> None:
     exercise = make_exercise(NUMERIC)
     poses = [np.eye(4)]

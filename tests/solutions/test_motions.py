@@ -65,6 +65,7 @@ def value(matrix: sympy.Matrix, at: list[float]) -> Numbers:
     return np.asarray(found(*at), dtype=np.float64)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("convention", Convention)
 @settings(max_examples=15)
 @given(
@@ -79,6 +80,7 @@ def test_the_pose_of_a_chain_equals_the_numeric_pose(
     np.testing.assert_allclose(value(symbolic, at), expected, atol=1e-12)
 
 
+@pytest.mark.long
 @settings(max_examples=15)
 @given(
     table=st.lists(rows, min_size=1, max_size=4),

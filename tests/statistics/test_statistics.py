@@ -136,6 +136,7 @@ def test_mistakes_that_differ_at_the_end_of_a_long_text_are_not_identical() -> N
     assert max(len(text) for _, _, text in group.mistakes) <= 120
 
 
+@pytest.mark.long
 def test_thousands_of_submissions_take_little_memory() -> None:
     report = class_of_seven()[BEN].files[0].report
     assert report

@@ -115,6 +115,7 @@ def texts(value: object) -> Iterator[str]:
         yield from (text for each in value for text in texts(each))
 
 
+@pytest.mark.long
 def test_the_html_in_json_has_no_hostile_elements(both: tuple[Tutor, Tutor]) -> None:
     check = {"id": "h", "text": HOSTILE_EXERCISE}
     for answer in (

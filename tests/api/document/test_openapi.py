@@ -101,6 +101,7 @@ def test_the_documented_answer_is_what_the_service_answers(
     )
 
 
+@pytest.mark.long
 def test_it_is_valid_openapi(document: Schema) -> None:
     validate(document)
 

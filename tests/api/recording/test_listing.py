@@ -72,6 +72,7 @@ def test_recorded_attempts_can_be_read(tutor_of: Tutor) -> None:
     assert figures["identical"][0]["among"] == ["ada", "grace"]
 
 
+@pytest.mark.long
 def test_each_reader_gets_a_recorded_report_in_the_own_language(
     tutor_of: Tutor, store: AttemptStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -150,7 +151,7 @@ def test_a_plain_application_shows_nothing(client: httpx.Client) -> None:
     assert {client.get(path).status_code for path in PATHS} == {403}
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize(
     ("query", "status"),
     [
@@ -173,6 +174,7 @@ def test_a_query_is_checked(tutor_of: Tutor, query: str, status: int) -> None:
     assert tutor_of().get(f"/v1/attempts?{query}").status_code == status
 
 
+@pytest.mark.long
 def test_unknown_attempts_and_exercises_are_not_found(tutor_of: Tutor, catalogue: Any) -> None:
     assert tutor_of().get("/v1/attempts/%00").status_code == 404
     assert tutor_of().get("/v1/exercises/no-such/statistics").status_code == 404
@@ -181,6 +183,7 @@ def test_unknown_attempts_and_exercises_are_not_found(tutor_of: Tutor, catalogue
         assert client.get("/v1/attempts").json()["type"].endswith("attempts-not-recorded")
 
 
+@pytest.mark.long
 def test_reading_gets_503_while_the_database_is_down(tutor_of: Tutor, store: AttemptStore) -> None:
     with store.engine.execution_options(writes=True).begin() as connection:
         connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))

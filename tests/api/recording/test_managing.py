@@ -241,6 +241,7 @@ def test_an_exercise_that_fails_its_check_regrades_only_if_forced(
     assert (done["applied"], done["regraded"]) == (True, 1)
 
 
+@pytest.mark.long
 def test_only_callers_with_the_right_change_attempts(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -262,6 +263,7 @@ def test_only_callers_with_the_right_change_attempts(
     assert statuses(opened) == [200, 404, 200, 200]
 
 
+@pytest.mark.long
 def test_impossible_changes_are_refused(
     tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -276,6 +278,7 @@ def test_impossible_changes_are_refused(
         assert (answer.status_code, answer.headers["Retry-After"]) == (503, "5")
 
 
+@pytest.mark.long
 def test_others_are_answered_while_a_regrade_goes_on(
     catalogue: Mapping[str, Exercise], store: AttemptStore, tmp_path: Path
 ) -> None:

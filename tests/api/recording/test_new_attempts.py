@@ -93,6 +93,7 @@ def test_a_request_sent_again_is_answered_like_the_first(
     assert count(store) == 1
 
 
+@pytest.mark.long
 def test_only_readable_attempts_count(course_of: Any) -> None:
     course = course_of(limit=2)
     ordinals = [
@@ -104,6 +105,7 @@ def test_only_readable_attempts_count(course_of: Any) -> None:
     assert course.post(WRONG, "grace").status_code == 201
 
 
+@pytest.mark.long
 def test_each_report_has_the_level_of_its_attempt(course_of: Any) -> None:
     course = course_of((FeedbackLevel.SCORE, FeedbackLevel.VERDICTS, FeedbackLevel.HINTS))
     levels = [course.post(WRONG).json()["report"]["feedback"] for _ in range(4)]
@@ -186,6 +188,7 @@ def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vai
     assert len(gradings) <= 12 + anew
 
 
+@pytest.mark.long
 def test_a_late_attempt_is_recorded_with_its_share(course_of: Any) -> None:
     now = datetime.now(UTC)
     rules = {"due": now - timedelta(hours=1), "closes": now + timedelta(hours=1)}

@@ -150,6 +150,7 @@ def test_nothing_of_the_reference_leaks(secretive: httpx.Client, path: str, secr
     assert secret not in secretive.get(path).text
 
 
+@pytest.mark.long
 def test_no_shipped_table_leaks(client: httpx.Client, catalogue: Mapping[str, Exercise]) -> None:
     for exercise in catalogue.values():
         if not isinstance(exercise.reference, Robot):

@@ -11,6 +11,7 @@ from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure
 
 
+@pytest.mark.long
 def test_a_figure_is_the_drawing_of_the_exercise(
     client: httpx.Client, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -22,6 +23,7 @@ def test_a_figure_is_the_drawing_of_the_exercise(
     assert client.get("/v1/exercises/scara").json()["figure"] is True
 
 
+@pytest.mark.long
 def test_a_figure_runs_no_script_and_uses_only_its_own_style(client: httpx.Client) -> None:
     for theme in Theme:
         answer = client.get(f"/v1/exercises/planar-rr/figure.svg?theme={theme}")

@@ -110,6 +110,7 @@ def test_given_frames_move_with_the_robot(client: httpx.Client) -> None:
     assert answered(client, {"exercise": "rrrp"})["mechanism"]["frames"] == [*"04"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "hidden", [{"attempts": AttemptsSpec(limit=3)}, {"feedback_by_attempt": (FeedbackLevel.SCORE,)}]
 )

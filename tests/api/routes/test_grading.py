@@ -188,6 +188,7 @@ JSON = st.recursive(
 )
 
 
+@pytest.mark.long
 @given(answer=JSON, part=st.sampled_from(["table", "pose"]))
 def test_every_answer_gets_a_report(client: httpx.Client, answer: object, part: str) -> None:
     response = client.post(URL, content=json.dumps({"answers": {part: answer}}))

@@ -13,6 +13,7 @@ from service.variants.robots.robot_exercise import robot_exercise
 from tests.variants.robots.checks import lazy_share
 
 
+@pytest.mark.long
 def test_a_robot_is_found_by_its_id_everywhere(client: httpx.Client) -> None:
     dealt = client.get("/v1/practice/next?level=2&convention=modified").json()
     assert dealt["level"] == 2
@@ -37,6 +38,7 @@ def test_the_next_robot_follows_the_last_one(client: httpx.Client) -> None:
     assert harder["difficulty"] > following["difficulty"]
 
 
+@pytest.mark.long
 def test_a_robot_in_which_zeros_earn_much_is_not_dealt(client: httpx.Client) -> None:
     # In robot 1000 of level 1 they earn more than a quarter, because marks give one row up.
     for number in (998, 999, 1000):
@@ -47,6 +49,7 @@ def test_a_robot_in_which_zeros_earn_much_is_not_dealt(client: httpx.Client) -> 
         assert dealt["id"] == str(fair)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("favour", Situation)
 def test_a_situation_may_be_wished(client: httpx.Client, favour: Situation) -> None:
     for after in ("practice-1-standard~5", "practice-3-standard~zz"):
@@ -69,6 +72,7 @@ def test_unknown_robots_are_no_exercises(client: httpx.Client) -> None:
         assert client.get(f"/v1/exercises/{name}").status_code == 404
 
 
+@pytest.mark.long
 def test_many_seeds_do_not_fill_the_memory() -> None:
     robots = CatalogueWithPractice({})
     for number in range(1, 20):

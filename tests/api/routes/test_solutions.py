@@ -76,6 +76,7 @@ def test_an_unknown_exercise(tutor: httpx.Client) -> None:
     assert "Did you mean 'scara'?" in response.json()["detail"]
 
 
+@pytest.mark.long
 def test_the_documented_example_is_what_is_answered(tutor: httpx.Client) -> None:
     document: dict[str, Any] = tutor.get("/openapi.json").json()
     operation = document["paths"]["/v1/exercises/{exercise_id}/solution"]["get"]
@@ -83,6 +84,7 @@ def test_the_documented_example_is_what_is_answered(tutor: httpx.Client) -> None
     assert documented == tutor.get(PATH.format("planar-rr")).json()
 
 
+@pytest.mark.long
 def test_a_changed_exercise_has_a_solution_of_its_own(
     catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch,
     client_of: Callable[[FastAPI], httpx.Client],
@@ -181,6 +183,7 @@ def test_a_part_that_is_left_out_has_no_full_marks(
     assert some.status_code == 403
 
 
+@pytest.mark.long
 def test_an_exercise_that_counts_has_no_solution_for_students(
     catalogue: Mapping[str, Exercise], client_of: Any
 ) -> None:

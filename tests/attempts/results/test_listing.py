@@ -45,6 +45,7 @@ def test_pages_list_every_attempt_once_while_more_are_recorded(
     assert [each.id for each in following] == written[3:0:-1]
 
 
+@pytest.mark.long
 def test_filters_combine(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:
     scara, planar = catalogue["scara"], catalogue["planar-rr"]
     ada = recorded(store, scara, "ada", NO_TWIST)

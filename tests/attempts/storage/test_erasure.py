@@ -94,6 +94,7 @@ def test_a_store_finishes_an_erasure_when_it_starts(
     idle.dispose()
 
 
+@pytest.mark.long
 def test_no_data_is_left_of_learners_whose_rows_were_rewritten(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -82,6 +82,7 @@ def test_the_element_follows_changes_of_the_page(
     expect(page.locator(".outer")).to_have_attribute("data-scheme", "light")
 
 
+@pytest.mark.long
 def test_points_and_answers_are_those_of_the_shown_parts(
     visit: Opening, service: str, other_origin: Origin
 ) -> None:
@@ -117,6 +118,7 @@ def test_points_and_answers_are_those_of_the_shown_parts(
     expect(cells(page).first).to_have_value("a2")
 
 
+@pytest.mark.long
 def test_an_unknown_exercise_shows_one_message(
     visit: Opening, service: str, other_origin: Origin
 ) -> None:
@@ -138,6 +140,7 @@ def test_an_unknown_exercise_shows_one_message(
     opened.complaints.clear()
 
 
+@pytest.mark.long
 def test_documented_properties_and_parts_style_the_element(
     visit: Opening, service: str, other_origin: Origin
 ) -> None:

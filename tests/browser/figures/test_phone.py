@@ -10,7 +10,7 @@ from tests.figures.test_figure import PHONE
 
 
 # A wide figure and a high one.
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "side"), [("planar-rr", "width"), ("stanford-arm-d1", "height")])
 def test_a_phone_shows_figures_large_enough(
     visit: Callable[..., Visit], service: str, name: str, side: str

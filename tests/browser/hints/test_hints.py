@@ -63,6 +63,7 @@ def test_three_hints_with_a_try_in_between(visit: Opening, service: str, axe: st
     expect(page.locator(".hints")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_the_hints_at_a_cell_go_on_after_another_mistake(visit: Opening, service: str) -> None:
     page = visit().page
     wrong_table(page, service)
@@ -79,6 +80,7 @@ def test_the_hints_at_a_cell_go_on_after_another_mistake(visit: Opening, service
     expect(steps.last).to_contain_text("by the right-hand rule")
 
 
+@pytest.mark.long
 def test_a_first_view_loads_no_hints(visit: Opening, service: str) -> None:
     opened = visit()
     page = opened.page
@@ -95,6 +97,7 @@ def test_a_first_view_loads_no_hints(visit: Opening, service: str) -> None:
     assert [url for url in loaded if "/static/hints-" in url]
 
 
+@pytest.mark.long
 def test_a_hint_fits_on_a_phone(visit: Opening, service: str) -> None:
     page = visit(**PHONE).page
     wrong_table(page, service)

@@ -98,6 +98,7 @@ def test_the_switch_keeps_the_place_and_the_choice(pseudo: str, visit: Opening, 
     expect(page.locator("html")).to_have_attribute("lang", "qps-Ploc")
 
 
+@pytest.mark.long
 def test_an_element_on_another_site_takes_the_language_of_its_attribute(
     pseudo: str, visit: Opening, other_origin: Origin
 ) -> None:

@@ -59,6 +59,7 @@ def test_every_exercise_is_typeset_and_fits_a_phone(
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, exercise
 
 
+@pytest.mark.long
 def test_a_matrix_in_a_prompt_has_brackets_and_entries(
     visit: Callable[..., Visit], service: str
 ) -> None:
@@ -71,6 +72,7 @@ def test_a_matrix_in_a_prompt_has_brackets_and_entries(
     assert float(matrix.locator("mtable").evaluate(style).removesuffix("px")) >= 1
 
 
+@pytest.mark.long
 def test_messages_are_typeset(visit: Callable[..., Visit], service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rr")
@@ -83,6 +85,7 @@ def test_messages_are_typeset(visit: Callable[..., Visit], service: str) -> None
     assert plain(page) == []
 
 
+@pytest.mark.long
 def test_messages_of_the_3d_view_are_typeset(visit: Callable[..., Visit], service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rr")

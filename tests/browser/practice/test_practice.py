@@ -95,6 +95,7 @@ def test_back_is_followed_though_a_robot_has_just_loaded(visit: Opening, service
     assert robot(page) == "practice-2-standard~6"
 
 
+@pytest.mark.long
 def test_a_link_shares_one_robot(visit: Opening, service: str) -> None:
     page = visit().page
     page.goto(f"{service}/practice#practice-3-modified~1a")
@@ -108,6 +109,7 @@ def test_a_link_shares_one_robot(visit: Opening, service: str) -> None:
     assert robot(page) == "practice-3-modified~1a"
 
 
+@pytest.mark.long
 def test_an_element_deals_robots_of_its_level(visit: Opening, service: str) -> None:
     page = visit().page
     page.goto(f"{service}/practice#practice-1-standard~5")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
@@ -11,6 +12,7 @@ from tests.browser.student.steps import check, part
 Opening = Callable[..., Visit]
 
 
+@pytest.mark.long
 def test_a_changed_cell_loses_its_mark_and_the_report_says_that_it_is_older(
     visit: Opening, service: str
 ) -> None:
@@ -38,6 +40,7 @@ def test_a_changed_cell_loses_its_mark_and_the_report_says_that_it_is_older(
     expect(marks).to_have_count(8)
 
 
+@pytest.mark.long
 def test_another_unit_makes_the_report_older(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rr")

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.fixtures import Visit
 from tests.browser.steps import open_exercise
 
 
+@pytest.mark.long
 def test_the_form_says_that_the_convention_has_changed(
     visit: Callable[..., Visit], service: str
 ) -> None:

@@ -44,6 +44,7 @@ def test_a_slip_is_marked_and_mended_by_keyboard(visit: Opening, service: str, a
     expect(cells(page).nth(5)).to_have_value("180deg")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "marked"),
     [("stanford", "alpha, link twist, row 2"), ("scara", "a, link length, row 1")],

@@ -69,6 +69,7 @@ def test_a_box_takes_a_whole_table_and_says_what_does_not_fit(
     expect(box.locator("textarea")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_nothing_covers_the_row_in_hand_at_200_percent(visit: Opening, service: str) -> None:
     # A window of 1280 × 800 at 200 %.
     page = visit(viewport={"width": 640, "height": 400}).page
@@ -85,6 +86,7 @@ def test_nothing_covers_the_row_in_hand_at_200_percent(visit: Opening, service: 
         assert cell.evaluate(is_free)
 
 
+@pytest.mark.long
 def test_the_statement_is_not_cut(visit: Opening, service: str) -> None:
     page = visit(viewport={"width": 1280, "height": 800}).page
     open_exercise(page, service, "stanford-arm")
@@ -96,6 +98,7 @@ def test_the_statement_is_not_cut(visit: Opening, service: str) -> None:
     assert last["y"] + last["height"] <= 800
 
 
+@pytest.mark.long
 def test_forced_colours_show_which_matrix_is_open(visit: Opening, service: str) -> None:
     page = visit(forced_colors="active").page
     open_exercise(page, service, "planar-rr")
@@ -107,6 +110,7 @@ def test_forced_colours_show_which_matrix_is_open(visit: Opening, service: str) 
     assert len(lines) == len(set(lines)) == 2
 
 
+@pytest.mark.long
 def test_a_number_that_looks_like_degrees_is_said_to_be_read_in_radians(
     visit: Opening, service: str
 ) -> None:

@@ -48,6 +48,7 @@ def test_frames_are_placed_by_keyboard_and_a_broken_rule_is_shown(
     expect(part(page, 0).locator(".badge").first).to_have_text("correct")
 
 
+@pytest.mark.long
 def test_a_table_of_frames_is_pasted(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rrr-frames")
@@ -61,6 +62,7 @@ def test_a_table_of_frames_is_pasted(visit: Opening, service: str) -> None:
     assert [each.input_value() for each in cells(page).all()[:18]] == RIGHT
 
 
+@pytest.mark.long
 def test_a_phone_shows_all_cells_of_a_frame_without_sideways_scrolling(
     visit: Opening, service: str
 ) -> None:

@@ -39,6 +39,7 @@ def test_the_stanford_arm_is_typed_from_an_empty_page_to_full_marks(
     expect(page.locator(".total")).to_have_text("32 / 32 points")
 
 
+@pytest.mark.long
 def test_the_tabs_of_matrices_follow_the_arrow_keys(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "stanford-arm")
@@ -66,6 +67,7 @@ def test_the_tabs_of_matrices_follow_the_arrow_keys(visit: Opening, service: str
     expect(page.get_by_role("tab", name="A1 missing")).to_be_visible()
 
 
+@pytest.mark.long
 def test_check_leads_to_the_first_slip_and_reads_it_out(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "rrrp")

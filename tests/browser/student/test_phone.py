@@ -71,7 +71,7 @@ def matrices(texts: list[str]) -> list[str]:
     return [f"A{i // 4 + 1} = [{'; '.join(rows[i : i + 4])}]" for i in range(0, len(rows), 4)]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("exercise", ["planar-rr", "dh-conditions"])
 def test_unreadable_cells_do_not_make_the_page_wider(
     visit: Opening, service: str, exercise: str
@@ -85,6 +85,7 @@ def test_unreadable_cells_do_not_make_the_page_wider(
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["viewport"]["width"]
 
 
+@pytest.mark.long
 def test_a_key_writes_at_the_caret_and_can_be_undone(visit: Opening, service: str) -> None:
     page = visit(**PHONE).page
     open_exercise(page, service, "planar-rr")
@@ -129,6 +130,7 @@ def test_nothing_is_cut_on_a_phone(
         assert [each.evaluate(CUT) for each in shown.all()] == [0] * shown.count(), name
 
 
+@pytest.mark.long
 def test_the_tools_fit_on_one_line_beside_the_3d_view(visit: Opening, service: str) -> None:
     page = visit(viewport={"width": 1280, "height": 800}).page
     open_exercise(page, service, "scara")

@@ -13,6 +13,7 @@ from tests.browser.test_pages import violations
 Opening = Callable[..., Visit]
 
 
+@pytest.mark.long
 def test_a_wide_matrix_has_an_arrow_at_the_hidden_edge(
     visit: Opening, service: str, axe: str
 ) -> None:

@@ -126,6 +126,7 @@ def test_the_arm_is_shown_in_3d_by_demand(visit: Opening, service: str) -> None:
     expect(page.get_by_role("button", name="Play a row")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_the_page_can_be_read_with_scripts_blocked(visit: Opening, service: str) -> None:
     opened = visit(java_script_enabled=False)
     opened.page.goto(f"{service}/learn-dh")
@@ -148,6 +149,7 @@ def test_each_column_head_leads_to_its_screen(visit: Opening, service: str) -> N
         beside.close()
 
 
+@pytest.mark.long
 def test_a_link_transform_leads_to_its_matrix(visit: Opening, service: str) -> None:
     page = visit().page
     open_exercise(page, service, "planar-rr")

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.fixtures import Visit
@@ -35,6 +36,7 @@ def choose_before_scripts(
         route.continue_()
 
 
+@pytest.mark.long
 def test_a_robot_chosen_before_the_scripts_is_read(
     visit: Callable[..., Visit], service: str, tmp_path: Path
 ) -> None:
@@ -49,6 +51,7 @@ def test_a_robot_chosen_before_the_scripts_is_read(
     expect(page.get_by_label("or paste it")).to_have_value('<robot name="arm"/>')
 
 
+@pytest.mark.long
 def test_a_submission_chosen_before_the_scripts_is_graded(
     visit: Callable[..., Visit], service: str, tmp_path: Path
 ) -> None:

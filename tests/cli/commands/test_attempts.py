@@ -118,6 +118,7 @@ def test_shares_are_rounded(
     assert "alpha 67 %" in told
 
 
+@pytest.mark.long
 def test_gradebooks_contain_only_the_attempt_that_counts(
     run: Run, course: list[str], tmp_path: Path
 ) -> None:
@@ -209,6 +210,7 @@ def test_an_exercise_that_fails_its_check_is_regraded_only_with_force(
     assert "Regraded: 3." in run("attempts", "regrade", "scara", "--apply", "--force").output
 
 
+@pytest.mark.long
 def test_an_override_requires_a_reason(run: Run, course: list[str]) -> None:
     assert run("attempts", "override", course[2], "20").exit_code == 2
     assert run("attempts", "override", "0" * 32, "20", "--reason", "r").exit_code == 2

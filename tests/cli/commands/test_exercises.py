@@ -159,6 +159,7 @@ def test_show_suggests_the_nearest_exercise(run: Run) -> None:
     assert "Did you mean 'scara'?" in result.stderr
 
 
+@pytest.mark.long
 def test_check_accepts_a_file_a_folder_and_by_default_the_catalogue(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

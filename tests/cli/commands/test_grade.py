@@ -237,6 +237,7 @@ def test_a_format_names_the_missing_variable_of_its_platform(
     assert "CLASSROOM, " in result.stderr
 
 
+@pytest.mark.long
 def test_formats_for_students_respect_the_feedback_level_of_the_exercise(
     run: Run, save: Save
 ) -> None:

@@ -32,6 +32,7 @@ def test_a_urdf_becomes_a_checked_exercise(run: Run, file: Path, tmp_path: Path)
     assert run("exercises", "check", tmp_path / "elbow.toml").exit_code == 0
 
 
+@pytest.mark.long
 def test_the_files_of_both_conventions_pass(run: Run, file: Path, tmp_path: Path) -> None:
     for convention in ("standard", "modified"):
         made = run("exercises", "import", file, "--id", convention, "--convention", convention,

@@ -40,6 +40,7 @@ def test_what_differs_is_in_the_language(
     assert re.search(r"Längen +2 +2 +2 \(4 von 4\)", checked.stdout)
 
 
+@pytest.mark.long
 def test_check_names_a_variant_in_which_a_check_fails(run: Run, arm: Path) -> None:
     # Right for the first choice of a1 only.
     text = arm.read_text(encoding="utf-8")
@@ -56,6 +57,7 @@ def test_check_names_a_variant_in_which_a_check_fails(run: Run, arm: Path) -> No
     assert named, checked.stdout
 
 
+@pytest.mark.long
 def test_deploy_writes_the_seeds_and_draws_the_variants(
     run: Run, arm: Path, tmp_path: Path
 ) -> None:
@@ -71,6 +73,7 @@ def test_deploy_writes_the_seeds_and_draws_the_variants(
     assert tomllib.loads(arm.read_text(encoding="utf-8"))["vary"]["deployed"] == seeds
 
 
+@pytest.mark.long
 def test_deploy_says_if_there_are_too_few_variants(run: Run, arm: Path) -> None:
     arm.write_text(varied_text(), encoding="utf-8")
     refused = run("exercises", "deploy", arm, "--count", 40)

@@ -15,6 +15,7 @@ def installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DH_GRADER_SECRET", "0123456789abcdef" * 4)
 
 
+@pytest.mark.long
 def test_a_platform_is_registered_from_a_file_checked_and_removed(run: Run, tmp_path: Path) -> None:
     platform, file = Platform(), tmp_path / "moodle.json"
     with running(platform.app()) as port:

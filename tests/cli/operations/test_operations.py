@@ -276,6 +276,7 @@ def test_the_doctor_says_what_is_wrong(
     assert SECRET not in result.output
 
 
+@pytest.mark.long
 def test_the_doctor_finds_nothing_wrong(
     database: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

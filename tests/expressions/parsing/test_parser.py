@@ -140,6 +140,7 @@ def test_every_sentence_of_the_grammar_is_parsed() -> None:
         assert accepts(terminals), terminals
 
 
+@pytest.mark.long
 def test_other_terminals_are_refused() -> None:
     random = Random(1)
     refused = 0

@@ -60,6 +60,7 @@ def test_a_slip_is_refused_with_its_repair(repair: str, case: RepairCase) -> Non
         read(case.answer, names)
 
 
+@pytest.mark.long
 @together("repair", NAMES)
 def test_a_message_never_contains_a_record_separator(repair: str) -> None:
     """The record separator counts as a blank, so a quotation in a message might contain it."""
@@ -100,6 +101,7 @@ _DIGITS = re.compile(r"[0-9]+")
 _TERM = re.compile(r"(?<![\w.*/^])[0-9.]+(?=$|[-+)])")
 
 
+@pytest.mark.long
 @together("text", SPOILT)
 def test_a_repaired_text_loses_nothing(text: str) -> None:
     error = _error(ROBOT, text)

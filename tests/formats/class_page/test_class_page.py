@@ -48,6 +48,7 @@ def told(page: str) -> str:
     return re.sub(r"\s+", " ", " ".join(read(page).texts))
 
 
+@pytest.mark.long
 def test_the_index_links_to_a_page_for_each_submission() -> None:
     files = folder(*class_of_seven())
     names = ("anna", "ben", "cleo", "dana", "emre", "fritz", "gina")

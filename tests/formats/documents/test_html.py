@@ -69,6 +69,7 @@ COLOURS = """() => {
 }"""
 
 
+@pytest.mark.long
 def test_a_browser_shows_it_light_dark_and_printed(
     visit: Callable[..., Visit], tmp_path: Path
 ) -> None:

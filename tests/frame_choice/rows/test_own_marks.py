@@ -47,7 +47,7 @@ WITH_LAST_ROW = [
 ]
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.long
 @pytest.mark.parametrize("policy", POLICIES, ids=lambda policy: policy.name)
 def test_a_lazy_table_earns_at_most_a_quarter(policy: Policy) -> None:
     for robot in (RPR, PRRR, *ROBOTS):
@@ -75,6 +75,7 @@ def test_a_slip_in_a_table_that_needs_a_row_more_costs_no_more_than_its_cell() -
     assert not wrong.feedback
 
 
+@pytest.mark.long
 def test_a_guessed_row_more_earns_nothing() -> None:
     compiled = exercise(RPR, GIVEN)
     guessed = [["0", "0", "0", "q1"], ["0", "0", "q2", "0"], ["0", "0", "0", "q3"]]

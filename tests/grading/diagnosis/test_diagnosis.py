@@ -52,6 +52,7 @@ def _reason(record: Record, trace: Trace) -> str:
     return f"its example draws {sorted(trace.codes)}, and not by it"
 
 
+@pytest.mark.long
 @together("record", NAMED)
 def test_a_record_explains_only_its_example(record: Record) -> None:
     assert complaint_about(record) == ""
@@ -63,6 +64,7 @@ def traces() -> list[Trace]:
     return [trace_of(*record.example) for record in all_records() if record.example]
 
 
+@pytest.mark.long
 @together("record", WITHOUT_CODE)
 def test_a_record_without_a_code_is_asked(record: Record) -> None:
     assert any(record in trace.asked for trace in traces()), f"no engine asks {record.name}"
@@ -76,7 +78,7 @@ def test_no_two_records_of_a_kind_have_one_rank() -> None:
     assert [names for names in ranks.values() if len(names) > 1] == []
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(
     "first", ["judging.own_frames.written_table", "diagnosis.upstream.slip_kinds", "kinds.position"]
 )

@@ -223,6 +223,7 @@ convention = "standard"
     assert not full_marks(placed(make_exercise(text), [{**row, "origin": [0.43, 0.26, 0]}]))
 
 
+@pytest.mark.long
 def test_an_empty_cell_never_earns_more(stanford: Exercise) -> None:
     rng = np.random.default_rng(5)
     choices: dict[str, list[Any]] = {
@@ -261,6 +262,7 @@ def test_the_table_is_not_shown_where_it_is_asked_next(planar: Exercise) -> None
     assert "table_of_frames" not in all_codes(placed(planar, PLANAR))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("seed", "placements"),
     [

@@ -66,6 +66,7 @@ REFUSED = [
 ]  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("refused", REFUSED, ids=range(len(REFUSED)))
 def test_answers_that_json_refuses_change_the_draw(
     refused: object, catalogue: Mapping[str, Exercise]

@@ -25,6 +25,7 @@ def test_no_text_is_misread_and_each_refused_one_has_advice(language: str) -> No
             assert not any(advice.startswith("no_grid") for advice in reading.advice), case.title
 
 
+@pytest.mark.long
 def test_most_texts_are_read(figure: Callable[[str], None]) -> None:
     found = [case for language in languages() for case in texts(language) if case.rows]
     total = sum(len(texts(language)) for language in languages())

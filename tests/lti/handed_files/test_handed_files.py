@@ -142,6 +142,7 @@ def test_a_tutor_chooses_and_a_file_is_graded(course: Course) -> None:
     assert "q1" not in str(row)
 
 
+@pytest.mark.long
 def test_students_see_their_own_report_and_teachers_all(course: Course) -> None:
     course.hand_in(table_csv=WRONG)
     course.grade()
@@ -299,6 +300,7 @@ def test_a_platform_in_trouble_gets_its_reports_later(course: Course) -> None:
     assert [each.state for each in course.rows()] == ["sent", "refused"]
 
 
+@pytest.mark.long
 def test_tutors_see_which_reports_did_not_arrive(course: Course) -> None:
     tool, store = course.tool, course.store
     for user in ("ada", "grace"):
@@ -342,6 +344,7 @@ def tutor_key(tool: Tool) -> str:
     return text
 
 
+@pytest.mark.long
 def test_after_three_days_files_are_given_up(course: Course) -> None:
     course.hand_in(table_csv=RIGHT)
     course.store.trouble["report"] = [503] * 99
@@ -420,6 +423,7 @@ FORGED: list[tuple[Callable[[dict[str, Any]], None], str]] = [
 ]  # fmt: skip
 
 
+@pytest.mark.long
 def test_forged_notices_are_refused(course: Course) -> None:
     course.store.files["table.csv"] = RIGHT
     told = []

@@ -62,6 +62,7 @@ def course(tool: Tool, journey: Journey) -> Iterator[Course]:
         yield Course(other, journey)
 
 
+@pytest.mark.long
 def test_scores_arrive_at_a_platform_by_others(course: Course) -> None:
     """The platform has no line item: the first score makes one. The last score counts."""
     other, journey = course.other, course.journey
@@ -92,6 +93,7 @@ def test_scores_arrive_at_a_platform_by_others(course: Course) -> None:
     assert other.asked.count("new item") == 1
 
 
+@pytest.mark.long
 def test_a_line_item_is_found_on_the_second_page(course: Course) -> None:
     other = course.other
     for name, link in (("i0", "link-1"), ("i1", "link-9")):

@@ -4,11 +4,13 @@ import asyncio
 from time import process_time
 
 import httpx
+import pytest
 
 from tests.lti.conftest import Tool
 from tests.lti.load.rush import BUDGET, rush
 
 
+@pytest.mark.long
 def test_a_class_opens_its_exercise_at_once(tool: Tool) -> None:
     """The processor time includes that of the platform and of the browsers."""
     users = [f"u{i}" for i in range(10)]

@@ -79,6 +79,7 @@ def test_a_score_waits_for_an_unreachable_platform(journey: Journey) -> None:
     assert (row.state, json.loads(row.refusal)[0]) == ("waiting", "unreachable")
 
 
+@pytest.mark.long
 def test_a_token_is_used_until_shortly_before_its_end(journey: Journey) -> None:
     attempt = journey.hand_in()
     journey.send()
@@ -127,7 +128,7 @@ def test_the_audience_of_the_token(journey: Journey) -> None:
     assert journey.states() == {"ada": "sent"}
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("status", [400, 403, 404, 422])
 def test_the_score_of_a_learner_waits_for_the_enrolment(journey: Journey, status: int) -> None:
     """The refusal is final until the learner launches again."""
@@ -146,6 +147,7 @@ def test_the_score_of_a_learner_waits_for_the_enrolment(journey: Journey, status
     assert set(journey.states().values()) == {"sent"}
 
 
+@pytest.mark.long
 def test_a_line_item_is_found_at_its_new_address(journey: Journey) -> None:
     journey.hand_in()
     journey.gradebook.items = {"77": Item("link-1"), "78": Item("link-2")}
@@ -169,6 +171,7 @@ def test_a_deleted_line_item_is_not_made_again(journey: Journey) -> None:
     assert journey.gradebook.items == {}
 
 
+@pytest.mark.long
 def test_timestamps_are_later_by_a_second(journey: Journey) -> None:
     """Moodle compares whole seconds. The clock of the platform may be ahead of ours, too."""
     attempt = journey.hand_in()
@@ -202,6 +205,7 @@ UNUSABLE: list[object] = [
 ]
 
 
+@pytest.mark.long
 def test_unusable_lists_of_line_items_cost_one_try(journey: Journey) -> None:
     """Hostile lists of line items cost a try, and no more; the token goes to its host only."""
 

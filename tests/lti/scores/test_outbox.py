@@ -76,6 +76,7 @@ def hurried(journey: Journey, number: int) -> str:
     )
 
 
+@pytest.mark.long
 def test_a_hand_in_goes_before_the_scores_of_a_regrade(journey: Journey) -> None:
     hurried(journey, 60)
 

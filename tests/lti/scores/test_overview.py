@@ -70,6 +70,7 @@ def test_problems_are_told_in_the_language_of_the_reader(journey: Journey) -> No
     )
 
 
+@pytest.mark.long
 def test_the_command(journey: Journey, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     course = refused_and_sent(journey)
     monkeypatch.setenv("DH_GRADER_DATABASE", journey.tool.url)

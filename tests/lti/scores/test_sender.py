@@ -15,7 +15,7 @@ KINDS = pytest.mark.parametrize("tool", ["sqlite", "postgresql"], indirect=True)
 ENDPOINT = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @KINDS
 def test_a_hand_in_an_override_and_a_forgotten_learner_arrive(journey: Journey) -> None:
     attempt = journey.hand_in()
@@ -163,6 +163,7 @@ def test_a_learner_of_whom_nothing_was_sent_leaves_nothing(journey: Journey) -> 
     assert journey.rows() == []
 
 
+@pytest.mark.long
 def test_a_platform_without_line_items_gets_one(journey: Journey) -> None:
     """Brightspace: the tool makes the column, once, and names an audience of its own."""
     journey.tool.platform.habits.append(lambda claims: claims[ENDPOINT].pop("lineitem"))
@@ -240,6 +241,7 @@ def test_names_that_change_change_no_score(journey: Journey) -> None:
     assert len(journey.tool.do(lambda it: it.execute(select(attempts)).all())) == 2
 
 
+@pytest.mark.long
 def test_no_timestamp_is_in_the_future(journey: Journey) -> None:
     """Of many changes in a second, some wait; the platform refuses none, and ends with the last."""
     attempt = journey.hand_in()

@@ -69,6 +69,7 @@ def test_a_right_answer_has_no_message(arm: Arm) -> None:
             assert list(messages_of(part)) == []
 
 
+@pytest.mark.long
 def test_hints_contain_no_correction() -> None:
     [arm] = SAMPLE[2:3]
     exercise, told = exercise_of(arm), 0

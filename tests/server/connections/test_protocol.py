@@ -189,6 +189,7 @@ def test_refusals_before_the_application_are_counted(impatient: Service) -> None
     assert more("requests_total", "POST", "/v1/preview", "413") == 1
 
 
+@pytest.mark.long
 def test_a_body_that_comes_too_slowly_is_given_up(impatient: Service) -> None:
     with impatient.connect(preview(b" " * 1000)[:-1000]) as connection:
         connection.settimeout(0.05)
@@ -204,6 +205,7 @@ def test_a_body_that_comes_too_slowly_is_given_up(impatient: Service) -> None:
     assert time.monotonic() - began >= TIMEOUT * 0.9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("sent", "timeout"),
     [(b"", HEAD_TIMEOUT), (HEALTH, TIMEOUT)],

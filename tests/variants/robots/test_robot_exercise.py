@@ -78,6 +78,7 @@ def test_the_statement_proves_itself_and_the_marks_are_fair(
         assert nearest_links(exercise) > 0.12, exercise.id
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("level", LEVELS)
 def test_no_labels_of_a_figure_overlap(level: int) -> None:
     assert overlapping_labels(drawn(level, 77)) == []

@@ -51,6 +51,7 @@ def process_of(checking: Checking) -> "subprocess.Popen[bytes]":
     return checking._process
 
 
+@pytest.mark.long
 def test_one_process_checks_one_text_after_the_other(checking: Checking) -> None:
     assert b'"findings":[]' in checking.checked(CheckRequest(id="scara", text=SCARA))
     first = process_of(checking)
@@ -91,6 +92,7 @@ def test_a_crashed_check_does_not_affect_the_next_one(checking: Checking) -> Non
     assert process_of(checking) is first
 
 
+@pytest.mark.long
 def test_the_end_of_the_service_ends_a_check(checking: Checking) -> None:
     told: list[ProblemError] = []
     checking.checked(QUICK)

@@ -122,6 +122,7 @@ def test_every_solution_is_drawn(tutor: Tutor, catalogue: Mapping[str, Exercise]
     assert tutor.ask("GET", "/tutor/solutions/planar-rpr-poe/frames.svg").status_code == 404
 
 
+@pytest.mark.long
 def test_misconceptions_are_listed_with_their_sentences(tutor: Tutor) -> None:
     page = tutor.ask("GET", "/tutor/misconceptions/planar-rr").text
     for code, sentence in (

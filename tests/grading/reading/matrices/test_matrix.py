@@ -88,6 +88,7 @@ ALONE = {
 }
 
 
+@pytest.mark.long
 @together("exercise", POSES)
 @together("name", PRINTS)
 def test_a_printed_matrix_has_the_entries_printed_one_by_one(exercise: str, name: str) -> None:
@@ -97,6 +98,7 @@ def test_a_printed_matrix_has_the_entries_printed_one_by_one(exercise: str, name
     assert [[cell.text for cell in row] for row in rows] == expected
 
 
+@pytest.mark.long
 @together("exercise", POSES)
 @together("name", PRINTS)
 def test_a_print_gets_full_marks(

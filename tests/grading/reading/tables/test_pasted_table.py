@@ -38,6 +38,7 @@ def infos(report: PartReport) -> list[str]:
     return [message.code for message in report.feedback]
 
 
+@pytest.mark.long
 @together("robot", ROBOTS)
 @together("spelling", SPELLINGS)
 @together("name", TABLES)
@@ -184,6 +185,7 @@ def test_labels(labels: list[str], notes: list[str], catalogue: Mapping[str, Exe
     assert infos(report) == notes
 
 
+@pytest.mark.long
 @together(
     ("header", "label"),
     [

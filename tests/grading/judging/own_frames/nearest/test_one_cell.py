@@ -51,6 +51,7 @@ def policy(
     return one_part("dh_table", f'{fields}\ndirections = "{directions}"', robot)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("directions", ["given", "free"])
 @pytest.mark.parametrize("tool", ["given", "free"])
 @pytest.mark.parametrize("base", ["given", "free"])
