@@ -21,6 +21,7 @@ from service.attempts.storage.tables import (
     overrides,
     regrade_queue,
 )
+from service.translations import say
 
 # How often PostgreSQL may report a concurrent write while a learner is being deleted.
 _TRIES: Final = 4
@@ -44,7 +45,8 @@ def override(
     if found is None:
         raise UnknownAttemptError(attempt_id)
     if points is not None and not 0 <= points <= found.max_points:
-        raise UnusablePointsError(f"The attempt may have 0 to {found.max_points:g} points.")
+        most = f"{found.max_points:g}"
+        raise UnusablePointsError(say("The attempt may have 0 to {most} points.", most=most))
     connection.execute(
         insert(overrides).values(
             attempt=found.number, points=points, reason=reason, author=author, at=at

@@ -67,7 +67,7 @@ class NewRegistration(BaseModel):
         try:
             zone_named(zone)
         except Exception as error:
-            raise ValueError(str(error)) from error
+            raise ValueError(error.args[0]) from error
         return zone
 
     @field_validator("address")

@@ -121,7 +121,7 @@ def test_a_body_of_another_shape_gets_422(client: httpx.Client, body: object, po
 def test_too_many_submissions_are_told_how_many_there_may_be(client: httpx.Client) -> None:
     response = client.post(URL, json={"submissions": [0] * (MAX_SUBMISSIONS + 1)})
     assert response.status_code == 422
-    said = "#/submissions: At most 64 submissions may be sent at once; these are 65."
+    said = "#/submissions: This may have at most 64 entries, but has 65."
     assert response.json()["detail"] == said
 
 

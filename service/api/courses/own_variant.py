@@ -15,6 +15,7 @@ from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
 from service.catalogue import Exercise
 from service.contract.courses import CourseName
+from service.translations import say
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -73,5 +74,6 @@ def _named(request: Request, name: str) -> str:
     try:
         return _NAME.validate_python(request.query_params.get(name))
     except ValidationError as error:
-        detail = {"type": "value", "loc": (name,), "msg": "Name a course and an assignment"}
+        message = say("Name a course and an assignment.")
+        detail = {"type": "value", "loc": (name,), "msg": message}
         raise invalid([detail]) from error

@@ -23,6 +23,7 @@ from service.contract.courses import (
     NewLearner,
 )
 from service.courses.errors import CourseError
+from service.translations import say
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Connection
@@ -138,7 +139,7 @@ def _learners(course_id: str, connection: "Connection") -> LearnerList:
 def _new_learners(body: LearnersRequest) -> list[NewLearner]:
     """Return the learners of a request. Raises ProblemError."""
     if (body.learners is None) == (body.csv is None):
-        message = "Send either learners or csv"
+        message = say("Send either learners or csv.")
         raise invalid([{"type": "either", "loc": (), "msg": message}])
     if body.csv is None:
         return body.learners or []

@@ -12,7 +12,7 @@ from service.access.caller import Caller
 from service.api.http.problems import MAX_ERRORS, ProblemError, invalid, message_of
 from service.catalogue import Exercise
 from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
-from service.translations import say
+from service.translations import paragraph, say
 
 Catalogue = Mapping[str, Exercise]
 ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
@@ -43,7 +43,7 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
     try:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
-        detail = {"type": "unknown", "loc": ("exercise",), "msg": str(error)[:-1]}
+        detail = {"type": "unknown", "loc": ("exercise",), "msg": message_of(error)}
         raise invalid([detail]) from error
 
 
@@ -54,7 +54,7 @@ def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: 
         try:
             find_exercise(catalogue, exercise_id)
         except UnknownExerciseError as error:
-            details.append({"type": "unknown", "loc": (field, i), "msg": str(error)[:-1]})
+            details.append({"type": "unknown", "loc": (field, i), "msg": message_of(error)})
     if details:
         raise invalid(details)
 
@@ -70,8 +70,11 @@ def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -
     details = []
     for part, place in islice(absent, MAX_ERRORS):
         meant = nearest(part, known)
-        hint = f"did you mean {meant}? Its" if meant else "its"
-        message = f"{exercise.id} has no such part; {hint} parts are {', '.join(known)}"
+        message = paragraph(
+            say("{exercise} has no such part.", exercise=exercise.id),
+            say("Did you mean {suggestion!r}?", suggestion=meant) if meant else "",
+            say("Its parts are: {parts}.", parts=", ".join(known)),
+        )
         details.append({"type": "unknown", "loc": place, "msg": message})
     if details:
         problem = invalid(details)

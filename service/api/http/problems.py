@@ -15,8 +15,9 @@ from starlette.requests import ClientDisconnect
 from service.api.http.language import language_of
 from service.api.http.request_context import current_request
 from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
+from service.submissions.field_errors import field_error
 from service.submissions.strict_json import MAX_BODY_SIZE
-from service.translations import ENGLISH, Language, Sentence, say, told
+from service.translations import ENGLISH, Language, Sentence, paragraph, say, told
 
 MAX_ERRORS = 20
 STORE_DOWN: Final = "store-down"
@@ -130,42 +131,27 @@ def failed() -> ProblemError:
 def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) -> ProblemError:
     """Return the problem of a body with errors that pydantic found; it may have ``fields``."""
     errors = [
-        {"pointer": _pointer(detail["loc"]), "detail": _message(detail, fields)}
+        {"pointer": _pointer(detail["loc"]), "detail": field_error(detail, fields)}
         for detail in details[:MAX_ERRORS]
     ]
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY,
-        " ".join(f"{error['pointer']}: {error['detail']}" for error in errors[:3]),
+        paragraph(
+            *(
+                say("{place}: {message}", place=error["pointer"], message=error["detail"])
+                for error in errors[:3]
+            )
+        ),
         "invalid-request",
         say("The request does not have the right shape"),
         errors,
     )
 
 
-# A longer pattern does not help a reader. It is the one of names, which are one visible line.
-_LONGEST_PATTERN: Final = 200
-
-
 def _pointer(location: Sequence[str | int]) -> str:
     """Return a JSON pointer as a URI fragment, as RFC 9457 writes it; long keys are cut."""
     steps = (str(step)[:60].replace("~", "~0").replace("/", "~1") for step in location)
     return "#" + "".join(f"/{step}" for step in steps)
-
-
-def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
-    if detail["type"] == "extra_forbidden" and fields:
-        return f"This field is not known; the fields are {', '.join(fields)}."
-    if detail["type"] == "missing":
-        return "This field is missing."
-    if detail["type"] in ("model_type", "model_attributes_type"):
-        return f"{'This' if detail['loc'] else 'The body'} must be a JSON object."
-    if detail["type"] == "too_long" and "ctx" in detail and detail["loc"]:
-        most, here = detail["ctx"]["max_length"], detail["ctx"]["actual_length"]
-        return f"At most {most} {detail['loc'][-1]} may be sent at once; these are {here}."
-    if detail["type"] == "string_pattern_mismatch" and len(detail["msg"]) > _LONGEST_PATTERN:
-        return "Write one line of visible characters, with single blanks between words."
-    message: str = detail["msg"].removeprefix("Value error, ")
-    return message if message.endswith((".", "?")) else f"{message}."
 
 
 def install(app: FastAPI, page: ProblemPage | None = None) -> None:
@@ -224,5 +210,9 @@ def _other_method(request: Request, error: HTTPException) -> ProblemError:
     methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = ", ".join(sorted(methods))
-    detail = f"{request.method[:20]} does nothing here; this address takes {allow}."
+    detail = say(
+        "{method} does nothing here; this address takes {allow}.",
+        method=request.method[:20],
+        allow=allow,
+    )
     return ProblemError(HTTPStatus.METHOD_NOT_ALLOWED, detail, headers={"Allow": allow})

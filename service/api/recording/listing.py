@@ -31,7 +31,7 @@ from service.contract.attempts import (
 )
 from service.contract.courses import CourseName
 from service.contract.statistics import ExerciseStatistics
-from service.translations import Language
+from service.translations import Language, say
 
 if TYPE_CHECKING:  # they load the drivers of databases
     from sqlalchemy import Row
@@ -44,13 +44,13 @@ def _in_utc(moment: datetime) -> datetime:
     try:
         return moment.astimezone(UTC)
     except OverflowError as error:
-        raise ValueError("is no moment of the calendar in UTC") from error
+        raise ValueError(say("This is no moment of the calendar in UTC.")) from error
 
 
 def _written_out(moment: object) -> object:
     # A number would be read as seconds since 1970.
     if isinstance(moment, str) and _DATE.match(moment) is None:
-        raise ValueError("is no date with a time, such as 2026-10-01T08:00:00Z")
+        raise ValueError(say("This must be a date with a time, such as 2026-10-01T08:00:00Z."))
     return moment
 
 
@@ -121,7 +121,8 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         try:
             shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
         except BadCursorError as error:
-            detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
+            message = say("This is no cursor of a page.")
+            detail = {"type": "cursor", "loc": ("cursor",), "msg": message}
             raise invalid([detail]) from error
         attempts = [_summary(each, caller) for each in shown]
         return private(AttemptList(attempts=attempts, next=following))

@@ -16,7 +16,7 @@ from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.http.problems import ProblemError, invalid
+from service.api.http.problems import ProblemError, invalid, message_of
 from service.api.permissions.access import Access
 from service.api.recording.listing import (
     AssignmentFilter,
@@ -98,7 +98,7 @@ def routes(
         If only one attempt of a learner counts, it is chosen among the exported ones.
         """
         if form.is_gradebook and exercise is None:
-            message = f"{form} has one column for one exercise; name it"
+            message = say("{format} has one column for one exercise; name it.", format=form.value)
             raise invalid([{"type": "missing_exercise", "loc": ("exercise",), "msg": message}])
         # Imported here, because it loads the drivers of databases.
         from service.attempts.results.grades import counting_rules
@@ -144,7 +144,9 @@ def routes(
         except UnknownAttemptError as error:
             raise unknown_attempt() from error
         except UnusablePointsError as error:
-            raise invalid([{"type": "points", "loc": ("points",), "msg": str(error)}]) from error
+            raise invalid(
+                [{"type": "points", "loc": ("points",), "msg": message_of(error)}]
+            ) from error
         return private(AttemptSummary.model_validate(changed, from_attributes=True))
 
     @router.post(
@@ -240,7 +242,8 @@ class _Regrades:
         try:
             done = step(store.engine, self._of(exercise, course), body.cursor)
         except BadCursorError as error:
-            detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a step."}
+            message = say("This is no cursor of a step.")
+            detail = {"type": "cursor", "loc": ("cursor",), "msg": message}
             raise invalid([detail]) from error
         if done.following is None:
             # The memoized reports are not needed any more.

@@ -56,6 +56,7 @@ from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Matrices, Numbers
 from service.time_slices import checkpoint
+from service.translations import Sentence, say, say_count
 
 _MOST_MECHANISMS: Final = 64
 
@@ -118,7 +119,7 @@ def _answered(
     scope = _scope(exercise, body)
     constants = [variable.name for variable in scope.variables if variable.joint is None]
     if unknown := sorted(body.symbols.keys() - set(constants)):
-        raise _refused(("symbols", unknown[0]), "There is no such symbol")
+        raise _refused(("symbols", unknown[0]), say("There is no such symbol."))
     numbers = scope.numbers(body.symbols)
     amounts = _amounts(body, scope, numbers)
     table = mechanism = written = seen = None
@@ -154,23 +155,29 @@ def _answered(
 def _scope(exercise: Exercise | None, body: FramesRequest) -> DrawingScope:
     structure = body.table.structure if body.table else None
     if exercise is not None and body.table is not None and body.table.formulas:
-        raise _refused(("table", "formulas"), "Formulas are given of a table without an exercise")
+        message = say("Formulas are given of a table without an exercise.")
+        raise _refused(("table", "formulas"), message)
     if exercise is not None:
         if exercise.reference is None:
-            raise _refused(("exercise",), f"The exercise {exercise.id} has no robot to draw")
-        if structure not in (None, exercise.structure):
-            message = f"The joints of {exercise.id} are {exercise.structure}; leave this out"
+            message = say("The exercise {exercise} has no robot to draw.", exercise=exercise.id)
+            raise _refused(("exercise",), message)
+        if structure is not None and structure != exercise.structure:
+            message = say(
+                "The joints of {exercise} are {structure}; leave this out.",
+                exercise=exercise.id,
+                structure=str(exercise.structure),
+            )
             raise _refused(("table", "structure"), message)
         return DrawingScope.of(exercise)
     if body.table is None:
-        raise _refused((), "Name an exercise, give a table, or both")
+        raise _refused((), say("Name an exercise, give a table, or both."))
     if structure is None:
-        message = "Write one letter for each joint, R if it turns and P if it slides"
+        message = say("Write one letter for each joint, R if it turns and P if it slides.")
         raise _refused(("table", "structure"), message)
     return free_scope(structure)
 
 
-def _refused(place: Location, message: str) -> ProblemError:
+def _refused(place: Location, message: Sentence) -> ProblemError:
     return invalid([{"type": "unfit", "loc": place, "msg": message}])
 
 
@@ -180,7 +187,11 @@ def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, flo
         return np.array([[numbers[joint.variable] for joint in scope.joints]])
     for i, values in enumerate(body.joints):
         if len(values) != len(scope.joints):
-            message = f"The robot has {len(scope.joints)} joints; write a number for each"
+            message = say_count(
+                "The robot has {count} joint; write a number for it.",
+                "The robot has {count} joints; write a number for each.",
+                count=len(scope.joints),
+            )
             raise _refused(("joints", i), message)
     return np.array(body.joints)
 
@@ -252,7 +263,7 @@ def _placed(
 ) -> FramesAsPlaced:
     part = exercise.part(placed.part) if exercise else None
     if exercise is None or not isinstance(part, FramesSpec):
-        message = "Name an exercise, and a part of it that asks for frames"
+        message = say("Name an exercise, and a part of it that asks for frames.")
         raise _refused(("placed", "part"), message)
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:

@@ -12,6 +12,7 @@ from service.api.http.problems import invalid
 from service.api.turns import give_way, run_in_turns
 from service.contract.exercises import PracticeRobot
 from service.kinematics.dh import Convention
+from service.translations import say
 from service.variants.robots.dealing import (
     asks_enough,
     candidates,
@@ -57,7 +58,8 @@ def routes(catalogue: Catalogue) -> APIRouter:
         """
         last = None if after is None else practice_id(after)
         if after is not None and last is None:
-            detail = {"type": "unknown", "loc": ("after",), "msg": "is not the id of a robot"}
+            message = say("This is not the id of a practice robot.")
+            detail = {"type": "unknown", "loc": ("after",), "msg": message}
             raise invalid([detail])
         chosen = None
         for chosen in candidates(level, convention, last):

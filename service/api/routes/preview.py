@@ -23,7 +23,7 @@ from service.contract.preview import (
 )
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
 from service.grading.reading.preview import CellPreview, preview_entries, preview_pasted
-from service.translations import Language
+from service.translations import Language, say
 
 JOINTS: Final = range(1, 10)
 
@@ -156,7 +156,7 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
 
 def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
     if body.exercise is None and body.part is not None:
-        message = "A part belongs to an exercise; name the exercise as well"
+        message = say("A part belongs to an exercise; name the exercise as well.")
         raise invalid([{"type": "alone", "loc": ("part",), "msg": message}])
     exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
     if exercise is not None and body.part is not None:

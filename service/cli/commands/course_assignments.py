@@ -28,8 +28,9 @@ from service.contract.courses import (
 from service.courses import assignments, dealing, deletion
 from service.formats.shared.plain_text import number, visible
 from service.submissions.assignment import Assignment, load_assignment
+from service.submissions.field_errors import field_error
 from service.submissions.lookup import find_exercise
-from service.translations import say
+from service.translations import paragraph, say
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -91,17 +92,18 @@ def checked(model: type[M], **fields: Any) -> M:
         given = {name: value for name, value in fields.items() if value is not None}
         return model.model_validate(given)
     except ValidationError as error:
-        give_up(" ".join(dict.fromkeys(_told(each) for each in error.errors())))
+        give_up(paragraph(*dict.fromkeys(_told(each) for each in error.errors())))
 
 
 def _told(error: ErrorDetails) -> str:
     """Return an error of a field in words."""
     match error["loc"], error["type"]:
         case ("id",), "string_pattern_mismatch":
-            return "The id has small letters, digits and hyphens, such as homework-1."
+            return say("The id has small letters, digits and hyphens, such as homework-1.")
         case ("exercises",), "missing" | "too_short":
-            return "Choose at least one exercise."
-    return f"{'.'.join(map(str, error['loc']))}: {error['msg']}."
+            return say("Choose at least one exercise.")
+    place = ".".join(map(str, error["loc"]))
+    return say("{place}: {message}", place=place, message=field_error(error))
 
 
 @commands.command("add")

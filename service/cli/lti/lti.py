@@ -29,6 +29,7 @@ from service.lti.roster.enrolment import (
     read_roster,
 )
 from service.settings import load_settings
+from service.submissions.field_errors import field_error
 from service.translations import say
 
 R = TypeVar("R")
@@ -100,7 +101,8 @@ def register(
         new = NewRegistration.model_validate(given)
     except ValidationError as error:
         first = error.errors()[0]
-        give_up(f"{'.'.join(map(str, first['loc']))}: {first['msg']}.")
+        place = ".".join(map(str, first["loc"]))
+        give_up(say("{place}: {message}", place=place, message=field_error(first)))
     secret, now = _secret(), datetime.now(UTC)
 
     def added(connection: Connection) -> Registration:

@@ -87,7 +87,7 @@ def unpacked(body: bytes) -> ClassUpload:
     try:
         return ClassUpload.model_validate_json(content)
     except ValidationError as error:
-        details = error.errors(include_url=False, include_input=False, include_context=False)
+        details = error.errors(include_url=False, include_input=False)
         raise invalid(details, list(ClassUpload.model_fields)) from error
 
 

@@ -1,10 +1,13 @@
 """Problems in the language of the reader."""
 
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from http import HTTPStatus
+from typing import Any
 
 import httpx
 import pytest
+from fastapi import FastAPI
 
 from service.api.http.problems import ProblemError, message_of
 from service.api.permissions.access_problems import ACCESS_PROBLEMS, access_problem
@@ -63,3 +66,34 @@ def test_a_refused_attempt_says_why_in_the_language_of_the_learner() -> None:
 def test_the_message_of_a_plain_error_is_its_text() -> None:
     assert message_of(ValueError("no such file")) == "no such file"
     assert message_of(ProblemError(HTTPStatus.NOT_FOUND, "x"))
+
+
+def _hostile(schema: Mapping[str, Any]) -> list[str]:
+    times = ["2026-10-01", "2026-99-01T25:00", "10000-01-01T00:00", "0001-01-01T00:00+10:00"]
+    return ["", "x", "a\nb", "x" * 300, "7.5", "-1", *times, str(schema.get("maximum", 0) + 1)]
+
+
+def test_every_error_of_a_query_is_told_in_the_language(app: FastAPI, client: httpx.Client) -> None:
+    told_there = 0
+    for path, operations in app.openapi()["paths"].items():
+        for given in operations.get("get", {}).get("parameters", ()):
+            if given["in"] == "query" and given["name"] != "lang":
+                for value in _hostile(given["schema"]):
+                    answer = client.get(path, params={given["name"]: value, "lang": "zh"})
+                    if answer.status_code == HTTPStatus.UNPROCESSABLE_ENTITY:
+                        told_there += 1
+                        for error in answer.json()["errors"]:
+                            assert not error["detail"].startswith("此值不可用"), error
+                            assert not error["detail"].isascii(), error
+    assert told_there > 50
+
+
+def test_the_errors_of_fields_are_told_in_the_language(client: httpx.Client) -> None:
+    body = {"answers": [], "angle_unit": 7}
+    answer = client.post("/v1/exercises/planar-rr/grade", json=body, headers=GERMAN)
+    assert answer.headers["Content-Language"] == "de"
+    assert [error["detail"] for error in answer.json()["errors"]] == [
+        "Hier ist ein JSON-Objekt nötig.",
+        "Einer dieser Werte ist nötig: radians, degrees.",
+    ]
+    assert answer.json()["detail"].startswith("#/answers: Hier ist ein JSON-Objekt nötig. #/angle")

@@ -209,8 +209,8 @@ def test_a_part_that_does_not_exist_is_a_422_that_names_those_that_do(
         "#/answers/a~1b~0c",
         "#/answers/tabel",
     ]
-    assert "; its parts are table, pose" in problem["errors"][0]["detail"]
-    assert "; did you mean table? Its parts are" in problem["errors"][1]["detail"]
+    assert "no such part. Its parts are: table, pose." in problem["errors"][0]["detail"]
+    assert "Did you mean 'table'? Its parts are" in problem["errors"][1]["detail"]
 
 
 def test_ten_thousand_unknown_parts_get_a_short_answer(client: httpx.Client) -> None:

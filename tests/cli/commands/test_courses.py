@@ -63,7 +63,7 @@ def test_links_without_an_address_say_that_they_are_local(course: str, tmp_path:
         (["HW 9", "--exercise", "scara=1"], ["The id has small letters, digits and hyphens"]),
         (["hw-9"], ["Choose at least one exercise."]),
         (["HW 9"], ["The id has small letters, digits", "Choose at least one exercise."]),
-        (["hw-9", "--exercise", "scara=-1"], ["exercises.0.points: Input should be greater"]),
+        (["hw-9", "--exercise", "scara=-1"], ["exercises.0.points: This must be greater than 0."]),
     ],
 )
 def test_a_wrong_assignment_is_refused_in_words(
