@@ -12,14 +12,19 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from service.access.keys import SHORTEST_SECRET, Secret
 from service.access.open_access import OpenAccess, open_access
 from service.catalogue import FeedbackLevel, shipped_folder
+from service.submissions.field_errors import field_error
 from service.submissions.lookup import nearest
+from service.translations import Sentence, joined, say
 
 PREFIX = "DH_GRADER_"
 # The word in DH_GRADER_EXERCISES_DIR for the folder of the shipped exercises.
 SHIPPED = "shipped"
 
 
-_SHORT_SECRET = f"is short; it needs {SHORTEST_SECRET} characters, such as openssl rand -hex 32"
+_SHORT_SECRET = say(
+    "the secret is short; it needs {count} characters, such as openssl rand -hex 32",
+    count=SHORTEST_SECRET,
+)
 
 
 class SettingsError(Exception):
@@ -159,7 +164,9 @@ class Settings(BaseSettings):
         # An empty host would listen on all addresses; that requires an explicit 0.0.0.0.
         if not host or host.split() != [host]:
             raise ValueError(
-                "is not an address; write 127.0.0.1 for this machine, 0.0.0.0 for all addresses"
+                say(
+                    "is not an address; write 127.0.0.1 for this machine, 0.0.0.0 for all addresses"
+                )
             )
         return host
 
@@ -194,7 +201,7 @@ class Settings(BaseSettings):
             return value
         names = [name.strip() for name in value.split(os.pathsep) if name.strip()]
         if not names:
-            raise ValueError("names no folder; write one, or leave the variable out")
+            raise ValueError(say("names no folder; write one, or leave the variable out"))
         return tuple(shipped_folder() if name == SHIPPED else Path(name) for name in names)
 
     @field_validator("cors_origins", mode="before")
@@ -210,8 +217,11 @@ class Settings(BaseSettings):
         for origin in origins:
             if origin != "*" and origin != _origin_in(origin):
                 raise ValueError(
-                    f"{origin!r} is not an origin; write scheme and host in lower case, without a "
-                    "path, such as https://course.example.edu"
+                    say(
+                        "{origin!r} is not an origin; write scheme and host in lower case, without "
+                        "a path, such as https://course.example.edu",
+                        origin=origin,
+                    )
                 )
         return origins
 
@@ -229,9 +239,10 @@ class Settings(BaseSettings):
         try:
             text = self.secret_file.read_text(encoding="utf-8").strip()
         except (OSError, UnicodeDecodeError) as error:
-            raise SettingsError(f"{PREFIX}SECRET_FILE: cannot be read: {error}") from error
+            unreadable = say("cannot be read: {reason}", reason=str(error))
+            raise SettingsError(_of("secret_file", unreadable)) from error
         if len(text) < SHORTEST_SECRET:
-            raise SettingsError(f"{PREFIX}SECRET_FILE: the secret {_SHORT_SECRET}")
+            raise SettingsError(_of("secret_file", _SHORT_SECRET))
         return Secret(text)
 
 
@@ -241,19 +252,19 @@ def load_settings(**options: Any) -> Settings:
     Raises SettingsError.
     """
     if unknown := list(_unknown()):
-        raise SettingsError("\n".join(unknown))
+        raise SettingsError(joined("\n", unknown))
     try:
         return Settings(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as error:
         lines = [
-            f"{PREFIX}{str(detail['loc'][0]).upper()}: {_reason(detail['msg'])}"
+            _of(str(detail["loc"][0]), field_error(detail))
             for detail in error.errors(include_url=False)
         ]
-        raise SettingsError("\n".join(lines)) from error
+        raise SettingsError(joined("\n", lines)) from error
 
 
-def _reason(message: str) -> str:
-    return message.removeprefix("Value error, ")
+def _of(name: str, fault: str) -> Sentence:
+    return joined(": ", [f"{PREFIX}{name.upper()}", fault])
 
 
 def _unknown() -> Iterator[str]:
@@ -262,8 +273,14 @@ def _unknown() -> Iterator[str]:
         prefix, name = variable[: len(PREFIX)].upper(), variable[len(PREFIX) :].lower()
         if prefix == PREFIX and name not in Settings.model_fields:
             meant = nearest(name, Settings.model_fields)
-            advice = f"; did you mean {PREFIX}{meant.upper()}?" if meant else ""
-            yield f"{variable}: there is no such setting{advice}"
+            if meant is None:
+                yield say("{variable}: there is no such setting", variable=variable)
+            else:
+                yield say(
+                    "{variable}: there is no such setting; did you mean {meant}?",
+                    variable=variable,
+                    meant=f"{PREFIX}{meant.upper()}",
+                )
 
 
 def _origin_in(text: str) -> str:

@@ -53,7 +53,7 @@ class Key:
         return Caller(scopes, self.exercises, self.learner, self.id, self.course)
 
 
-WRONG_SECRET: Final = (
+WRONG_SECRET: Final = say(
     "This is not the secret with which the keys in the database were made. Set DH_GRADER_SECRET, "
     "or DH_GRADER_SECRET_FILE, to that one. If it is lost, revoke every key (dh-grader keys list "
     "shows them), and create new ones."

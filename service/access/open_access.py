@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from service.access.caller import Scope
+from service.translations import say
 
 UNTIL_KEYS: Final = "until-keys"
 NOTHING: Final = "none"
@@ -38,7 +39,12 @@ def open_access(text: str | None) -> OpenAccess:
     scopes = {word.strip() for word in text.split(",")}
     if not scopes <= {Scope.GRADE, Scope.RECORD}:
         raise ValueError(
-            f"write {UNTIL_KEYS}, {NOTHING}, or what needs no key: {Scope.GRADE}, or "
-            f"{Scope.GRADE},{Scope.RECORD}"
+            say(
+                "write {until_keys}, {nothing}, or what needs no key: {grade}, or {grade},{record}",
+                until_keys=UNTIL_KEYS,
+                nothing=NOTHING,
+                grade=Scope.GRADE.value,
+                record=Scope.RECORD.value,
+            )
         )
     return OpenAccess(frozenset(map(Scope, scopes)) | {Scope.GRADE}, False, anywhere=True)

@@ -14,6 +14,7 @@ from limits.strategies import SlidingWindowCounterRateLimiter
 
 from service.access.caller import Caller
 from service.access.client_key import client_key
+from service.translations import say
 
 _log = logging.getLogger(__name__)
 
@@ -28,7 +29,10 @@ def rates_in(text: str) -> Sequence[RateLimitItem]:
         return parse_many(text)
     except ValueError as error:
         raise UnusableRatesError(
-            f"{text!r} is not a rate; write 600/minute, or several with semicolons between them"
+            say(
+                "{text!r} is not a rate; write 600/minute, or several with semicolons between them",
+                text=text,
+            )
         ) from error
 
 
@@ -90,8 +94,10 @@ def _storage(address: str) -> Storage:
         storage = storage_from_string(address, socket_timeout=1, socket_connect_timeout=1)
     except ConfigurationError as error:
         raise UnusableRatesError(
-            "is not a store of counts; write redis://host:6379/0, or leave it out to use memory"
+            say("is not a store of counts; write redis://host:6379/0, or leave it out")
         ) from error
     if not isinstance(storage, Storage):
-        raise UnusableRatesError("is not a store of counts; write redis://host:6379/0")
+        raise UnusableRatesError(
+            say("is not a store of counts; write redis://host:6379/0, or leave it out")
+        )
     return storage

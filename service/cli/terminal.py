@@ -53,6 +53,13 @@ def tell(message: str) -> None:
     typer.echo(spoken(message))
 
 
+def tell_verdict(is_fine: bool | None, message: str) -> None:
+    """Write the line of a check; None only tells something."""
+    words = {True: spoken(say("ok")), False: spoken(say("WRONG")), None: ""}
+    width = max(map(len, words.values())) + 2
+    typer.echo(f"{words[is_fine]:{width}}{spoken(message)}")
+
+
 def complain(message: str | Exception) -> None:
     """Write a message to standard error, in the language of the user."""
     text = str(message)

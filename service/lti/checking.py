@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from service.lti.fetching import TIMEOUT, FetchError, answer, content
 from service.lti.own_keys import SigningKey
 from service.lti.platform_keys import usable_keys
-from service.lti.problems import LTI_PROBLEMS
+from service.lti.problems import cause_without_values
 from service.lti.registrations import Registration
 from service.lti.scores.access_tokens import fetched_token
 from service.lti.scores.line_items import SEND
@@ -61,9 +61,10 @@ def last_refusal(registration: Registration) -> str:
     """Return when and why a launch was refused last, or ""."""
     if registration.refused_at is None:
         return ""
-    problem = LTI_PROBLEMS.get(registration.refusal or "")
-    cause = registration.refusal if problem is None else problem.cause.partition(" {")[0]
-    return f"{registration.refused_at:%Y-%m-%d %H:%M} UTC: {cause}"
+    moment = f"{registration.refused_at:%Y-%m-%d %H:%M} UTC"
+    return say(
+        "{moment}: {cause}", moment=moment, cause=cause_without_values(registration.refusal or "")
+    )
 
 
 def _token(registration: Registration, key: SigningKey) -> CheckLine:

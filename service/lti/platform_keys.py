@@ -13,6 +13,7 @@ from jwt.exceptions import InvalidKeyError, PyJWKError
 from service.lti.fetching import TIMEOUT, FetchError, fetch_json
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration
+from service.translations import say
 
 # How long keys are used without a look whether they are still there (seconds), and how long at
 # most while the platform does not answer.
@@ -70,7 +71,7 @@ class PlatformKeys:
                 found = await asyncio.to_thread(self._fetch, registration.jwks_url, local=local)
             known.keys = usable_keys(found)
         except (FetchError, TimeoutError) as error:
-            known.reason = str(error) or "the platform does not answer"
+            known.reason = error.args[0] if error.args else say("the platform does not answer")
         else:
             known.fetched_at, known.reason = self._clock(), ""
 

@@ -1,9 +1,10 @@
 """The reasons why a launch is refused: what the student reads, and what the operator reads."""
 
 from collections.abc import Mapping
+from string import Formatter
 from typing import Final, NamedTuple
 
-from service.translations import say
+from service.translations import Sentence, say, template
 
 # What the student can do.
 _AGAIN: Final = say(
@@ -24,76 +25,106 @@ class LtiProblem(NamedTuple):
 
 # By their names. The first ones are of logins, the others in the order in which they are checked.
 LTI_PROBLEMS: Final[Mapping[str, LtiProblem]] = {
-    "login-incomplete": LtiProblem("The login has no {name}."),
-    "login-too-long": LtiProblem("The field {name} of the login is too long."),
-    "unknown-platform": LtiProblem("No registration has the issuer {issuer} and this client id."),
-    "several-platforms": LtiProblem(
-        "Several registrations have the issuer {issuer}, and the login names no client id."
+    "login-incomplete": LtiProblem(template("The login has no {name}.")),
+    "login-too-long": LtiProblem(template("The field {name} of the login is too long.")),
+    "unknown-platform": LtiProblem(
+        template("No registration has the issuer {issuer} and this client id.")
     ),
-    "foreign-target": LtiProblem("The login is for the address {target}, which is not ours."),
-    "platform-error": LtiProblem("The platform answered with the error {error}.", _AGAIN),
-    "no-state": LtiProblem("The message has no state.", _AGAIN),
-    "unknown-state": LtiProblem("No login has this state, or it is over.", _AGAIN),
-    "state-expired": LtiProblem("The login was begun more than ten minutes ago.", _AGAIN),
-    "state-used": LtiProblem("The state was used already: the message is a copy.", _AGAIN),
-    "other-browser": LtiProblem("The login was begun in another browser.", _AGAIN),
-    "binding-from-elsewhere": LtiProblem("The page of another site has sent the message.", _AGAIN),
+    "several-platforms": LtiProblem(
+        template(
+            "Several registrations have the issuer {issuer}, and the login names no client id."
+        )
+    ),
+    "foreign-target": LtiProblem(
+        template("The login is for the address {target}, which is not ours.")
+    ),
+    "platform-error": LtiProblem(template("The platform answered with the error {error}."), _AGAIN),
+    "no-state": LtiProblem(template("The message has no state."), _AGAIN),
+    "unknown-state": LtiProblem(template("No login has this state, or it is over."), _AGAIN),
+    "state-expired": LtiProblem(template("The login was begun more than ten minutes ago."), _AGAIN),
+    "state-used": LtiProblem(
+        template("The state was used already: the message is a copy."), _AGAIN
+    ),
+    "other-browser": LtiProblem(template("The login was begun in another browser."), _AGAIN),
+    "binding-from-elsewhere": LtiProblem(
+        template("The page of another site has sent the message."), _AGAIN
+    ),
     "cookies-blocked": LtiProblem(
-        "The browser keeps no cookies, and the platform has no storage.",
+        template("The browser keeps no cookies, and the platform has no storage."),
         say(
             "Your browser does not accept cookies from this page. Allow them, or use another "
             "browser."
         ),
     ),
-    "no-token": LtiProblem("The message has no id_token."),
-    "token-too-long": LtiProblem("The id_token is too long."),
-    "token-malformed": LtiProblem("The id_token is not a JSON Web Token."),
-    "wrong-algorithm": LtiProblem("The id_token is signed by {algorithm}, not by RS256."),
-    "no-key-id": LtiProblem("The id_token names no key (kid)."),
-    "keys-unreachable": LtiProblem("The keys of the platform cannot be read: {reason}", _AGAIN),
-    "unknown-key": LtiProblem("The platform has no key with the id in the id_token."),
-    "unusable-key": LtiProblem("The key of the platform is not an RSA key of 2048 bits or more."),
-    "wrong-signature": LtiProblem("The signature of the id_token is wrong."),
-    "wrong-issuer": LtiProblem("The id_token is from another issuer."),
-    "wrong-audience": LtiProblem("The id_token is for another client id."),
-    "wrong-party": LtiProblem("The id_token is authorised for another client id (azp)."),
-    "no-expiry": LtiProblem("The id_token has no expiry (exp)."),
-    "expired": LtiProblem("The id_token has expired. Compare the clocks.", _AGAIN),
-    "no-issue-time": LtiProblem("The id_token has no time of issue (iat)."),
-    "issued-later": LtiProblem("The id_token is from the future. Compare the clocks.", _AGAIN),
-    "issued-before": LtiProblem("The id_token is older than an hour.", _AGAIN),
-    "not-yet-valid": LtiProblem("The id_token is not valid yet (nbf). Compare the clocks.", _AGAIN),
-    "no-nonce": LtiProblem("The id_token has no nonce."),
-    "wrong-nonce": LtiProblem("The nonce of the id_token is that of another login.", _AGAIN),
-    "wrong-version": LtiProblem("The message is not of LTI version 1.3.0."),
-    "wrong-message": LtiProblem("Messages of the type {kind} are not known here."),
-    "no-deployment": LtiProblem("The message has no deployment id."),
-    "other-deployment": LtiProblem("The login was for another deployment."),
-    "unknown-deployment": LtiProblem("The deployment {deployment} is not registered."),
-    "no-target": LtiProblem("The message has no target_link_uri."),
-    "other-target": LtiProblem("The message is for another address than the login."),
-    "no-roles": LtiProblem("The message has no list of roles."),
-    "bad-user": LtiProblem("The user's id (sub) is empty, too long, or not a text."),
-    "no-context": LtiProblem("The message has no context: it was not opened from a course."),
-    "no-resource-link": LtiProblem("The message has no resource link."),
-    "not-a-tutor": LtiProblem("Only tutors choose exercises, and the user is none."),
-    "no-linking-settings": LtiProblem("The message has no settings of deep linking."),
-    "no-return-address": LtiProblem("The settings of deep linking have no usable return address."),
-    "foreign-return-address": LtiProblem(
-        "The return address {address} does not belong to the registered platform."
+    "no-token": LtiProblem(template("The message has no id_token.")),
+    "token-too-long": LtiProblem(template("The id_token is too long.")),
+    "token-malformed": LtiProblem(template("The id_token is not a JSON Web Token.")),
+    "wrong-algorithm": LtiProblem(template("The id_token is signed by {algorithm}, not by RS256.")),
+    "no-key-id": LtiProblem(template("The id_token names no key (kid).")),
+    "keys-unreachable": LtiProblem(
+        template("The keys of the platform cannot be read: {reason}"), _AGAIN
     ),
-    "no-links-accepted": LtiProblem("The platform does not accept links at this place."),
-    "no-notices": LtiProblem("The platform does not say how to be told of handed-in files."),
-    "wrong-notice": LtiProblem("Notices of the type {kind} are not known here."),
-    "no-files": LtiProblem("The notice does not say which files were handed in, and where."),
-    "bad-address": LtiProblem("The address {address} in the notice {reason}."),
-    "unknown-report": LtiProblem("No such file was handed in, or its report is too old."),
-    "foreign-report": LtiProblem("The report is on the file of another student."),
-    "file-unreadable": LtiProblem("The platform does not give the file: {reason}", _AGAIN),
-    "bad-claim": LtiProblem("The claim {claim} does not have the right shape."),
-    "no-longer-registered": LtiProblem("The registration was removed after the login."),
-    "ticket-expired": LtiProblem("The page was open for too long.", _AGAIN),
-    "no-secret": LtiProblem("The secret is not the one with which the keys were made."),
+    "unknown-key": LtiProblem(template("The platform has no key with the id in the id_token.")),
+    "unusable-key": LtiProblem(
+        template("The key of the platform is not an RSA key of 2048 bits or more.")
+    ),
+    "wrong-signature": LtiProblem(template("The signature of the id_token is wrong.")),
+    "wrong-issuer": LtiProblem(template("The id_token is from another issuer.")),
+    "wrong-audience": LtiProblem(template("The id_token is for another client id.")),
+    "wrong-party": LtiProblem(template("The id_token is authorised for another client id (azp).")),
+    "no-expiry": LtiProblem(template("The id_token has no expiry (exp).")),
+    "expired": LtiProblem(template("The id_token has expired. Compare the clocks."), _AGAIN),
+    "no-issue-time": LtiProblem(template("The id_token has no time of issue (iat).")),
+    "issued-later": LtiProblem(
+        template("The id_token is from the future. Compare the clocks."), _AGAIN
+    ),
+    "issued-before": LtiProblem(template("The id_token is older than an hour."), _AGAIN),
+    "not-yet-valid": LtiProblem(
+        template("The id_token is not valid yet (nbf). Compare the clocks."), _AGAIN
+    ),
+    "no-nonce": LtiProblem(template("The id_token has no nonce.")),
+    "wrong-nonce": LtiProblem(
+        template("The nonce of the id_token is that of another login."), _AGAIN
+    ),
+    "wrong-version": LtiProblem(template("The message is not of LTI version 1.3.0.")),
+    "wrong-message": LtiProblem(template("Messages of the type {kind} are not known here.")),
+    "no-deployment": LtiProblem(template("The message has no deployment id.")),
+    "other-deployment": LtiProblem(template("The login was for another deployment.")),
+    "unknown-deployment": LtiProblem(template("The deployment {deployment} is not registered.")),
+    "no-target": LtiProblem(template("The message has no target_link_uri.")),
+    "other-target": LtiProblem(template("The message is for another address than the login.")),
+    "no-roles": LtiProblem(template("The message has no list of roles.")),
+    "bad-user": LtiProblem(template("The user's id (sub) is empty, too long, or not a text.")),
+    "no-context": LtiProblem(
+        template("The message has no context: it was not opened from a course.")
+    ),
+    "no-resource-link": LtiProblem(template("The message has no resource link.")),
+    "not-a-tutor": LtiProblem(template("Only tutors choose exercises, and the user is none.")),
+    "no-linking-settings": LtiProblem(template("The message has no settings of deep linking.")),
+    "no-return-address": LtiProblem(
+        template("The settings of deep linking have no usable return address.")
+    ),
+    "foreign-return-address": LtiProblem(
+        template("The return address {address} does not belong to the registered platform.")
+    ),
+    "no-links-accepted": LtiProblem(template("The platform does not accept links at this place.")),
+    "no-notices": LtiProblem(
+        template("The platform does not say how to be told of handed-in files.")
+    ),
+    "wrong-notice": LtiProblem(template("Notices of the type {kind} are not known here.")),
+    "no-files": LtiProblem(
+        template("The notice does not say which files were handed in, and where.")
+    ),
+    "bad-address": LtiProblem(template("The address {address} in the notice {reason}.")),
+    "unknown-report": LtiProblem(template("No such file was handed in, or its report is too old.")),
+    "foreign-report": LtiProblem(template("The report is on the file of another student.")),
+    "file-unreadable": LtiProblem(
+        template("The platform does not give the file: {reason}"), _AGAIN
+    ),
+    "bad-claim": LtiProblem(template("The claim {claim} does not have the right shape.")),
+    "no-longer-registered": LtiProblem(template("The registration was removed after the login.")),
+    "ticket-expired": LtiProblem(template("The page was open for too long."), _AGAIN),
+    "no-secret": LtiProblem(template("The secret is not the one with which the keys were made.")),
 }
 
 
@@ -104,4 +135,20 @@ class LtiError(Exception):
         problem = LTI_PROBLEMS[name]
         self.name = name
         self.advice = problem.advice
-        super().__init__(problem.cause.format_map({k: str(v)[:200] for k, v in values.items()}))
+        shown = {key: short_value(value) for key, value in values.items()}
+        super().__init__(Sentence(problem.cause, shown))
+
+
+def short_value(value: object) -> str:
+    """Return a sentence, or that of an error; anything else as a text that is not long."""
+    said = value.args[0] if isinstance(value, Exception) and value.args else value
+    return said if isinstance(said, Sentence) else str(value)[:200]
+
+
+def cause_without_values(name: str) -> str:
+    """Return the cause of a refusal with "…" in place of its values; of another name, the name."""
+    problem = LTI_PROBLEMS.get(name)
+    if problem is None:
+        return name
+    places = (place for _, place, _, _ in Formatter().parse(problem.cause) if place)
+    return Sentence(problem.cause, dict.fromkeys(places, "…"))

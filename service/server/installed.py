@@ -17,7 +17,7 @@ from service.catalogue.drafts import Drafts
 from service.server.turns.admission import FairAdmission
 from service.server.watching.access_log import set_up_access_log
 from service.settings import Settings, SettingsError
-from service.translations import joined
+from service.translations import joined, say
 from service.web import Tutoring, web_routes
 
 if TYPE_CHECKING:  # it imports the database drivers
@@ -103,20 +103,25 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
         try:
             ring = KeyRing(store.engine, secret)
         except KeysUnreachableError as error:
-            raise SettingsError("DH_GRADER_DATABASE: does not answer") from error
+            raise SettingsError(say("DH_GRADER_DATABASE: does not answer")) from error
         if ring.has_keys and secret is None:
             raise SettingsError(
-                "DH_GRADER_SECRET: is needed because API keys exist; set it, or "
-                "DH_GRADER_SECRET_FILE, to the secret with which they were created"
+                say(
+                    "DH_GRADER_SECRET: is needed because API keys exist; set it, or "
+                    "DH_GRADER_SECRET_FILE, to the secret with which they were created"
+                )
             )
         if not ring.has_their_secret:
-            raise SettingsError(f"DH_GRADER_SECRET: {WRONG_SECRET}")
+            raise SettingsError(joined(": ", ["DH_GRADER_SECRET", WRONG_SECRET]))
     has_keys = ring is not None and ring.has_keys
     if host is not None and not (_is_here(host) or has_keys or settings.open is not None):
         raise SettingsError(
-            f"DH_GRADER_HOST: other machines can reach {host}, but there are no API keys. Create "
-            "one with dh-grader keys create, or allow everybody to use the service without a key: "
-            "DH_GRADER_OPEN=until-keys"
+            say(
+                "DH_GRADER_HOST: other machines can reach {host}, but there are no API keys. "
+                "Create one with dh-grader keys create, or allow everybody to use the service "
+                "without a key: DH_GRADER_OPEN=until-keys",
+                host=host,
+            )
         )
     return ring
 
@@ -146,9 +151,10 @@ def _rates(settings: Settings) -> RequestRates | None:
         try:
             rates_in(getattr(settings, name) or "1/second")
         except UnusableRatesError as error:
-            raise SettingsError(f"DH_GRADER_{name.upper()}: {error}") from error
+            named = f"DH_GRADER_{name.upper()}"
+            raise SettingsError(joined(": ", [named, error.args[0]])) from error
     store = settings.rates_store.get_secret_value() if settings.rates_store else "memory://"
     try:
         return Rates(settings.key_rate or "", settings.address_rate or "", store)
     except UnusableRatesError as error:
-        raise SettingsError(f"DH_GRADER_RATES_STORE: {error}") from error
+        raise SettingsError(joined(": ", ["DH_GRADER_RATES_STORE", error.args[0]])) from error

@@ -1,11 +1,12 @@
 """The command line speaks the language of the user."""
 
+import ast
 import json
 import os
 import re
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -237,3 +238,29 @@ def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
 def test_the_list_of_exercises_is_in_the_language() -> None:
     result = process("-m", "service", "exercises", "list", LANG="de_DE.UTF-8")
     assert "Gelenke  Titel und Teilaufgaben (Punkte)\nHier beginnen\n" in result.stdout
+
+
+def plain_words(node: ast.AST) -> Iterator[str]:
+    """Yield the texts in a value that is printed; what a call returns is not looked at."""
+    match node:
+        case ast.Call(func=ast.Name(id="Text"), args=[text, *_]):
+            yield from plain_words(text)
+        case ast.Call():
+            return
+        case ast.Constant(value=str(text)) if re.search("[a-z]{3}", text):
+            yield text
+        case _:
+            for each in ast.iter_child_nodes(node):
+                yield from plain_words(each)
+
+
+def test_nothing_is_printed_that_is_no_sentence() -> None:
+    printers = {"echo", "print", "tell", "tell_verdict", "complain", "give_up"}
+    found = []
+    for file in sorted((ROOT / "service" / "cli").rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call):
+                name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+                if name in printers:
+                    found += [(file.name, text) for each in node.args for text in plain_words(each)]
+    assert found == [("program.py", "dh-grader ")]  # before the version

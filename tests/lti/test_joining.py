@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
+from html import unescape
 from typing import Any
 
 import httpx
@@ -232,6 +233,25 @@ def test_unusable_configurations_are_refused(tool: Tool, registrar: Registrar) -
         assert (address, said in page.text) == (address, True)
     assert registrar.requests == []
     assert len(tool.do(all_registrations)) == before
+
+
+def test_an_unusable_configuration_is_told_in_the_language(
+    tool: Tool, registrar: Registrar
+) -> None:
+    fields = {
+        "invitation": invited(tool),
+        "openid_configuration": f"{registrar.address}/configuration",
+        "registration_token": registrar.token,
+    }
+    french = {"accept-language": "fr"}
+    for said, changes in {
+        "sa configuration n’a pas de token_endpoint": {"token_endpoint": None},
+        "elle ne signe pas avec RS256": {"id_token_signing_alg_values_supported": ["HS256"]},
+    }.items():
+        registrar.changes.clear()
+        registrar.changes.update(changes)
+        page = tool.send("POST", "/lti/register", data=fields, headers=french)
+        assert said in unescape(page.text)
 
 
 def test_invitations_expire_and_cannot_be_changed(tool: Tool, registrar: Registrar) -> None:

@@ -55,6 +55,10 @@ def test_the_page_and_the_test_are_in_the_readers_language(journey: Journey) -> 
     assert "Zugriffstoken: Die Plattform gibt eines für Punkte" in page.text
     assert "Öffentliche Schlüssel" in page.text
     assert "Letzter Start: nie" in page.text
+    tool.platform.habits.append(lambda claims: claims.update(iss="https://else.example"))
+    assert tool.launch("ada").status_code == 403
+    page = tool.send("GET", PAGE, headers=tutor)
+    assert "UTC: Das id_token ist von einem anderen Aussteller." in page.text
 
 
 def test_a_tutor_of_one_course_sees_no_registrations(journey: Journey) -> None:

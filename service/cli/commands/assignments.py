@@ -13,6 +13,7 @@ from service.formats.shared.plain_text import number, percent, visible
 from service.submissions.answers import ExerciseAnswers, answers_in, of_file
 from service.submissions.assignment import AssignedExercise, Assignment, load_assignment
 from service.submissions.handed_in import HandedIn, all_handed_in
+from service.translations import joined, say, say_count
 
 commands = typer.Typer(
     help="Assignments of several exercises.", no_args_is_help=True, add_completion=False
@@ -52,28 +53,36 @@ def check(
 def _lines(assignment: Assignment) -> Iterator[Text]:
     exercises = assignment.exercises
     total = number(sum(each.worth for each in exercises))
-    many = f"{len(exercises)} exercise{'' if len(exercises) == 1 else 's'}"
-    mark = percent(assignment.pass_mark)
-    yield Text.assemble(
-        (visible(assignment.title), "bold"), f": {many}, {total} points, pass mark {mark}"
+    summary = say_count(
+        "{count} exercise, {points} points, pass mark {mark}",
+        "{count} exercises, {points} points, pass mark {mark}",
+        count=len(exercises),
+        points=total,
+        mark=percent(assignment.pass_mark),
     )
+    yield Text.assemble((visible(assignment.title), "bold"), f": {spoken(summary)}")
     if assignment.variants:
-        yield Text("  each learner has variants of their own")
+        yield Text("  " + spoken(say("each learner has variants of their own")))
     for each in exercises:
         parts = ", ".join(part.id for part in each.exercise.parts)
-        level = assignment.ceiling(each)
+        worth = say("{points} points", points=number(each.worth))
+        level = assignment.ceiling(each).value
+        more = say("feedback {level}; files {files}", level=level, files=_files(each))
         yield Text.assemble(
-            "  ", (each.exercise.id, "bold"), f", {number(each.worth)} points: {parts}",
-            (f"; feedback {level}; files {visible(_files(each))}", "dim"),
+            "  ", (each.exercise.id, "bold"), f", {spoken(worth)}: {parts}",
+            (f"; {visible(spoken(more))}", "dim"),
         )  # fmt: skip
 
 
 def _files(assigned: AssignedExercise) -> str:
     """The names of files that are taken as answers to the exercise."""
     own = assigned.exercise.id
-    named = assigned.files or (f"{own}.json", f"{own}/PART.csv", "and the like")
-    of_parts = (f"{', '.join(names)} for {part}" for part, names in assigned.part_files.items())
-    return ", ".join((*of_parts, *named))
+    named = assigned.files or (f"{own}.json", f"{own}/PART.csv", say("and the like"))
+    of_parts = (
+        say("{files} for {part}", files=", ".join(names), part=part)
+        for part, names in assigned.part_files.items()
+    )
+    return joined(", ", [*of_parts, *named])
 
 
 def _found(handed: HandedIn, assignment: Assignment) -> Iterator[Text]:
@@ -87,5 +96,6 @@ def _answered(answers: ExerciseAnswers) -> str:
     if answers.problem:
         return spoken(of_file(answers.file, answers.problem))
     if answers.body is None or not answers.body.answers:
-        return "missing"
-    return f"{', '.join(answers.body.answers)} from {answers.file}"
+        return spoken(say("missing"))
+    parts = ", ".join(answers.body.answers)
+    return spoken(say("{parts} from {file}", parts=parts, file=answers.file))

@@ -10,9 +10,10 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 from sqlalchemy import Connection
 
-from service.catalogue import FeedbackLevel
 from service.cli.commands.attempts import encodable
 from service.cli.exercises.new_file import warn_of_unread
+from service.cli.language import spoken
+from service.cli.operations.assignment_lines import assignment_lines
 from service.cli.operations.course_changes import changed, deleted
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
 from service.contract.courses import (
@@ -26,11 +27,11 @@ from service.contract.courses import (
     ShowSolution,
 )
 from service.courses import assignments, dealing, deletion
-from service.formats.shared.plain_text import number, visible
+from service.formats.shared.plain_text import visible
 from service.submissions.assignment import Assignment, load_assignment
 from service.submissions.field_errors import field_error
 from service.submissions.lookup import find_exercise
-from service.translations import paragraph, say
+from service.translations import joined, paragraph, say
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -242,11 +243,13 @@ def variants_of_learner(
         changed(lambda it: dealing.deal_again(it, course, assignment, learner, chosen))
     found = changed(lambda it: dealing.learner_variants(it, course, assignment, learner, catalogue))
     for each in found:
-        dealt = "" if each.deals == 1 else f", deal {each.deals}"
+        dealt: list[str] = [f"{visible(learner)}: {each.variant}"]
+        if each.deals != 1:
+            dealt.append(say("deal {number}", number=each.deals))
         if each.values is not None:
             values = ", ".join(f"{name} = {value}" for name, value in each.values.items())
-            dealt += f", by earlier choices: {values}"
-        stdout().print(f"{visible(learner)}: {each.variant}{visible(dealt)}", soft_wrap=True)
+            dealt.append(say("by earlier choices: {values}", values=visible(values)))
+        stdout().print(spoken(joined(", ", dealt)), soft_wrap=True)
 
 
 @commands.command("renew")
@@ -295,8 +298,11 @@ def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
     for each in assignment.exercises:
         if each.path is not None or each.left_out:
             give_up(
-                f"{each.exercise.id}: an assignment of a course has whole exercises of the "
-                "catalogue: leave out path and parts."
+                say(
+                    "{exercise}: an assignment of a course has whole exercises of the catalogue: "
+                    "leave out path and parts.",
+                    exercise=each.exercise.id,
+                )
             )
         exercises.append(AssignedPoints(exercise=each.exercise.id, points=each.worth))
     yield "title", assignment.title
@@ -335,35 +341,5 @@ def _date(option: str | None) -> datetime | str | None:
 
 def _print(assignment: CourseAssignment) -> None:
     screen = stdout()
-    total = number(sum(each.points for each in assignment.exercises))
-    screen.print(f"{assignment.id}: {visible(assignment.title)}, {total} points", soft_wrap=True)
-    for each in assignment.exercises:
-        screen.print(f"  {each.exercise}, {number(each.points)} points", soft_wrap=True)
-    for name in ("opens", "due", "closes"):
-        when = getattr(assignment, name)
-        if when is not None:
-            screen.print(f"  {name} {when:%Y-%m-%d %H:%M %Z}", soft_wrap=True)
-    limit = "not limited" if assignment.limit is None else f"at most {assignment.limit}"
-    levels = [FeedbackLevel(each).value for each in assignment.feedback or ()]
-    told = ", ".join(levels) or "that of each exercise"
-    takes_late = assignment.closes or any(each.closes for each in assignment.extensions)
-    late = f"late attempts earn {assignment.late_worth:.0%}" if takes_late else "no late attempts"
-    screen.print(f"  attempts {limit}; {late if assignment.due else 'no due date'}")
-    screen.print(f"  feedback {told}", soft_wrap=True)
-    screen.print(f"  practice {assignment.practice}; solution {assignment.solution}")
-    if assignment.hint_prices is not None:
-        prices = ", ".join(f"{each:.0%}" for each in assignment.hint_prices)
-        screen.print(f"  the steps of a hint cost {prices} of the points", soft_wrap=True)
-    if assignment.variants:
-        screen.print("  each learner has variants of their own", soft_wrap=True)
-        catalogue = installed()
-        names = [each.exercise for each in assignment.exercises]
-        same = [name for name in names if name in catalogue and catalogue[name].vary is None]
-        if same:
-            screen.print(f"  but not in {', '.join(same)}: no variants there", soft_wrap=True)
-    for extension in assignment.extensions:
-        due = f"due {extension.due:%Y-%m-%d %H:%M %Z}" if extension.due else ""
-        own = f"at most {extension.limit} attempts" if extension.limit else ""
-        closes = f"closes {extension.closes:%Y-%m-%d %H:%M %Z}" if extension.closes else ""
-        told = "; ".join(filter(None, (due, closes, own)))
-        screen.print(f"  {visible(extension.learner)}: {told}", soft_wrap=True)
+    for i, line in enumerate(assignment_lines(assignment, installed)):
+        screen.print("  " * (i > 0) + spoken(line), soft_wrap=True)

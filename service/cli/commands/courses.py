@@ -16,6 +16,7 @@ from service.cli.commands.course_assignments import (
 )
 from service.cli.files.output import write
 from service.cli.language import spoken
+from service.cli.operations.assignment_lines import ends
 from service.cli.operations.course_changes import changed, deleted
 from service.cli.terminal import complain, give_up, stdout, tell
 from service.contract.courses import (
@@ -88,8 +89,10 @@ def show(course: CourseIdArgument) -> None:
     for assignment in found.assignments:
         screen.print(f"  {assignment}", soft_wrap=True)
     for each in learners:
-        link = f"link until {each.link_until:%Y-%m-%d}" if each.link_until else "no link"
-        told = (each.learner, each.name, each.email or "", link)
+        link = say("no link")
+        if each.link_until:
+            link = say("link until {day}", day=f"{each.link_until:%Y-%m-%d}")
+        told = (each.learner, each.name, each.email or "", spoken(link))
         screen.print("  ".join(visible(text) for text in told if text), soft_wrap=True)
 
 
@@ -251,12 +254,7 @@ def show_missing(
     found = changed(lambda it: missing(it, course, assignment))
     screen, names = stdout(), told_apart(found)
     for each in found:
-        dates = [
-            f"{name} {when:%Y-%m-%d %H:%M %Z}"
-            for name, when in (("due", each.due), ("closes", each.closes))
-            if when is not None
-        ]
-        told = ", ".join((*each.exercises, *dates))
+        told = ", ".join((*each.exercises, *map(spoken, ends(each))))
         screen.print(f"{visible(names[each.learner])}: {told}", soft_wrap=True)
     incomplete = say_count(
         "Not complete: {count} learner.", "Not complete: {count} learners.", count=len(found)

@@ -12,12 +12,13 @@ from service.access.key_text import new_key_text
 from service.access.keys import WRONG_SECRET, Key
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
-from service.cli.terminal import give_up, installed_exercise, stdout
+from service.cli.language import spoken
+from service.cli.terminal import complain, give_up, installed_exercise, stdout, tell
 from service.courses import roll
 from service.courses.errors import CourseError
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
-from service.translations import say
+from service.translations import Sentence, say
 
 commands = typer.Typer(
     help="API keys of the service: create, list, revoke.",
@@ -81,9 +82,12 @@ def create(
         give_up(WRONG_SECRET)
     # Only the key goes to standard output, for scripts.
     typer.echo(text)
-    typer.echo(
-        f"Key {key.id}, valid until {key.expires_at:%Y-%m-%d}. Keep it now: it is not shown again.",
-        err=True,
+    complain(
+        say(
+            "Key {key}, valid until {day}. Keep it now: it is not shown again.",
+            key=key.id,
+            day=f"{key.expires_at:%Y-%m-%d}",
+        )
     )
 
 
@@ -97,11 +101,12 @@ def list_keys() -> None:
     now = datetime.now(UTC)
     screen = stdout()
     for key in found:
-        bound = "all exercises" if key.exercises is None else ", ".join(sorted(key.exercises))
-        used = f"used {key.last_used_at:%Y-%m-%d %H:%M}" if key.last_used_at else "never used"
-        bound = f"course {key.course}" if key.course else bound
-        told = (key.id, visible(key.name), " ".join(sorted(key.scopes)), bound, _state(key, now))
-        screen.print("  ".join((*told, used)), soft_wrap=True)
+        used = say("never used")
+        if key.last_used_at:
+            used = say("used {time}", time=f"{key.last_used_at:%Y-%m-%d %H:%M}")
+        scopes = " ".join(sorted(key.scopes))
+        told = (key.id, visible(key.name), scopes, _bound(key), _state(key, now), used)
+        screen.print("  ".join(map(spoken, told)), soft_wrap=True)
     # After the list: if the secret is lost, the list shows which keys to revoke.
     if not has_their_secret:
         give_up(WRONG_SECRET)
@@ -123,10 +128,17 @@ def revoke(
                     key=key,
                 )
             )
-    typer.echo("Revoked. Each running service knows it within seconds.")
+    tell(say("Revoked. Each running service knows it within seconds."))
 
 
-def _state(key: Key, now: datetime) -> str:
+def _bound(key: Key) -> str:
+    if key.course:
+        return say("course {course}", course=key.course)
+    return say("all exercises") if key.exercises is None else ", ".join(sorted(key.exercises))
+
+
+def _state(key: Key, now: datetime) -> Sentence:
     if key.revoked_at is not None:
-        return f"revoked {key.revoked_at:%Y-%m-%d}"
-    return f"{'expired' if key.expires_at <= now else 'until'} {key.expires_at:%Y-%m-%d}"
+        return say("revoked {day}", day=f"{key.revoked_at:%Y-%m-%d}")
+    day = f"{key.expires_at:%Y-%m-%d}"
+    return say("expired {day}", day=day) if key.expires_at <= now else say("until {day}", day=day)

@@ -16,7 +16,7 @@ from service.cli.running.progress import progress
 from service.cli.terminal import installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible
 from service.settings import load_settings
-from service.translations import say
+from service.translations import Sentence, joined, say, say_count
 
 # The time between two counts of the queue, and to wait for other processes at the end (seconds).
 _PAUSE: Final = 0.2
@@ -38,21 +38,45 @@ def show_what_would_change(engine: Engine, exercise: Exercise, course: str | Non
     screen = stdout()
     for each in changes[:_MOST_SHOWN]:
         counted = each.counted or each
-        points = (
-            f"{number(counted.before)} → {number(counted.after)} of {number(counted.max_points)}"
-        )
-        why = "; ".join(map(spoken, each.reasons)) or spoken(say("what a late attempt earns"))
+        why = [*each.reasons] or [say("what a late attempt earns")]
         if counted.awarded is not None:
-            why += f"; a tutor's {number(counted.awarded)} stays"
-        screen.print(f"{visible(each.learner)}, attempt {each.ordinal or '-'}: {points} ({why})")
+            why.append(say("a tutor's {points} stays", points=number(counted.awarded)))
+        line = say(
+            "{learner}, attempt {attempt}: {before} → {after} of {most} ({why})",
+            learner=visible(each.learner),
+            attempt=each.ordinal or "-",
+            before=number(counted.before),
+            after=number(counted.after),
+            most=number(counted.max_points),
+            why=joined("; ", why),
+        )
+        screen.print(spoken(line))
     if len(changes) > _MOST_SHOWN:
-        screen.print(f"… and {len(changes) - _MOST_SHOWN} more")
+        screen.print(spoken(say("… and {count} more", count=len(changes) - _MOST_SHOWN)))
     kept = sum(each.awarded is not None for each in changes)
-    of_which = f", of which {kept} would keep the points of a tutor" if kept else ""
-    many = "1 attempt was" if len(numbers) == 1 else f"{len(numbers)} attempts were"
-    screen.print(f"{many} graded by another version; {len(changes)} would change{of_which}.")
+    screen.print(spoken(_summary(len(numbers), len(changes), kept)))
     if numbers:
-        screen.print("Nothing is saved yet: add --apply to save. The old reports are kept.")
+        saved = say("Nothing is saved yet: add --apply to save. The old reports are kept.")
+        screen.print(spoken(saved))
+
+
+def _summary(outdated: int, changed: int, kept: int) -> Sentence:
+    if not kept:
+        return say_count(
+            "{count} attempt was graded by another version; {changed} would change.",
+            "{count} attempts were graded by another version; {changed} would change.",
+            count=outdated,
+            changed=changed,
+        )
+    return say_count(
+        "{count} attempt was graded by another version; {changed} would change, of which {kept} "
+        "would keep the points of a tutor.",
+        "{count} attempts were graded by another version; {changed} would change, of which {kept} "
+        "would keep the points of a tutor.",
+        count=outdated,
+        changed=changed,
+        kept=kept,
+    )
 
 
 def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: int) -> None:

@@ -85,13 +85,16 @@ def _check(file: Path, console: Console) -> set[Level] | None:
 
 def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Text]:
     failed = any(remark.level is Level.FAILED for remark in remarks)
-    verdict = ("failed", STYLES[Level.FAILED]) if failed else ("ok", "green")
+    verdict = (spoken(say("ok")), "green")
+    if failed:
+        verdict = (spoken(say("failed")), STYLES[Level.FAILED])
     yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {spoken(summary(exercise))}")
     lines = value_lines(file.read_text(encoding="utf-8")) if remarks else {}
     for remark in remarks:
         place = with_line(remark.field, line_of(remark.field, lines))
         told = spoken(joined(": ", [place, remark.text]))
-        yield Text.assemble("  ", (remark.level.value, STYLES[remark.level]), f": {told}")
+        level = say("failed") if remark.level is Level.FAILED else say("warning")
+        yield Text.assemble("  ", (spoken(level), STYLES[remark.level]), f": {told}")
 
 
 def _summary(files: int, unusable: int, found: Counter[Level]) -> str:

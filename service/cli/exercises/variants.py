@@ -85,12 +85,13 @@ def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
             variant=f"{exercise.plain_id}~{seeds[0]}",
             fault=fault,
         )
-        console.print(Text(f"  failed: {spoken(line)}", "red"), soft_wrap=True)
+        told = spoken(say("failed: {fault}", fault=line))
+        console.print(Text(f"  {told}", "red"), soft_wrap=True)
     return bool(faults)
 
 
 def _warn(console: Console, warning: str) -> None:
-    console.print(Text(f"  warning: {spoken(warning)}", "yellow"))
+    console.print(Text("  " + spoken(say("warning: {warning}", warning=warning)), "yellow"))
 
 
 def _table(checked: Sequence[CheckedVariant]) -> Table:
@@ -144,8 +145,8 @@ def deploy_command(
     console = stdout()
     for each in checked:
         faults = [remark.text for remark in each.remarks if remark.level is Level.FAILED]
-        told = "".join(f"; failed: {spoken(fault)}" for fault in faults)
-        console.print(f"{exercise.id}~{each.seed}: {each.title}{told}", soft_wrap=True)
+        told = [each.title, *(say("failed: {fault}", fault=fault) for fault in faults)]
+        console.print(f"{exercise.id}~{each.seed}: {'; '.join(map(spoken, told))}", soft_wrap=True)
     console.print(_table(checked))
     if figures is not None:
         _draw(exercise, seeds, figures)

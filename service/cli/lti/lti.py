@@ -8,14 +8,16 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 from pydantic import ValidationError
+from rich.cells import cell_len, set_cell_size
 from sqlalchemy import Connection
 
 from service.access.keys import Secret
 from service.attempts.storage.database import in_transaction
 from service.cli.commands.attempts import database, encodable
+from service.cli.language import spoken
 from service.cli.lti import joining
 from service.cli.lti.scores import scores
-from service.cli.terminal import give_up, stdout, tell
+from service.cli.terminal import give_up, stdout, tell, tell_verdict
 from service.formats.shared.plain_text import visible
 from service.lti import registrations
 from service.lti.checking import check_registration
@@ -120,10 +122,12 @@ def list_registrations() -> None:
         lambda it: {each.id: registrations.deployments_of(it, each.id) for each in found}
     )
     for each in found:
-        launched = f"launched {each.launched_at:%Y-%m-%d}" if each.launched_at else "never launched"
+        launched = say("never launched")
+        if each.launched_at:
+            launched = say("launched {day}", day=f"{each.launched_at:%Y-%m-%d}")
         if not each.any_deployment and not deployments.get(each.id):
-            launched = "waits for `dh-grader lti allow`"
-        told = (each.id, visible(each.name), visible(each.issuer), each.client_id, launched)
+            launched = say("waits for `dh-grader lti allow`")
+        told = (each.id, visible(each.name), visible(each.issuer), each.client_id, spoken(launched))
         stdout().print("  ".join(told), soft_wrap=True)
 
 
@@ -149,8 +153,7 @@ def check(registration: RegistrationId) -> None:
     key = _done(lambda it: signing_key(it, secret, now))
     for line in check_registration(found, key):
         is_wrong |= line.is_fine is False
-        word = {True: "ok    ", False: "WRONG ", None: "      "}[line.is_fine]
-        typer.echo(f"{word} {line.text}")
+        tell_verdict(line.is_fine, line.text)
     raise SystemExit(1 if is_wrong else 0)
 
 
@@ -196,7 +199,13 @@ def rotate_keys() -> None:
 def list_keys() -> None:
     """List the published keys, the oldest first, and when they begin to sign."""
     for each in _done(own_key_list):
-        typer.echo(f"{each.id}  signs from {each.signs_from:%Y-%m-%d %H:%M} UTC on")
+        tell(
+            say(
+                "{key}  signs from {time} UTC on",
+                key=each.id,
+                time=f"{each.signs_from:%Y-%m-%d %H:%M}",
+            )
+        )
 
 
 def _secret() -> Secret:
@@ -227,15 +236,18 @@ def _values_in(file: Path) -> dict[str, Any]:
 
 def _show(found: Registration, deployments: list[str]) -> None:
     lines = {
-        "Registration": found.id,
-        "Platform": visible(found.name),
-        "Issuer": visible(found.issuer),
-        "Client id": visible(found.client_id),
-        "Deployments": "all" if found.any_deployment else ", ".join(map(visible, deployments)),
-        "Login (OIDC) address": found.login_url,
-        "Redirect address": found.launch_url,
-        "Target link address": found.launch_url,
-        "Public keys (JWKS)": found.keys_url,
+        say("Registration:"): found.id,
+        say("Platform:"): visible(found.name),
+        say("Issuer:"): visible(found.issuer),
+        say("Client id:"): visible(found.client_id),
+        say("Deployments:"): spoken(say("all"))
+        if found.any_deployment
+        else ", ".join(map(visible, deployments)),
+        say("Login (OIDC) address:"): found.login_url,
+        say("Redirect address:"): found.launch_url,
+        say("Target link address:"): found.launch_url,
+        say("Public keys (JWKS):"): found.keys_url,
     }
+    width = max(cell_len(spoken(name)) for name in lines) + 1
     for name, value in lines.items():
-        stdout().print(f"{name + ':':22}{value}", soft_wrap=True)
+        stdout().print(set_cell_size(spoken(name), width) + value, soft_wrap=True)

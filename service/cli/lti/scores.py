@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from service.cli.commands.course_assignments import CourseOption
-from service.cli.language import user_language
+from service.cli.language import spoken, user_language
 from service.cli.operations.course_changes import changed
 from service.cli.terminal import stdout, tell
 from service.contract.scores import SendAgainRequest
@@ -30,7 +30,7 @@ def scores(
         return
     for each in changed(lambda it: scores_of(it, course, wanted, user_language())):
         points = "-" if each.sent_points is None else number(each.sent_points)
-        at = f"{each.sent_at:%Y-%m-%d %H:%M} UTC" if each.sent_at else "never sent"
+        at = f"{each.sent_at:%Y-%m-%d %H:%M} UTC" if each.sent_at else spoken(say("never sent"))
         line = [each.assignment, each.learner, f"{points} / {number(each.max_points)}", at]
         line += [each.state] + ([each.problem] if each.problem else [])
         stdout().print("  ".join(map(visible, line)), soft_wrap=True)

@@ -23,9 +23,11 @@ from service.attempts.storage.database import (
 )
 from service.attempts.storage.tables import courses
 from service.catalogue import CatalogueError, load_catalogue
+from service.cli.terminal import tell, tell_verdict
 from service.courses.errors import CourseError
 from service.courses.times import zone_named
 from service.settings import Settings, SettingsError, load_settings
+from service.translations import Sentence, joined, say, say_count, template
 
 commands = typer.Typer(add_completion=False)
 
@@ -43,35 +45,37 @@ def command() -> None:
         settings = load_settings()
         settings.known_secret()
     except SettingsError as error:
-        typer.echo(f"WRONG  settings: {error}")
+        tell_verdict(False, say("settings: {found}", found=error.args[0]))
         raise SystemExit(1) from error
-    typer.echo("ok     settings")
+    tell_verdict(True, say("settings"))
     wrong = 0
-    for name, check in _CHECKS.items():
+    for named, check in _CHECKS.items():
         try:
             for line in check(settings):
-                typer.echo(f"ok     {name}: {line}")
+                tell_verdict(True, Sentence(named, {"found": line}))
         except AilmentError as error:
             wrong += 1
-            typer.echo(f"WRONG  {name}: {error}")
-    typer.echo("Nothing is wrong." if not wrong else f"Wrong: {wrong}.")
+            tell_verdict(False, Sentence(named, {"found": error.args[0]}))
+    tell(say("Wrong: {count}.", count=wrong) if wrong else say("Nothing is wrong."))
     raise SystemExit(1 if wrong else 0)
 
 
 def _exercises(settings: Settings) -> Iterator[str]:
     try:
-        yield f"{len(load_catalogue(*settings.exercises_dir))} exercises"
+        count = len(load_catalogue(*settings.exercises_dir))
     except CatalogueError as error:
-        raise AilmentError(f"{error}") from error
+        raise AilmentError(error.args[0]) from error
+    yield say_count("{count} exercise", "{count} exercises", count=count)
 
 
 def _time_zones(_: Settings) -> Iterator[str]:
     try:
         zone_named("Europe/Berlin")
     except CourseError as error:
-        message = "there are no time zones. Install the package tzdata of the system or of Python."
-        raise AilmentError(message) from error
-    yield "time zones are known"
+        raise AilmentError(
+            say("there are no time zones. Install the package tzdata of the system or of Python.")
+        ) from error
+    yield say("time zones are known")
 
 
 def _folders(settings: Settings) -> Iterator[str]:
@@ -80,14 +84,19 @@ def _folders(settings: Settings) -> Iterator[str]:
         return
     if not (folder.is_dir() and os.access(folder, os.W_OK)):
         raise AilmentError(
-            f"DH_GRADER_EDITOR_DIR: {folder} is no folder in which files can be saved."
+            say(
+                "DH_GRADER_EDITOR_DIR: {folder} is no folder in which files can be saved.",
+                folder=str(folder),
+            )
         )
-    yield f"the editor saves in {folder}"
+    yield say("the editor saves in {folder}", folder=str(folder))
 
 
 def _database(settings: Settings) -> Iterator[str]:
     if settings.database is None:
-        yield "none; nothing is recorded. DH_GRADER_DATABASE=attempts.db would record attempts."
+        yield say(
+            "none; nothing is recorded. DH_GRADER_DATABASE=attempts.db would record attempts."
+        )
         return
     yield from _asked(settings, _state_of_database)
 
@@ -100,28 +109,45 @@ def _state_of_database(connection: Connection, _: Settings) -> Iterator[str]:
         found = connection.exec_driver_sql("PRAGMA quick_check(1)").scalar()
         if found != "ok":
             raise AilmentError(
-                f"{name} is damaged: {found}. Restore a backup: dh-grader restore FILE."
+                say(
+                    "{database} is damaged: {found}. Restore a backup: dh-grader restore FILE.",
+                    database=name,
+                    found=str(found),
+                )
             )
     if current is None:
-        yield f"{name} is empty; the service makes its tables when it starts"
+        yield say("{database} is empty; the service makes its tables when it starts", database=name)
     elif current != newest:
-        yield f"{name} has tables {current}; the service migrates them to {newest} at its start"
+        yield say(
+            "{database} has tables {current}; the service migrates them to {newest} at its start",
+            database=name,
+            current=current,
+            newest=str(newest),
+        )
     else:
-        yield f"{name} answers; its tables are those of this version"
+        yield say("{database} answers; its tables are those of this version", database=name)
 
 
 def _check_file(file: Path) -> None:
     if not os.access(file, os.W_OK) or not os.access(file.parent, os.W_OK):
-        message = f"{file} and its folder must be writable for the user that runs the service."
-        raise AilmentError(message)
+        raise AilmentError(
+            say(
+                "{file} and its folder must be writable for the user that runs the service.",
+                file=str(file),
+            )
+        )
     if os.name == "posix" and file.stat().st_mode & _OWNERS_ONLY:
-        raise AilmentError(f"other users of this machine can read {file}. Run: chmod 600 {file}")
+        raise AilmentError(
+            say(
+                "other users of this machine can read {file}. Run: chmod 600 {file}", file=str(file)
+            )
+        )
 
 
 def _keys(settings: Settings) -> Iterator[str]:
     if settings.database is None:
         _check_openness(settings, has_keys=False)
-        yield "none, because there is no database"
+        yield say("none, because there is no database")
         return
     yield from _asked(settings, _state_of_keys)
 
@@ -129,29 +155,38 @@ def _keys(settings: Settings) -> Iterator[str]:
 def _state_of_keys(connection: Connection, settings: Settings) -> Iterator[str]:
     if migration_state(connection)[0] is None:
         _check_openness(settings, has_keys=False)
-        yield "none yet"
+        yield say("none yet")
         return
     now, secret = datetime.now(UTC), settings.known_secret()
     found = all_keys(connection)
     valid = [each for each in found if each.revoked_at is None and each.expires_at > now]
     if found and secret is None:
-        message = "there are keys, but no secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE."
-        raise AilmentError(message)
+        raise AilmentError(
+            say("there are keys, but no secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE.")
+        )
     if secret is not None and not fits(connection, secret):
         raise AilmentError(WRONG_SECRET)
     _check_openness(settings, has_keys=bool(found))
     tutors = sum(Scope.TUTOR in each.scopes for each in valid)
     if found and not tutors:
-        raise AilmentError("no tutor can sign in: dh-grader keys create NAME --scope tutor")
-    yield f"{len(valid)} valid, {tutors} of them of tutors, {len(found) - len(valid)} ended"
+        raise AilmentError(say("no tutor can sign in: dh-grader keys create NAME --scope tutor"))
+    yield say(
+        "{valid} valid, {tutors} of them of tutors, {ended} ended",
+        valid=len(valid),
+        tutors=tutors,
+        ended=len(found) - len(valid),
+    )
 
 
 def _check_openness(settings: Settings, *, has_keys: bool) -> None:
     is_here = settings.host == "localhost" or is_loopback(settings.host)
     if not (is_here or has_keys or settings.open is not None):
         raise AilmentError(
-            f"other machines can reach {settings.host}, but there are no keys, so the service does "
-            "not start. Create one: dh-grader keys create NAME --scope tutor"
+            say(
+                "other machines can reach {host}, but there are no keys, so the service does not "
+                "start. Create one: dh-grader keys create NAME --scope tutor",
+                host=settings.host,
+            )
         )
 
 
@@ -169,8 +204,10 @@ def _state_of_courses(connection: Connection, _: Settings) -> Iterator[str]:
         try:
             zone_named(zone)
         except CourseError as error:
-            raise AilmentError(f"the course {course}: {error}") from error
-    yield f"{len(zones)} courses"
+            raise AilmentError(
+                say("the course {course}: {found}", course=course, found=error.args[0])
+            ) from error
+    yield say_count("{count} course", "{count} courses", count=len(zones))
 
 
 def _asked(
@@ -181,28 +218,41 @@ def _asked(
     try:
         engine = unmigrated_database(settings.database.get_secret_value())
     except UnusableDatabaseError as error:
-        raise AilmentError(f"DH_GRADER_DATABASE: {error}") from error
+        raise AilmentError(joined(": ", ["DH_GRADER_DATABASE", error.args[0]])) from error
     if engine.dialect.name == "sqlite":
         path = Path(engine.url.database or "").absolute()
         if not path.parent.is_dir():
-            raise AilmentError(f"DH_GRADER_DATABASE: {path.parent} is no folder. Create it.")
+            raise AilmentError(
+                say(
+                    "DH_GRADER_DATABASE: {folder} is no folder. Create it.", folder=str(path.parent)
+                )
+            )
         if not path.exists():
-            yield f"{path} is not there yet; the service creates it when it starts"
+            yield say(
+                "{file} is not there yet; the service creates it when it starts", file=str(path)
+            )
             return
     try:
         with engine.connect() as connection:
             yield from list(question(connection, settings))
     except SQLAlchemyError as error:
-        raise AilmentError(f"{safe_url(engine)} does not answer: {reason(error)}") from error
+        raise AilmentError(
+            say(
+                "{database} does not answer: {reason}",
+                database=safe_url(engine),
+                reason=reason(error),
+            )
+        ) from error
     finally:
         engine.dispose()
 
 
+# The checks by the templates of their lines.
 _CHECKS: Final[dict[str, Callable[[Settings], Iterator[str]]]] = {
-    "exercises": _exercises,
-    "time zones": _time_zones,
-    "folders": _folders,
-    "database": _database,
-    "keys": _keys,
-    "courses": _courses,
+    template("exercises: {found}"): _exercises,
+    template("time zones: {found}"): _time_zones,
+    template("folders: {found}"): _folders,
+    template("database: {found}"): _database,
+    template("keys: {found}"): _keys,
+    template("courses: {found}"): _courses,
 }

@@ -56,7 +56,7 @@ def graded_files(
     assignment = _assignment(files.custom, catalogue, ceiling)
     if assignment is None:
         unknown = say("The assignment names no exercise of this service.")
-        why = NoFileError("UNKNOWN_EXERCISE", told(unknown, language.translation))
+        why = NoFileError("UNKNOWN_EXERCISE", unknown)
         return GradedFiles(None, {each.asset_id: why for each in files.assets}, language)
     names = _names(files)
     entries = tuple(
@@ -77,9 +77,7 @@ def graded_files(
     found = graded(HandedIn("submission", ", ".join(names.values()), entries), terms)
     for key, name in names.items():
         if key not in failures and (problem := _problem(found, name)):
-            failures[key] = NoFileError(
-                "UNSUPPORTED_ASSET_TYPE", told(problem, language.translation)
-            )
+            failures[key] = NoFileError("UNSUPPORTED_ASSET_TYPE", problem)
     return GradedFiles(found, failures, language)
 
 
@@ -95,10 +93,11 @@ def report_on(file: FileAtPlatform, found: GradedFiles, now: datetime) -> dict[s
     failure, submission = found.failures.get(file.asset_id), found.submission
     if failure is not None or submission is None:
         code = "DOWNLOAD_FAILED" if failure is None else failure.code
+        reason = "" if failure is None else told(failure.reason, found.language.translation)
         return report | {
             "processingProgress": "Failed",
             "errorCode": code,
-            "comment": str(failure or "")[:_LONGEST_COMMENT],
+            "comment": reason[:_LONGEST_COMMENT],
             "visibleToOwner": True,
         }
     earned, most = submission.points, submission.max_points

@@ -15,6 +15,7 @@ from service.lti.scores.access_tokens import AccessTokens
 from service.lti.scores.grade_services import GradeServices, NotThereError
 from service.lti.scores.score_problems import RefusedError, ThisLaterError
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.translations import say
 
 _SCOPE: Final = "https://purl.imsglobal.org/spec/lti/scope/"
 NOTICES: Final = f"{_SCOPE}noticehandlers"
@@ -25,10 +26,13 @@ _MOST_REDIRECTS: Final = 3
 
 
 class NoFileError(Exception):
-    """The platform does not give a file. ``code`` is one of the standard's codes of errors."""
+    """The platform does not give a file, or it is not graded; ``reason`` says why.
+
+    ``code`` is one of the standard's codes of errors.
+    """
 
     def __init__(self, code: str, reason: str) -> None:
-        self.code = code
+        self.code, self.reason = code, reason
         super().__init__(reason)
 
 
@@ -71,17 +75,17 @@ class PlatformFiles:
                     if response.is_success:
                         return _checked(content(response, until, MAX_BODY_SIZE), file)
                     if not response.is_redirect:
-                        raise FetchError(f"the status is {response.status_code}")
+                        raise FetchError(say("the status is {status}", status=response.status_code))
                     url = urljoin(url, response.headers.get("location", ""))
-            raise FetchError("the answers are too many redirects")
+            raise FetchError(say("the answers are too many redirects"))
         except TooLargeError as error:
-            raise NoFileError("ASSET_TOO_LARGE", str(error)) from error
+            raise NoFileError("ASSET_TOO_LARGE", error.args[0]) from error
         except FetchError as error:
-            raise NoFileError("DOWNLOAD_FAILED", str(error)) from error
+            raise NoFileError("DOWNLOAD_FAILED", error.args[0]) from error
         except NotThereError as error:
-            raise NoFileError("DOWNLOAD_FAILED", "it is not there any more") from error
+            raise NoFileError("DOWNLOAD_FAILED", say("it is not there any more")) from error
         except RefusedError as error:
-            raise NoFileError("DOWNLOAD_FAILED", str(error)) from error
+            raise NoFileError("DOWNLOAD_FAILED", error.args[0]) from error
 
     def contents_of(
         self, registration: Registration, files: HandedFiles
@@ -112,5 +116,5 @@ def _checked(data: bytes, file: FileAtPlatform) -> bytes:
     known = (digest.hex(), base64.b64encode(digest).decode())
     expected = file.sha256_checksum
     if expected and expected.lower() != known[0] and expected != known[1]:
-        raise NoFileError("DOWNLOAD_FAILED", "its checksum is another one")
+        raise NoFileError("DOWNLOAD_FAILED", say("its checksum is another one"))
     return data

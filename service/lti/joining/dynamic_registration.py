@@ -81,13 +81,19 @@ def _asked(url: str, method: str, *, local: bool, **more: Any) -> dict[str, Any]
         text = content(response, until)
         if response.status_code not in (HTTPStatus.OK, HTTPStatus.CREATED):
             said = visible(" ".join(text.decode(errors="replace").split())[:_LONGEST_ANSWER])
-            raise FetchError(f"the platform answers with status {response.status_code}: {said}")
+            raise FetchError(
+                say(
+                    "the platform answers with status {status}: {said}",
+                    status=response.status_code,
+                    said=said,
+                )
+            )
     try:
         found = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise FetchError("the answer is not JSON") from error
+        raise FetchError(say("the answer is not JSON")) from error
     if not isinstance(found, dict):
-        raise FetchError("the answer is no JSON object")
+        raise FetchError(say("the answer is no JSON object"))
     return found
 
 
@@ -96,18 +102,20 @@ def _check(found: Mapping[str, Any], configuration: str, *, local: bool) -> None
     for name in _ADDRESSES:
         value = found.get(name)
         if not isinstance(value, str) or not 0 < len(value) <= 1000:
-            raise FetchError(f"its configuration has no {name}")
+            raise FetchError(say("its configuration has no {name}", name=name))
         if reason := unusable(value, local=local):
-            raise FetchError(f"the {name} in its configuration {reason}")
+            raise FetchError(
+                say("the {name} in its configuration {reason}", name=name, reason=reason)
+            )
     asked, issuer = origin_of(configuration), origin_of(found["issuer"])
     if asked not in (issuer, _OTHER_HOSTS.get(issuer)):
-        raise FetchError("its configuration is of another issuer")
+        raise FetchError(say("its configuration is of another issuer"))
     # The token goes there.
     if origin_of(found["registration_endpoint"]) not in (asked, issuer):
-        raise FetchError("the registration_endpoint in its configuration is at another host")
+        raise FetchError(say("the registration_endpoint in its configuration is at another host"))
     algorithms = found.get("id_token_signing_alg_values_supported", ["RS256"])
     if not isinstance(algorithms, list) or "RS256" not in algorithms:
-        raise FetchError("it does not sign by RS256")
+        raise FetchError(say("it does not sign by RS256"))
 
 
 def _scopes(found: Mapping[str, Any]) -> list[str] | None:

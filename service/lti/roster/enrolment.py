@@ -64,7 +64,7 @@ def ask_for_roster(
     try:
         key = signing_key(connection, secret, now)
     except LtiError as error:
-        raise RosterError(str(error)) from error
+        raise RosterError(error.args[0]) from error
     return RosterQuestion(context, registration(connection, context.registration), key, now)
 
 

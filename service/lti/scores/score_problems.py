@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from typing import Any, Final
 
+from service.lti.problems import short_value
 from service.translations import ENGLISH, Language, Sentence, SentenceValue, template
 from service.translations import told as told_in
 
@@ -49,7 +50,7 @@ class ScoreError(Exception):
 
     def __init__(self, name: str, /, **values: object) -> None:
         self.name = name
-        self.values = {key: _value(value) for key, value in values.items()}
+        self.values = {key: short_value(value) for key, value in values.items()}
         super().__init__(Sentence(SCORE_PROBLEMS[name], self.values))
 
     @property
@@ -81,12 +82,6 @@ def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = 
     name, values = json.loads(stored)
     sentences = {**SCORE_PROBLEMS, **_REPORT_PROBLEMS} if of_report else SCORE_PROBLEMS
     return told_in(Sentence(sentences[name], _unpacked(values)), language.translation)
-
-
-def _value(value: object) -> str:
-    """Return a sentence, or that of an error; anything else as a text that is not long."""
-    said = value.args[0] if isinstance(value, Exception) and value.args else value
-    return said if isinstance(said, Sentence) else str(value)[:200]
 
 
 def _packed(values: Mapping[str, SentenceValue]) -> dict[str, Any]:

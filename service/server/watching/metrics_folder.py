@@ -8,6 +8,7 @@ from typing import Final
 
 from service.catalogue.files.temporary import temporary_place
 from service.settings import Settings, SettingsError
+from service.translations import say
 
 # The environment variable in which prometheus_client looks for the folder.
 FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
@@ -28,8 +29,11 @@ def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]
         folder = tempfile.TemporaryDirectory(prefix="dh-grader-metrics-", dir=place)
     except OSError as error:
         raise SettingsError(
-            "DH_GRADER_METRICS: with several workers a folder for temporary files must be "
-            f"writable: {error}"
+            say(
+                "DH_GRADER_METRICS: with several workers a folder for temporary files must be "
+                "writable: {reason}",
+                reason=str(error),
+            )
         ) from error
     with folder as name:
         os.environ[FOLDER] = name

@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from service.api.courses.asking import read, write
 from service.api.http.language import language_of
-from service.api.http.problems import ProblemError
+from service.api.http.problems import ProblemError, message_of
 from service.contract.courses import CourseName
 from service.lti.checking import check_registration, last_refusal
 from service.lti.own_keys import SigningKey, ensure_key, own_key_list, signing_key
@@ -88,9 +88,9 @@ def platform_routes(landings: Landings) -> APIRouter:
         try:
             found, key = await write(landings.store, known)
         except RegistrationError as error:
-            raise ProblemError(HTTPStatus.NOT_FOUND, str(error)) from error
+            raise ProblemError(HTTPStatus.NOT_FOUND, message_of(error)) from error
         except LtiError as error:
-            raise ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, str(error)) from error
+            raise ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, message_of(error)) from error
         lines = await asyncio.to_thread(lambda: tuple(check_registration(found, key)))
         return await answer(request, found.id, lines)
 

@@ -116,3 +116,15 @@ def test_an_unusable_file_is_named_beside_the_report_on_the_others(run: Run, fol
     assert second["report"]["parts"][0]["verdict"] != "missing"
     assert not any("error" in entry for entry in others)
     assert "scara/pose.csv is not UTF-8 text" in run(*common, "csv").stdout
+
+
+def test_check_speaks_the_language_of_the_user(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "es")
+    lines = run("assignments", "check", folder / "hw.toml", folder / "class").stdout.splitlines()
+    assert lines[0] == "Homework: 2 ejercicios, 40 puntos, se aprueba con 40 %"
+    assert lines[1].startswith("  planar-rrr, 30 puntos: table; comentarios hints; archivos planar")
+    assert lines[1].endswith(", y similares")
+    assert f"  planar-rrr: table de {folder}/class/anna/planar-rrr.csv" in lines
+    assert "  scara: falta" in lines

@@ -169,7 +169,9 @@ def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.long
 @pytest.mark.usefixtures("corrected")
-def test_a_regrade_is_previewed_before_it_is_applied(run: Run, course: list[str]) -> None:
+def test_a_regrade_is_previewed_before_it_is_applied(
+    run: Run, course: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = run("attempts", "export").output
     tried = run("attempts", "regrade", "scara").output
     assert "3 attempts were graded by another version; 2 would change." in tried
@@ -180,6 +182,13 @@ def test_a_regrade_is_previewed_before_it_is_applied(run: Run, course: list[str]
     tried = " ".join(run("attempts", "regrade", "scara").output.split())
     assert "table partial, other points; a tutor's 7.5 stays)" in tried
     assert "2 would change, of which 1 would keep the points of a tutor." in tried
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "es")
+    spanish = " ".join(run("attempts", "regrade", "scara").output.split())
+    assert "grace, intento 1: " in spanish
+    assert "; se queda 7.5 de un docente)" in spanish
+    assert "3 intentos se calificaron con otra versión; cambiarían 2, y de esos 1" in spanish
+    assert "Aún no se ha guardado nada: añade --apply para guardar." in spanish
+    monkeypatch.delenv("DH_GRADER_LANGUAGE")
     assert "Regraded: 3." in run("attempts", "regrade", "scara", "--apply").output
     assert "0 attempts were graded by another" in run("attempts", "regrade", "scara").output
     lines = [

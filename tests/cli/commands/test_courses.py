@@ -73,3 +73,37 @@ def test_a_wrong_assignment_is_refused_in_words(
     assert refused.exit_code == 2
     assert [part for part in said if part not in refused.stderr] == []
     assert "should match" not in refused.stderr
+
+
+def test_an_assignment_is_shown_in_the_language(
+    course: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options = {"exercise": "scara=10", "limit": "3", "due": "2030-10-15 23:59"}
+    options |= {"hint-prices": "0,0.05,0.1"}
+    words = [word for name, value in options.items() for word in (f"--{name}", value)]
+    shown = run("assignments", "add", course, "hw-1", "--variants", *words)
+    assert shown.stdout.splitlines() == [
+        "hw-1: hw-1, 10 points",
+        "  scara, 10 points",
+        "  due 2030-10-15 23:59 UTC",
+        "  attempts at most 3; no late attempts",
+        "  feedback that of each exercise",
+        "  practice none; solution never",
+        "  the steps of a hint cost 0%, 5%, 10% of the points",
+        "  each learner has variants of their own",
+        "  but not in scara: no variants there",
+    ]
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
+    assert run("assignments", "list", course).stdout.splitlines() == [
+        "hw-1: hw-1, 10 Punkte",
+        "  scara, 10 Punkte",
+        "  fällig 2030-10-15 23:59 UTC",
+        "  höchstens 3 Versuche; keine verspäteten Versuche",
+        "  Rückmeldung: die jeder Aufgabe",
+        "  Üben: none; Lösung: never",
+        "  die Schritte eines Hinweises kosten 0%, 5%, 10% der Punkte",
+        "  jede Person hat eigene Varianten",
+        "  aber nicht bei scara: dort gibt es keine Varianten",
+    ]
+    wrong = run("assignments", "add", course, "hw-2", "--exercise", "scara=-1").stderr
+    assert wrong == "exercises.0.points: Der Wert muss größer als 0 sein.\n"

@@ -55,7 +55,13 @@ def test_a_key_is_created_shown_once_listed_and_revoked(monkeypatch: pytest.Monk
         assert told in listed
     assert text not in listed
     assert "\x1b" not in listed
-    assert run("revoke", key).exit_code == 0
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
+    assert run("revoke", key).stdout.startswith("Widerrufen. Jeder laufende Dienst")
+    assert re.search("scara  widerrufen 20[-0-9]+  nie benutzt", run("list").stdout)
+    created = run("create", "b")
+    assert "Bewahren Sie ihn jetzt auf" in created.stderr
+    assert is_spelt_right(created.stdout.strip())
+    monkeypatch.delenv("DH_GRADER_LANGUAGE")
     assert "revoked 20" in run("list").stdout
     assert run("revoke", key).exit_code == 2
     assert run("create", "c", "--exercise", "scarra").exit_code != 0

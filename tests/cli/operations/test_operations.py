@@ -283,7 +283,32 @@ def test_the_doctor_finds_nothing_wrong(
     healthy = run("doctor")
     assert healthy.exit_code == 0, healthy.output
     assert "its tables are those of this version" in healthy.output
-    assert "1 courses" in healthy.output
+    assert "courses: 1 course" in healthy.output
     monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "new.db"))
     assert run("doctor").exit_code == 0
     assert not (tmp_path / "new.db").exists()
+
+
+def test_the_doctor_speaks_the_language_of_the_user(
+    database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    english = run("doctor").output.splitlines()
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "de")
+    german = run("doctor").output.splitlines()
+    assert "ok      Kurse: 1 Kurs" in german
+    assert "ok      Zeitzonen: die Zeitzonen sind bekannt" in german
+    assert german[-1] == "Alles ist in Ordnung."
+    assert [line for line in german if line in english] == []
+    database.chmod(0o644)
+    wrong = f"FALSCH  Datenbank: andere Benutzer dieses Rechners können {database} lesen."
+    assert wrong in run("doctor").output
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "fr")
+    monkeypatch.setenv("DH_GRADER_PORT", "many")
+    monkeypatch.setenv("DH_GRADER_KEY_RATE", "1/second")
+    assert "réglages : DH_GRADER_PORT: Il faut ici un nombre entier." in spaced(run("doctor"))
+    monkeypatch.setenv("DH_GRADER_KEEP_MONTH", "12")
+    assert "ce réglage n’existe pas ; vouliez-vous dire DH_" in spaced(run("doctor"))
+
+
+def spaced(result: Result) -> str:
+    return result.output.replace("\xa0", " ")

@@ -26,7 +26,7 @@ from service.lti.messages import LTI, SETTINGS, LaunchMessage
 from service.lti.problems import LtiError
 from service.lti.roles import LtiRole
 from service.lti.scores.score_problems import ScoreError
-from service.translations import Language
+from service.translations import Language, joined
 from service.web.assets import Assets
 from service.web.lti.lti_pages import lti_page
 
@@ -61,8 +61,8 @@ class ReportPages:
             return lti_page("file_settings.html", self._assets, [], language=language)
         graded = await asyncio.to_thread(self._graded, message, files, language)
         if graded.submission is None:
-            reasons = [str(each) for each in graded.failures.values()]
-            raise LtiError("file-unreadable", reason="; ".join(reasons))
+            reasons = [each.reason for each in graded.failures.values()]
+            raise LtiError("file-unreadable", reason=joined("; ", reasons))
         return page_of(graded.submission, language)
 
     def _files(self, connection: Connection, message: LaunchMessage) -> HandedFiles:
