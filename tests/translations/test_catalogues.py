@@ -1,5 +1,6 @@
 """The catalogues of all languages fit the sentences in the source."""
 
+import re
 from io import BytesIO
 
 import pytest
@@ -86,3 +87,25 @@ def test_translations_are_filled_in_by_sentence() -> None:
 
 def _texts(string: object) -> tuple[str, ...]:
     return tuple(string) if isinstance(string, tuple | list) else (str(string),)
+
+
+# Another form of address than the glossary's, and words that it does not take for a term.
+OTHER_WORDS = {
+    "de": r"\b([Dd]u|[Dd]ein\w*|[Dd]ich|[Dd]ir)\b",
+    "es": r"(?i)(?<!que )(?<!quien )(?<!apartados que )\b(usted|indique|elija|escriba|añada|omita|"
+    r"use|corrija|pida|defina|guárdelo|consérvelo|vínculos?|tramas?)\b",
+    "fr": r"(?i)\b(tu|ton|tes|liaisons?|organe terminal|premier corps|corps de l.outil)\b",
+    "zh": r"您|你|(?<![邀申])请(?!求)|旋转关节",
+}
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_translations_speak_to_the_reader_as_their_glossary_says(code: str) -> None:
+    found = [
+        text
+        for domain in DOMAINS
+        for message in catalogue(code, domain)
+        for text in (message.string if isinstance(message.string, tuple) else [message.string])
+        if message.id and re.search(OTHER_WORDS[code], text)
+    ]
+    assert found == []
