@@ -8,7 +8,8 @@ from fastapi import APIRouter, Query, Request, Response
 from service.api.courses.asking import CourseId, changing, read, reading, write
 from service.api.http.bodies import read_body
 from service.api.http.language import language_of
-from service.api.recording.store import private
+from service.api.http.told_answer import in_languages, told_json
+from service.api.recording.store import NO_STORE, private
 from service.contract.attempts import Learner
 from service.contract.courses import CourseName
 from service.contract.scores import PlatformScores, SendAgainRequest, SentAgain
@@ -26,7 +27,7 @@ def routes(store: "AttemptStore | None") -> APIRouter:
         operation_id="listScores",
         summary="List the scores that go to platforms",
         response_description="The scores, by assignment and name.",
-        **reading(PlatformScores),
+        **in_languages(reading(PlatformScores)),
     )
     async def list_scores(
         request: Request,
@@ -45,7 +46,8 @@ def routes(store: "AttemptStore | None") -> APIRouter:
         wanted = SendAgainRequest(assignment=assignment, learner=learner, failed=failed)
         language = language_of(request)
         found = await read(store, lambda it: scores_of(it, course_id, wanted, language))
-        return private(PlatformScores(scores=found))
+        content = PlatformScores(scores=found).model_dump_json(exclude_none=True)
+        return told_json(content, language, headers=NO_STORE)
 
     @router.post(
         "/send",

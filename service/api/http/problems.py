@@ -14,6 +14,7 @@ from starlette.requests import ClientDisconnect
 
 from service.api.http.language import language_of
 from service.api.http.request_context import current_request
+from service.api.http.told_answer import language_headers
 from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
 from service.submissions.field_errors import field_error
 from service.submissions.strict_json import MAX_BODY_SIZE
@@ -49,9 +50,8 @@ class ProblemError(Exception):
         request = current_request()
         content = self.content(instance, "" if request is None else request.id, language)
         answer = self.answer(content, MEDIA_TYPE)
-        if isinstance(self.detail, Sentence):
-            answer.headers["Content-Language"] = language.tag
-            answer.headers["Vary"] = "Accept-Language, Cookie"
+        if isinstance(self.detail, Sentence) or isinstance(self.title, Sentence):
+            answer.headers.update(language_headers(language))
         return answer
 
     def answer(self, content: bytes, media_type: str = "text/html") -> Response:

@@ -19,7 +19,7 @@ _PARAMETER: Final = {
     "schema": {"type": "string", "maxLength": 35},
 }
 # Caches keep an answer for each language.
-VARY: Final = {"Vary": "Accept-Language, Cookie"}
+_VARY: Final = {"Vary": "Accept-Language, Cookie"}
 
 
 def in_languages(options: dict[str, Any]) -> dict[str, Any]:
@@ -29,9 +29,9 @@ def in_languages(options: dict[str, Any]) -> dict[str, Any]:
     return {**options, "openapi_extra": {**extra, "parameters": parameters}}
 
 
-def language_header(language: Language) -> dict[str, str]:
-    """Return the header that names the language of an answer."""
-    return {"Content-Language": language.tag}
+def language_headers(language: Language) -> dict[str, str]:
+    """Return the headers that name the language of an answer, and what it depends on."""
+    return {"Content-Language": language.tag, **_VARY}
 
 
 def told_json(
@@ -41,5 +41,5 @@ def told_json(
     headers: Mapping[str, str] | None = None,
 ) -> Response:
     """Return an answer in JSON that says in which language it is."""
-    named = {**language_header(language), **(headers or {})}
+    named = {**language_headers(language), **(headers or {})}
     return Response(content, status, named, "application/json")

@@ -17,6 +17,7 @@ from service.api.http.bounded_work import BoundedWork
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import ProblemError, invalid, message_of
+from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
 from service.api.recording.listing import (
     AssignmentFilter,
@@ -178,7 +179,9 @@ def routes(
         operation_id="regradeAttempts",
         summary="Regrade some attempts at a corrected exercise",
         response_description="The results of this step, and the cursor of the next one.",
-        **posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED, HTTPStatus.CONFLICT),
+        **in_languages(
+            posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED, HTTPStatus.CONFLICT)
+        ),
     )
     async def regrade_attempts(
         request: Request, exercise_id: ExerciseId, course: CourseFilter = None
@@ -198,8 +201,10 @@ def routes(
         exercise = exercise_or_404(catalogue, exercise_id.partition("~")[0])
         course = course_of(access.caller(request), course)
         body = await read_body(RegradeRequest, request)
-        step = partial(regrades.step, exercise, course, body, language_of(request))
-        return private(await ask(store, lambda it: regrades.work.do(partial(step, it))))
+        language = language_of(request)
+        step = partial(regrades.step, exercise, course, body, language)
+        answer = await ask(store, lambda it: regrades.work.do(partial(step, it)))
+        return told_json(answer.model_dump_json(exclude_none=True), language, headers=NO_STORE)
 
     return router
 

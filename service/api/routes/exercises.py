@@ -9,7 +9,7 @@ from service.api.courses.own_variant import OwnVariants, of_assignment
 from service.api.document.openapi import refusals
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.http.told_answer import VARY, in_languages, language_header
+from service.api.http.told_answer import in_languages, language_headers
 from service.catalogue import FeedbackLevel, in_language, least
 from service.contract.exercises import ExerciseList, ExerciseView
 from service.grading.kinds.find_slip import shown_shape
@@ -32,7 +32,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> A
     async def list_exercises(request: Request, response: Response) -> dict[str, Any]:
         """List all exercises, by level, then by their place within it."""
         language = language_of(request)
-        response.headers.update({**language_header(language), **VARY})
+        response.headers.update(language_headers(language))
         return {"exercises": [in_language(each, language) for each in catalogue.values()]}
 
     @router.get(
@@ -51,7 +51,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> A
     ) -> dict[str, Any]:
         """Show an exercise: its statement, its symbols, and what each part asks for."""
         language = language_of(request)
-        response.headers.update({**language_header(language), **VARY})
+        response.headers.update(language_headers(language))
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
         exercise = in_language(exercise, language)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}

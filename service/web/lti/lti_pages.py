@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from service.api.http.lookup import Catalogue
+from service.api.http.told_answer import language_headers
 from service.catalogue import Exercise, in_language
 from service.contract.courses import CourseAssignment
 from service.translations import Language, say
@@ -20,8 +21,10 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 _FOLDER = "web/lti/templates"
 
 
-def frame_headers(origins: Iterable[str], *targets: str, style: str = "") -> dict[str, str]:
-    """Return the headers of a page that only pages of these origins may show in a frame.
+def frame_headers(
+    language: Language, origins: Iterable[str], *targets: str, style: str = ""
+) -> dict[str, str]:
+    """Return the headers of a page in a language that only pages of these origins may frame.
 
     Its forms may only be sent to us, or, if there are ``targets``, to these origins. The platform's
     window must stay the opener: it may have the platform's storage. ``style`` is the hash of the
@@ -32,7 +35,7 @@ def frame_headers(origins: Iterable[str], *targets: str, style: str = "") -> dic
     if style:
         more["style_src"] = f"'{style}'"
     content = policy(frame_ancestors=ancestors, **more)
-    headers = {**FORM_HEADERS, "Content-Security-Policy": content}
+    headers = {**FORM_HEADERS, **language_headers(language), "Content-Security-Policy": content}
     del headers["Cross-Origin-Opener-Policy"]
     return headers
 

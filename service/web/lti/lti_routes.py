@@ -72,7 +72,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
         if "lti_storage_target" in begun.fields:
             name = cookie_name(begun.registration, begun.state)
             content = login_page(begun, name, assets, language)
-            headers = frame_headers(begun.registration.frame_origins)
+            headers = frame_headers(language, begun.registration.frame_origins)
             answer = HTMLResponse(content, headers=headers)
         else:
             answer = RedirectResponse(begun.address, HTTPStatus.FOUND, NO_STORE)
@@ -107,7 +107,9 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
             language = language_of(request, message.locale)
             content = await landings.page(message, begun, language)
             style = STYLE.hash if message.kind == REPORT else ""
-            return HTMLResponse(content, headers=frame_headers(known.frame_origins, style=style))
+            return HTMLResponse(
+                content, headers=frame_headers(language, known.frame_origins, style=style)
+            )
 
         return await launching.answered(launched, language_of(request))
 
@@ -196,15 +198,16 @@ class _Launching:
         if begun.storage_target is not None:
             name = cookie_name(known, fields["state"])
             storage = (begun.storage_target, known.platform_origin, name)
+        language = language_of(request)
         content = binding_page(
             self._assets,
-            language_of(request),
+            language,
             f"login?{urlencode(again)}",
             state=fields["state"],
             token=fields.get("id_token", ""),
             storage=storage,
         )
-        return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+        return HTMLResponse(content, headers=frame_headers(language, known.frame_origins))
 
     async def answered(
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
@@ -228,7 +231,7 @@ class _Launching:
         origins = [origin for each in known for origin in each.frame_origins]
         content = refused_page(self._assets, language, error.advice, reference, error.name)
         status = _STATUSES.get(error.name, HTTPStatus.FORBIDDEN)
-        return HTMLResponse(content, status, headers=frame_headers(origins))
+        return HTMLResponse(content, status, headers=frame_headers(language, origins))
 
 
 def is_bound(

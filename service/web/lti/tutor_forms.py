@@ -84,7 +84,7 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
                     assignment=made,
                 )
                 content = tutor_page(landing, text, landings.catalogue, landings.assets, language)
-            return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+            return HTMLResponse(content, headers=frame_headers(language, known.frame_origins))
 
         return await answered(chosen, language)
 

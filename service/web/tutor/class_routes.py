@@ -9,6 +9,7 @@ from service.api.http.bounded_work import BoundedWork
 from service.api.http.chunked_response import ChunkedResponse
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue
+from service.api.http.told_answer import language_headers
 from service.web.assets import Assets
 from service.web.page_answer import page_answer
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
@@ -47,6 +48,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
         packed = await request.body()
         language = language_of(request)
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue, language))
-        return ChunkedResponse(content, headers=NO_STORE, media_type="application/zip")
+        headers = {**NO_STORE, **language_headers(language)}
+        return ChunkedResponse(content, headers=headers, media_type="application/zip")
 
     return router

@@ -6,18 +6,20 @@ from typing import Annotated, Final
 
 from fastapi import APIRouter, Request
 from pydantic import Field
-from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.responses import JSONResponse, Response
 
 from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError
+from service.api.http.told_answer import told_json
 from service.api.permissions.access import is_at_the_machine
 from service.catalogue import CatalogueError
 from service.catalogue.drafts import Drafts
 from service.translations import say
 from service.web.assets import Assets
+from service.web.page_answer import page_answer
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor.checking import Checking
 from service.web.tutor.exercise_check import CheckRequest, exercise_of
@@ -66,21 +68,23 @@ def editor_routes(
             can_write=folder.can_write and is_at_the_machine(request),
             copied=exercise_id if is_copy else "",
         )
-        return HTMLResponse(page, headers=PRIVATE_HEADERS)
+        return page_answer(request, page, PRIVATE_HEADERS)
 
     @router.post("/check")
     async def check(request: Request) -> Response:
         """Answer with the findings on a text, which is not stored."""
         body = await read_body(CheckRequest, request)
-        content = await work.do(partial(checking.checked, body, language_of(request)))
-        return Response(content, headers=NO_STORE, media_type="application/json")
+        language = language_of(request)
+        content = await work.do(partial(checking.checked, body, language))
+        return told_json(content, language, headers=NO_STORE)
 
     @router.post("/import")
     async def import_robot(request: Request) -> Response:
         """Answer with the text of an exercise about a robot, which is not stored."""
         body = await read_body(ImportRequest, request)
-        content = await work.do(partial(imported, body, language_of(request)))
-        return Response(content, headers=NO_STORE, media_type="application/json")
+        language = language_of(request)
+        content = await work.do(partial(imported, body, language))
+        return told_json(content, language, headers=NO_STORE)
 
     @router.post("/drafts")
     async def draft(request: Request) -> Response:

@@ -16,6 +16,7 @@ from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
 from service.api.http.memoized import MemoizedResults
 from service.api.http.problems import ProblemError
+from service.api.http.told_answer import language_headers
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, FeedbackLevel, Robot
 from service.catalogue.drafts import Drafts
@@ -100,7 +101,8 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         key = (exercise.id, exercise.version, exercise.title, of_all, language.code)
         drawn = partial(solution_page, exercise, assets, language, of_all=of_all)
         content = await solutions.of(key, drawn)
-        return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+        headers = {**PRIVATE_HEADERS, **language_headers(language)}
+        return ChunkedResponse(content, headers=headers, media_type="text/html")
 
     @router.get("/misconceptions/{exercise_id}")
     async def misconceptions(request: Request, exercise_id: str) -> Response:
@@ -110,7 +112,8 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
         key = (exercise.id, exercise.version, exercise.title, language.code)
         drawn = partial(misconceptions_page, exercise, catalogue, assets, language)
         content = await named.of(key, drawn)
-        return ChunkedResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+        headers = {**PRIVATE_HEADERS, **language_headers(language)}
+        return ChunkedResponse(content, headers=headers, media_type="text/html")
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:

@@ -57,7 +57,7 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
         )
         content = return_page(ticket.return_url, text, landings.assets, language)
         targets = (origin_of(ticket.return_url), *known.frame_origins)
-        headers = {**frame_headers(known.frame_origins, *targets), **_REFERRER}
+        headers = {**frame_headers(language, known.frame_origins, *targets), **_REFERRER}
         return HTMLResponse(content, headers=headers)
 
     @router.post("/links")
@@ -85,7 +85,7 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
             content = picker_page(
                 offer, chosen, text, landings.catalogue, landings.assets, language
             )
-            return HTMLResponse(content, headers=frame_headers(known.frame_origins))
+            return HTMLResponse(content, headers=frame_headers(language, known.frame_origins))
 
         return await answered(picked, language)
 

@@ -39,7 +39,9 @@ def joining_forms(landings: Landings) -> APIRouter:
         content = lti_page("register.html", landings.assets, scripts, **shown)
         configuration = fields["openid_configuration"]
         may_frame = known and not unusable(configuration, local=True)
-        headers = frame_headers([origin_of(configuration)] if may_frame else [])
+        headers = frame_headers(
+            language_of(request), [origin_of(configuration)] if may_frame else []
+        )
         status = HTTPStatus.FORBIDDEN if values.get("message") else HTTPStatus.OK
         return page_answer(request, content, headers, status)
 
