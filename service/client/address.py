@@ -5,6 +5,7 @@ from typing import Any, Final
 
 import httpx
 
+from service.translations import say
 from service.version import VERSION
 
 # The characters of a token of ``Authorization: Bearer`` (RFC 6750).
@@ -19,13 +20,22 @@ def checked_server(server: str) -> str:
     try:
         url = httpx.URL(server)
     except httpx.InvalidURL as error:
-        raise ValueError(f"{server!r} is not the address of a server: {error}") from error
+        raise ValueError(
+            say(
+                "{server!r} is not the address of a server: {reason}",
+                server=server,
+                reason=str(error),
+            )
+        ) from error
     if url.scheme not in ("http", "https") or not url.host or server.split() != [server]:
         raise ValueError(
-            f"{server!r} is not the address of a server; write https://grader.example.edu"
+            say(
+                "{server!r} is not the address of a server; write https://grader.example.edu",
+                server=server,
+            )
         )
     if url.userinfo or url.query or url.fragment:
-        raise ValueError("The address of a server has only scheme, host, port and path.")
+        raise ValueError(say("The address of a server has only scheme, host, port and path."))
     return str(url).rstrip("/")
 
 
@@ -42,7 +52,9 @@ def client_options(
         headers["Accept-Language"] = language
     if key is not None:
         if not _KEY.fullmatch(key):
-            raise ValueError("The key is empty or has a character that no key has; copy it again.")
+            raise ValueError(
+                say("The key is empty or has a character that no key has; copy it again.")
+            )
         headers["Authorization"] = f"Bearer {key}"
     return {
         "base_url": server,

@@ -18,6 +18,7 @@ from service.client.errors import (
     UnexpectedAnswerError,
 )
 from service.contract.problems import TYPE_PREFIX, ProblemDocument
+from service.translations import say
 
 # Far larger than the reports on the most submissions in one request (bytes).
 MAX_ANSWER: Final = 64 * 1024 * 1024
@@ -50,7 +51,10 @@ class AnswerPieces:
         self._content += piece
         if len(self._content) > MAX_ANSWER:
             raise UnexpectedAnswerError(
-                f"The answer has more than {MAX_ANSWER // 1024**2} MiB; no report is so large."
+                say(
+                    "The answer has more than {most} MiB; no report is so large.",
+                    most=MAX_ANSWER // 1024**2,
+                )
             )
         if time.monotonic() - self._began > self.seconds:
             raise httpx.ReadTimeout(f"no complete answer within {self.seconds:g} seconds")
@@ -63,7 +67,7 @@ class AnswerPieces:
 def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableError:
     """Convert a connection error of httpx."""
     reason = str(error) or type(error).__name__
-    message = f"{server} cannot be reached: {reason}"
+    message = say("{server} cannot be reached: {reason}", server=server, reason=reason)
     is_temporary = not any(map(_is_permanent, _causes(error)))
     return ServerUnreachableError(message, is_temporary=is_temporary)
 
@@ -72,14 +76,20 @@ def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
     """Return the exception for an answer with another status than 200."""
     if location := answer.headers.get("location"):
         return UnexpectedAnswerError(
-            f"{server} redirects to {location}; if you trust that address, call it instead."
+            say(
+                "{server} redirects to {location}; if you trust that address, call it instead.",
+                server=server,
+                location=location,
+            )
         )
     wait = _seconds(answer.headers.get("retry-after", ""))
     try:
         problem = ProblemDocument.model_validate_json(answer.content)
     except ValidationError:
         # Perhaps the answer of a proxy: its page for people is useless to a program.
-        message = f"{server} answers with the status {answer.status}."
+        message = say(
+            "{server} answers with the status {status}.", server=server, status=answer.status
+        )
         return RequestRefusedError(answer.status, message, retry_after=wait)
     name = problem.type.removeprefix(TYPE_PREFIX) if problem.type.startswith(TYPE_PREFIX) else ""
     reasons = tuple(problem.errors or ())

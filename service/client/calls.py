@@ -29,6 +29,7 @@ from service.grading import Report
 from service.kinematics.dh import Convention
 from service.submissions.body import MAX_SUBMISSIONS, ExerciseSubmission, GradeRequest
 from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS, MAX_COMMAS
+from service.translations import say
 
 T = TypeVar("T")
 
@@ -69,7 +70,10 @@ class HttpCall(Generic[T]):
             return self.read(answer.content)
         except ValidationError as error:
             raise UnexpectedAnswerError(
-                f"The answer of {server} is not that of a DH Grader of this version."
+                say(
+                    "The answer of {server} is not that of a DH Grader of this version.",
+                    server=server,
+                )
             ) from error
 
 

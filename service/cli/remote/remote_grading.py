@@ -68,11 +68,11 @@ class RemoteGrading:
                 return self._report(assigned, terms.submission(body, assigned)), ""
             except GraderClientError as error:
                 if _concerns_these(error):
-                    refused = say("is refused by the server: {reason}", reason=str(error))
+                    refused = say("is refused by the server: {reason}", reason=error.args[0])
                     return None, spoken(refused)
-                self.reason = self.reason or str(error)
+                self.reason = self.reason or error.args[0]
                 self.ungraded.add(handed.name)
-                return None, spoken(say("is not graded: {reason}", reason=str(error)))
+                return None, spoken(say("is not graded: {reason}", reason=error.args[0]))
 
         return graded(handed, self._terms, report_on)
 

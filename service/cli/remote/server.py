@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from service.cli.language import spoken
 from service.cli.remote.journal import Journal, journal_beside
 from service.cli.running.threads import mapped_in_threads
 from service.cli.terminal import complain, give_up, installed_exercise
@@ -38,7 +39,7 @@ def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
     try:
         client = GraderClient(settings.server, _key(settings), language=settings.language)
     except ValueError as error:
-        give_up(visible(str(error)))
+        give_up(visible(spoken(error.args[0])))
     with client:
         yield client
 
@@ -60,7 +61,7 @@ def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExerc
     try:
         return exercise_of(server, exercise_id)
     except GraderClientError as error:
-        give_up(visible(str(error)))
+        give_up(visible(spoken(error.args[0])))
 
 
 def require_no_own_files(assignment: Assignment) -> None:

@@ -238,6 +238,17 @@ def test_an_invalid_server_address_is_refused(run: Run, homework: Path, address:
     assert "ddress of a server" in result.stderr
 
 
+def test_failures_of_a_server_are_told_in_the_language(
+    run: Run, homework: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_LANGUAGE", "es")
+    grade = ("grade", homework, "--exercise", "planar-rr", "--server")
+    assert (
+        "'localhost:8000' no es la dirección de un servidor" in run(*grade, "localhost:8000").stderr
+    )
+    assert "No se puede llegar a http://127.0.0.1:9: " in run(*grade, "http://127.0.0.1:9").stderr
+
+
 def test_a_key_without_a_server_is_refused(run: Run, homework: Path) -> None:
     result = run("grade", homework, "--exercise", "planar-rr", "--key", "dhg_1")
     assert (result.exit_code, result.stderr) == (2, "--key goes with --server URL.\n")
