@@ -244,10 +244,11 @@ def test_an_unusable_configuration_is_told_in_the_language(
         "registration_token": registrar.token,
     }
     french = {"accept-language": "fr"}
-    for said, changes in {
+    cases: dict[str, dict[str, Any]] = {
         "sa configuration n’a pas de token_endpoint": {"token_endpoint": None},
         "elle ne signe pas avec RS256": {"id_token_signing_alg_values_supported": ["HS256"]},
-    }.items():
+    }
+    for said, changes in cases.items():
         registrar.changes.clear()
         registrar.changes.update(changes)
         page = tool.send("POST", "/lti/register", data=fields, headers=french)

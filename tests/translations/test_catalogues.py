@@ -91,10 +91,11 @@ def _texts(string: object) -> tuple[str, ...]:
 
 # Another form of address than the glossary's, and words that it does not take for a term.
 OTHER_WORDS = {
-    "de": r"\b([Dd]u|[Dd]ein\w*|[Dd]ich|[Dd]ir)\b",
+    "de": r"\b([Dd]u|[Dd]ein\w*|[Dd]ich|[Dd]ir|[Ll]ernende\w*|Bericht(en?|s)?)\b",
     "es": r"(?i)(?<!que )(?<!quien )(?<!apartados que )\b(usted|indique|elija|escriba|añada|omita|"
     r"use|corrija|pida|defina|guárdelo|consérvelo|vínculos?|tramas?)\b",
-    "fr": r"(?i)\b(tu|ton|tes|liaisons?|organe terminal|premier corps|corps de l.outil)\b",
+    "fr": r"(?i)\b(tu|ton|tes|liaisons?|organe terminal|tentatives?|premier corps|"
+    r"corps de l.outil)\b",
     "zh": r"您|你|(?<![邀申])请(?!求)|旋转关节",
 }
 
@@ -105,7 +106,7 @@ def test_translations_speak_to_the_reader_as_their_glossary_says(code: str) -> N
         text
         for domain in DOMAINS
         for message in catalogue(code, domain)
-        for text in (message.string if isinstance(message.string, tuple) else [message.string])
+        for text in _texts(message.string)
         if message.id and re.search(OTHER_WORDS[code], text)
     ]
     assert found == []

@@ -42,8 +42,9 @@ def test_counts_and_questions_are_in_the_language(
     assert learners(course, tmp_path / "c.csv", "ada") == "1 Person, davon neu: 1.\n"
     assert run("list").stdout.endswith("  1 Person, 0 Übungsblätter\n")
     # Nobody answers the question.
-    assert run("delete", course).stdout.startswith("Kurs robots endgültig löschen? Lernende: 1 [")
-    assert run("delete", course, "--yes").stdout == "Kurs robots gelöscht: Lernende: 1.\n"
+    question = "Kurs robots endgültig löschen? Studierende: 1 ["
+    assert run("delete", course).stdout.startswith(question)
+    assert run("delete", course, "--yes").stdout == "Kurs robots gelöscht: Studierende: 1.\n"
     monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "none.db"))
     assert run("list").stderr.endswith("none.db: diese Datei gibt es nicht\n")
 
@@ -101,7 +102,7 @@ def test_an_assignment_is_shown_in_the_language(
         "  höchstens 3 Versuche; keine verspäteten Versuche",
         "  Rückmeldung: die jeder Aufgabe",
         "  Üben: none; Lösung: never",
-        "  die Schritte eines Hinweises kosten 0%, 5%, 10% der Punkte",
+        "  die Schritte eines Tipps kosten 0%, 5%, 10% der Punkte",
         "  jede Person hat eigene Varianten",
         "  aber nicht bei scara: dort gibt es keine Varianten",
     ]
