@@ -16,6 +16,7 @@ def test_honest_clients_are_served_while_others_send_half_heads() -> None:
     assert [line for line in broken if "no answer" in line or "memory" in line] == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_costly_body_is_accepted(kind: str) -> None:
     """A refused body would cost nothing."""

@@ -10,6 +10,7 @@ from tests.docs.templates import Template, templates_in
 UNMET = 0
 
 
+@pytest.mark.long
 def test_the_page_is_up_to_date() -> None:
     written = (sentences.ROOT / "docs" / "sentences.md").read_text(encoding="utf-8")
     assert written == page(), "run `python -m tests.docs.sentences > docs/sentences.md`"

@@ -126,6 +126,7 @@ def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) 
     assert set(re.findall(r"\b\d+\.\d+", statement)) <= told
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("name", "frames"),
     [
@@ -144,6 +145,7 @@ def test_a_figure_draws_the_given_frames_and_no_others(name: str, frames: str) -
 
 
 # The wrist alone, from {3} to {6}, is in the list above.
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", sorted({*TABLES} - {"spherical-wrist"}))
 def test_a_figure_draws_base_and_tool_if_they_are_given(name: str) -> None:
     exercise, told = SHIPPED[name], labels(drawn(name))

@@ -53,6 +53,7 @@ def test_any_paste_gets_a_report(
     assert all(0 <= m.span[0] <= m.span[1] <= len(text) for m in messages if m.span)
 
 
+@pytest.mark.long
 @given(text=pastes() | st.text(max_size=80), part=st.sampled_from(["table", "pose"]))
 def test_any_paste_has_a_preview(catalogue: Mapping[str, Exercise], text: str, part: str) -> None:
     shown = preview_pasted(text, catalogue[RRRP.exercise], part)

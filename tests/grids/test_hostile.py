@@ -134,7 +134,7 @@ PAIRS = [
 ]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(16)
 @pytest.mark.parametrize(("before", "unit"), one_in(len(BEGINNINGS), PAIRS))
 def test_long_repetitions_give_a_grid_or_an_error(before: str, unit: str) -> None:
     text = before + unit * GRID_LIMITS.characters

@@ -27,7 +27,7 @@ def posted(part: PartAnswer, solution: ModelSolution, form: str) -> object:
     return getattr(part, form)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("unit", ["radians", "degrees"])
 @pytest.mark.parametrize("form", ["json", "text", "latex"])
 @pytest.mark.parametrize("exercise_id", sampled(IDS))
