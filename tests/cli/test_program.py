@@ -84,6 +84,7 @@ def test_grading_imports_no_unneeded_packages(answer: Path) -> None:
     assert modules & (heavy | slow | unused) == set()
 
 
+@pytest.mark.long
 def test_the_program_help_repeats_the_help_of_each_command() -> None:
     assert len(COMMANDS) >= 3
     for name, line in COMMANDS.items():

@@ -69,6 +69,7 @@ def test_a_clause_may_begin_a_sentence() -> None:
     assert not template("Joint ", " stands still").is_met_by("It may be that joint 1 stands still.")
 
 
+@pytest.mark.long
 def test_the_first_message_with_a_sentence_is_chosen() -> None:
     known = [(template("The sign of ", " is wrong."), frozenset({"sign"}))]
     messages = [said("x", "No."), said("sign", "The sign of a is wrong."), said("sign", "The sign")]

@@ -218,6 +218,7 @@ def test_no_column_below_the_origin_suggests_a_length(name: str) -> None:
     assert shown.base == pytest.approx([0, 0, -JOINT_LENGTH / 2 * mechanism.size])
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_figure_reveals_only_what_the_statement_says(name: str) -> None:
     """All texts are joint variables, lengths and their sums, frames, and stated numbers."""

@@ -51,6 +51,7 @@ def silent(guarded: Guarded, credential: str, routes: set[str]) -> tuple[list[st
     return [route for route, each in german.items() if not says_so(each)], set(german)
 
 
+@pytest.mark.long
 def test_a_list_of_scores_and_a_regrade_say_their_language(guarded: Guarded) -> None:
     [tutor] = guarded.credentials["tutor"]
     for route in (

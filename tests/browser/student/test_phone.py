@@ -111,6 +111,7 @@ PLACED = [
 CUT = "each => each.scrollWidth - each.clientWidth"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("exercise", "texts"),
     [("planar-rrr-frames", PLACED), ("planar-rr", ["a1", "0", "thta1", "thta1"])],

@@ -289,6 +289,7 @@ def test_the_doctor_finds_nothing_wrong(
     assert not (tmp_path / "new.db").exists()
 
 
+@pytest.mark.long
 def test_the_doctor_speaks_the_language_of_the_user(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -238,6 +238,7 @@ def test_an_invalid_server_address_is_refused(run: Run, homework: Path, address:
     assert "ddress of a server" in result.stderr
 
 
+@pytest.mark.long
 def test_failures_of_a_server_are_told_in_the_language(
     run: Run, homework: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
