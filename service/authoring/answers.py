@@ -35,7 +35,7 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
         yield failed(
             fields[part],
             say(
-                "nobody can submit the right answer to {part}: an entry of it has more than {most} "
+                "the right answer to {part} is too long: one entry has more than {most} "
                 "characters; ask for less, such as the pose of an earlier frame",
                 part=part,
                 most=LIMITS.characters,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import typer
+from rich.cells import cell_len, set_cell_size
 from rich.console import Console
 
 from service.catalogue import Exercise, exercise_files, load_catalogue, load_exercise
@@ -56,8 +57,8 @@ def tell(message: str) -> None:
 def tell_verdict(is_fine: bool | None, message: str) -> None:
     """Write the line of a check; None only tells something."""
     words = {True: spoken(say("ok")), False: spoken(say("WRONG")), None: ""}
-    width = max(map(len, words.values())) + 2
-    typer.echo(f"{words[is_fine]:{width}}{spoken(message)}")
+    width = max(map(cell_len, words.values())) + 2
+    typer.echo(set_cell_size(words[is_fine], width) + spoken(message))
 
 
 def complain(message: str | Exception) -> None:

@@ -165,6 +165,20 @@ class Guarded:
         ) as client:
             yield client
 
+    async def send(
+        self, client: httpx.AsyncClient, route: str, language: str = "en"
+    ) -> httpx.Response:
+        """Send a request that the route accepts from a caller with the right."""
+        for file in self.editor_dir.iterdir():
+            file.unlink()
+        new = {"id": f"new-{next(_number)}"} if route in MAKING else {}
+        body = json.dumps(BODIES[route] | new).encode() if route in BODIES else b""
+        if route == "POST /tutor/class":
+            body = gzip.compress(body)
+        method, path = self.filled(route).split()
+        headers = {"Idempotency-Key": f"{next(_number)}", "Accept-Language": language}
+        return await client.request(method, path, content=body, headers=headers)
+
     def ask(self, method: str, path: str, credential: str = "", **more: Any) -> httpx.Response:
         async def asked() -> httpx.Response:
             async with self.client(credential) as client:
@@ -317,17 +331,6 @@ def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
     statuses = expected()
     assert set(statuses) == routes_of(guarded.app) == set(RIGHTS)
 
-    async def told(client: httpx.AsyncClient, route: str) -> int:
-        for file in guarded.editor_dir.iterdir():
-            file.unlink()
-        new = {"id": f"new-{next(_number)}"} if route in MAKING else {}
-        body = json.dumps(BODIES[route] | new).encode() if route in BODIES else b""
-        if route == "POST /tutor/class":
-            body = gzip.compress(body)
-        method, path = guarded.filled(route).split()
-        headers = {"Idempotency-Key": f"{next(_number)}"}
-        return (await client.request(method, path, content=body, headers=headers)).status_code
-
     async def with_each() -> AsyncIterator[tuple[str, int, httpx.AsyncClient]]:
         for heading, credentials in guarded.credentials.items():
             for i, credential in enumerate(credentials):
@@ -345,7 +348,7 @@ def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
             for route, row in statuses.items()
             # Routes that need no key are asked with one credential of each kind.
             if i == 0 or row["no key"] == 401
-            if (status := await told(client, route)) != row[heading]
+            if (status := (await guarded.send(client, route)).status_code) != row[heading]
         ]
 
     assert asyncio.run(wrong()) == []

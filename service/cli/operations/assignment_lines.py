@@ -1,4 +1,4 @@
-"""An assignment of a course on the command line: sentences, which are told by the caller."""
+"""The lines in which the command line shows an assignment of a course."""
 
 from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime

@@ -1,31 +1,16 @@
 """Every answer that depends on the language of the reader says so, whatever its route."""
 
 import asyncio
-import gzip
 import json
-from itertools import count
 
 import httpx
 import pytest
 
 from service.api.permissions.rights import RIGHTS
-from tests.api.test_scopes import BODIES, MAKING, Guarded
+from tests.api.test_scopes import Guarded
 from tests.api.test_scopes import guarded as guarded
 
 _WORDS = (" ist ", " nicht ", " Sie ", " kein", " der ", " die ", "Aufgabe", "Gelenk")
-_number = count()
-
-
-async def asked(guarded: Guarded, client: httpx.AsyncClient, route: str) -> httpx.Response:
-    for file in guarded.editor_dir.iterdir():
-        file.unlink()
-    new = {"id": f"told-{next(_number)}"} if route in MAKING else {}
-    body = json.dumps(BODIES[route] | new).encode() if route in BODIES else b""
-    if route == "POST /tutor/class":
-        body = gzip.compress(body)
-    method, path = guarded.filled(route).split()
-    headers = {"Idempotency-Key": f"told-{next(_number)}", "Accept-Language": "de"}
-    return await client.request(method, path, content=body, headers=headers)
 
 
 def is_german(answer: httpx.Response) -> bool:
@@ -45,28 +30,26 @@ def silent(guarded: Guarded, credential: str, routes: set[str]) -> tuple[list[st
 
     async def answers() -> dict[str, httpx.Response]:
         async with guarded.client(credential) as client:
-            return {route: await asked(guarded, client, route) for route in sorted(routes)}
+            return {route: await guarded.send(client, route, "de") for route in sorted(routes)}
 
     german = {route: each for route, each in asyncio.run(answers()).items() if is_german(each)}
     return [route for route, each in german.items() if not says_so(each)], set(german)
 
 
 @pytest.mark.long
-def test_a_list_of_scores_and_a_regrade_say_their_language(guarded: Guarded) -> None:
-    [tutor] = guarded.credentials["tutor"]
-    for route in (
-        "GET /v1/courses/{course_id}/scores",
-        "POST /v1/exercises/{exercise_id}/regrade",
-    ):
+@pytest.mark.parametrize(
+    "route",
+    ["GET /v1/courses/{course_id}/scores", "POST /v1/exercises/{exercise_id}/regrade"],
+)
+def test_a_list_of_scores_and_a_regrade_say_their_language(guarded: Guarded, route: str) -> None:
+    async def answer() -> httpx.Response:
+        async with guarded.client(guarded.credentials["tutor"][0]) as client:
+            return await guarded.send(client, route, "de")
 
-        async def answer(route: str = route) -> httpx.Response:
-            async with guarded.client(tutor) as client:
-                return await asked(guarded, client, route)
-
-        answered = asyncio.run(answer())
-        assert answered.status_code == 200
-        assert says_so(answered)
-        assert answered.headers["cache-control"] == "no-store"
+    answered = asyncio.run(answer())
+    assert answered.status_code == 200
+    assert says_so(answered)
+    assert answered.headers["cache-control"] == "no-store"
 
 
 @pytest.mark.long
