@@ -106,7 +106,7 @@ class Secret:
         return hmac.digest(self._derived("keys"), key.encode(), "sha256").hex()
 
     def link_key(self, key_id: str) -> str:
-        """Return the text of the key of a personal link, which always follows from its id."""
+        """Return the key in a personal link. Equal ids give equal keys."""
         return key_text_of(hmac.digest(self._derived("links"), key_id.encode(), "sha512"))
 
     @property

@@ -58,6 +58,6 @@ async def give_way(request: Request) -> None:
 async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
     """Return the result of ``work``, and let other requests have their turns between its steps.
 
-    Raises ClientDisconnect if the client has gone meanwhile, and what ``work`` raises.
+    Raises ClientDisconnect if the client has disconnected. Exceptions of ``work`` pass through.
     """
     return await in_slices(work, partial(give_way, request))

@@ -28,7 +28,7 @@ def drafts_folder() -> Path:
 class Drafts:
     """The drafts in a folder, which several processes may share. Only a draft's author has its id.
 
-    Without ``folder``, they get one of their own, which the end of the process removes.
+    Without ``folder``, the drafts are in a new temporary folder, removed when the process ends.
     """
 
     def __init__(self, folder: Path | None = None, clock: Callable[[], float] = time.time) -> None:

@@ -34,7 +34,7 @@ class _Terminal(Console):
 
 
 def stdout() -> Console:
-    """A console for standard output, with 80 columns unless it is a terminal."""
+    """A console for standard output. Without a terminal and without COLUMNS, it has 80 columns."""
     width = None if sys.stdout.isatty() or "COLUMNS" in os.environ else 80
     return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 

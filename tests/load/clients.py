@@ -54,7 +54,7 @@ class Mix:
 
 
 class Client:
-    """A student who sends requests, each after the answer to the last."""
+    """A student who sends requests one by one, and waits for each answer."""
 
     def __init__(
         self,

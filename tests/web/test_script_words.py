@@ -16,7 +16,7 @@ SCRIPTS = [file.read_text("utf-8") for file in FOLDER.rglob("*.js") if "vendor" 
 
 
 def words_in(module: str) -> tuple[dict[str, str], dict[str, list[str]]]:
-    """Return the sentences of a dictionary, and those that count."""
+    """Return the sentences of a dictionary, and its sentences with a singular and a plural."""
     found = json.loads(module.removeprefix("export default ").removesuffix(";\n"))
     assert found["tag"] == PSEUDO.tag
     return found["words"], found["counts"]

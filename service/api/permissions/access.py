@@ -1,7 +1,8 @@
 """Who may do what: the caller of each request is checked against the table of rights.
 
 As long as there are no keys, grading and recording are open. Tutors are then the users of the
-machine that the service runs on, unless a proxy forwards the request: it also forwards students.
+machine that the service runs on. A request from a proxy is no tutor's, because the proxy also
+forwards requests of students.
 """
 
 import base64

@@ -55,7 +55,7 @@ def shown_report(recorded: str, language: Language) -> str:
 
 
 def sentence_in(report: Mapping[str, Any], text: str) -> str:
-    """Return a text of a recorded report as the sentence that it was; ``report`` is its JSON."""
+    """Return the sentence of a text in a recorded report; ``report`` is the JSON of the report."""
     sentences = report.get("sentences")
     return text if sentences is None else _known(sentences)(text)
 

@@ -25,7 +25,11 @@ from service.translations import say
 
 
 class _Facts(NamedTuple):
-    """Facts on a node: it has no symbol, is an angle in radians, and is one because of its π."""
+    """Facts about a node of a formula.
+
+    ``constant``: it has no symbol. ``angle``: it is an angle in radians. ``pi``: it is such an
+    angle because it contains π.
+    """
 
     constant: bool
     angle: bool

@@ -47,9 +47,9 @@ class Failure:
         return self.source[:start] + text + self.source[end:]
 
     def terminal(self, back: int = 0) -> str:
-        """Return the terminal of the token that the grammar does not allow, or ``back`` before it.
+        """Return the terminal of the token that is ``back`` tokens before the refused one.
 
-        Empty if there is no such token, or if the cause is not the grammar.
+        Return "" if there is no such token, or if the grammar did not refuse the text.
         """
         at = self.details["index"] - back if self.cause == "grammar" else -1
         return "" if at < 0 else self.details["tokens"][at][0]

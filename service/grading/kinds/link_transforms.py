@@ -117,7 +117,7 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
 
 
 def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
-    """Return a finding on all link transforms as the explanation of a single one."""
+    """Return a finding on all link transforms as the explanation of one wrong matrix."""
     return [Explanation(finding, case.mask(...))]
 
 

@@ -1,4 +1,4 @@
-"""A level and a number -> a robot: draw until nothing speaks against it."""
+"""A level and a number -> a robot: draw robots until one has no reason to be refused."""
 
 from dataclasses import dataclass
 from typing import Final

@@ -192,7 +192,7 @@ def _task(task: tuple[Sequence[int], int, int, int, Sequence[Policy]]) -> Found:
 
 
 def total(found: Found, said: str) -> int:
-    """Return the number of tables with a judgement ``said``; of all tables if it is empty."""
+    """Return the number of tables judged ``said``. An empty ``said`` counts all tables."""
     return sum(
         count
         for name, count in found.counts.items()

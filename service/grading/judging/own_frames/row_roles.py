@@ -1,4 +1,4 @@
-"""Pair the rows of a submitted table with joints; what an exercise leaves free."""
+"""Pair the rows of a submitted table with joints, and read which frames an exercise leaves free."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -179,7 +179,7 @@ def _in_round_brackets(text: str) -> str:
 def _as_written_out(text: str) -> str:
     """Return a list without its code fence, its name and a T that transposes it.
 
-    A list is the same as a row and as a column. No character moves.
+    A row and a column are the same list. Removed text becomes blanks, so that places stay valid.
     """
     for pattern in (_FENCE, _FENCE_AFTER):
         text = pattern.sub(lambda found: _LETTER.sub(" ", found[0]), text, count=1)

@@ -68,8 +68,9 @@ class NearestTable:
 class _Case:
     """A table to be repaired.
 
-    ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable in each cell, or 0. A
-    cell must change with the joints as this does; ``wrong`` are the cells that do not.
+    ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable in each cell, or 0:
+    each cell must change with the joints as its entry in ``variables`` does. ``wrong`` has the
+    indices of the cells that change otherwise.
     """
 
     roles: tuple[Role, ...]
