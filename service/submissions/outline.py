@@ -16,7 +16,7 @@ class PartOutline:
 
 @dataclass(frozen=True, slots=True)
 class ExerciseOutline:
-    """An exercise on a server. ``feedback`` is the highest feedback level there."""
+    """An exercise on a server. ``feedback`` is the highest level that the server gives."""
 
     id: str
     version: str

@@ -14,7 +14,7 @@ VARIANTS = BundleVariants("s" * 64, {"reach": ["a", "b", "c"], "wrist": []})
 
 
 def seeds(folder: Path, submission: object) -> dict[str, str]:
-    """Return the seeds for a submission that a platform describes so."""
+    """Return the seeds for the JSON with which a platform describes a submission."""
     described, variants = folder / "described.json", folder / "variants.json"
     described.write_text(json.dumps(submission), encoding="utf-8")
     variants.write_bytes(VARIANTS.file().content)

@@ -66,7 +66,7 @@ def platform(one_platform: Platform) -> Iterator[Platform]:
 
 @dataclass(frozen=True)
 class Begun:
-    """A login as a browser has it: what the platform was asked for, and the cookies."""
+    """A begun login in a browser: the query that it sends to the platform, and its cookies."""
 
     asked: Mapping[str, str]
     cookies: str

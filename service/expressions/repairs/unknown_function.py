@@ -28,7 +28,7 @@ _OF_NUMBERS = re.compile(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
 
 
 def _after_factor(failure: Failure) -> str | None:
-    """Return l1 cos for l1c, if a bracket with no bare number follows; else None."""
+    """Return "l1 cos" for l1c; None if l1 is unknown or a bracket with only numbers follows."""
     factor, letter = failure.details["run"][:-1], failure.details["run"][-1:]
     if letter not in _SHORT or not factor or _OF_NUMBERS.match(failure.source, failure.span[1]):
         return None

@@ -56,7 +56,7 @@ def wrong_throughout(column: int) -> Sentence:
 
 
 def change_every_sign(column: int) -> Sentence:
-    """Return the correction of such a column."""
+    """Return the correction of a column in which every sign is wrong."""
     return say("Change the sign of every {symbol}.", symbol=SYMBOLS[column])
 
 

@@ -40,8 +40,8 @@ def judged_in_convention(
 ) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
     """Return the convention of the table, its judgement in it, and findings on the convention.
 
-    If the part allows both and the answer names none, choose the one with fewer wrong cells; if
-    they are equal, that of the reference.
+    If the part allows both and the answer names none, choose the convention in which fewer
+    cells are wrong. If the counts are equal, choose the reference's convention.
     """
     if part.convention == "either" and table.convention is None:
         convention, judgement = _fitting(part, table, grading)

@@ -142,9 +142,9 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
 def _explained(
     answer: StudentMatrix, case: WrongScrews, grading: Grading
 ) -> tuple[dict[int, Finding], float | None]:
-    """Return the findings that each explain a whole wrong axis, by its index.
+    """Return the findings on whole wrong axes by index, and the cost of a slip in all axes.
 
-    Return with them the share of the points that a slip in all axes costs, or None.
+    The cost is a share of the points, or None if there is no such slip.
     """
     wrong = np.flatnonzero(case.wrong.any(axis=1)).tolist()
     if (throughout := explain_screws(case)) is not None:

@@ -179,9 +179,8 @@ def right_places(
     """Return the right place of each frame, given the chosen ``origins`` ``(L, 3)`` or None.
 
     ``may_move`` is false for sliding joints whose axis must be taken as drawn; ``axes`` has the
-    axes of frames of which it is known where they lie. A chosen origin
-    moves the axis of its sliding joint if it is farther from it than its tolerance and the rules
-    hold for the moved axis.
+    axes that are known, by frame. The axis of a sliding joint moves to the chosen origin if the
+    origin is farther from the axis than its tolerance, and if the rules hold for the moved axis.
     """
     found: list[RightPlace | None] = [None] * len(frames)
     # The neighbour's axis must be known first.

@@ -21,7 +21,7 @@ class Draws:
         return next(self._words) * limit >> _BITS
 
     def chance(self, percent: int) -> bool:
-        """True in so many of 100 draws."""
+        """True in this percentage of the draws."""
         return self.below(100) < percent
 
     def one_of(self, choices: Sequence[T]) -> T:

@@ -69,7 +69,7 @@ def exchanged_in_row(
 ) -> Iterator[Slip]:
     """Yield the exchange of a and d in one row.
 
-    If its joint ``slides``, its variable stays or moves along.
+    If the joint of the row ``slides``, the variable moves to the other column in the last slip.
     """
 
     def words(_: Names) -> SlipWords:

@@ -45,7 +45,8 @@ QUARTER = np.pi / 2
 class Cell:
     """A cell of a table, and the words about it.
 
-    With ``own_frames``, the right cell is not that of the table.
+    With ``own_frames``, the right value of the cell may differ from ``table``: the frames are the
+    student's.
     """
 
     table: ReferenceTable

@@ -208,7 +208,7 @@ def apportioned(total: int, weights: list[int]) -> list[int]:
 
 
 def _cells(content: Content, worth: list[int]) -> tuple[tuple[int, ...], ...]:
-    """Return ``worth``, that of each content cell, in the places of the cells."""
+    """Return the worth of each cell, by row; ``worth`` lists it for content cells only."""
     steps = iter(worth)
     return tuple(tuple(next(steps) if known else 0 for known in row) for row in content.known)
 
