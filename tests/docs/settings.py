@@ -15,8 +15,8 @@ _INTRODUCTION: Final = f"""\
 # Settings
 
 Every setting is an environment variable. An option of the command line (`--port`) overrides its
-variable. A value that cannot be used prevents startup, and so does an unknown `{PREFIX}…`
-variable, for example a typo: the program ends with exit code 2 and names the variable.
+variable. An invalid value prevents startup. So does an unknown `{PREFIX}…` variable, for example a
+typo. The program then ends with exit code 2 and names the variable.
 
 Behind a proxy on another machine you may need one more variable, `FORWARDED_ALLOW_IPS`
 ([Behind nginx](deployment.md#behind-nginx)).
