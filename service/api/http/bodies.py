@@ -40,7 +40,7 @@ def validated(model: type[M], value: object, at: Location = ()) -> M:
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False)
         placed = [{**detail, "loc": (*at, *detail["loc"])} for detail in details]
-        raise invalid(placed, list(model.model_fields)) from error
+        raise invalid(placed, list(model.model_fields), at) from error
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:

@@ -128,10 +128,20 @@ def failed() -> ProblemError:
     )
 
 
-def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) -> ProblemError:
-    """Return the problem of a body with errors that pydantic found; it may have ``fields``."""
+def invalid(
+    details: Sequence[Mapping[str, Any]],
+    fields: Sequence[str] = (),
+    at: tuple[str | int, ...] = (),
+) -> ProblemError:
+    """Return the problem of a body with errors that pydantic found.
+
+    The object at the place ``at`` of the body may have ``fields``.
+    """
     errors = [
-        {"pointer": _pointer(detail["loc"]), "detail": field_error(detail, fields)}
+        {
+            "pointer": _pointer(detail["loc"]),
+            "detail": field_error(detail, fields if detail["loc"][:-1] == at else ()),
+        }
         for detail in details[:MAX_ERRORS]
     ]
     return ProblemError(

@@ -40,6 +40,17 @@ def test_an_unknown_field_is_answered_with_the_known_ones(client: httpx.Client) 
     assert "answers, angle_unit, feedback" in problem["errors"][0]["detail"]
 
 
+def test_an_unknown_field_inside_an_entry_is_not_answered_with_those_of_the_body(
+    client: httpx.Client,
+) -> None:
+    entry = {"text": "l1*c1", "unit": "degrees"}
+    body = {"exercise": "planar-rrr", "part": "position", "entries": [entry]}
+    problem = client.post("/v1/previews", json=body).json()
+    assert problem["errors"] == [
+        {"pointer": "#/entries/0/unit", "detail": "This field is not known."}
+    ]
+
+
 @pytest.mark.parametrize(
     "content",
     [
