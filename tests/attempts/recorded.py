@@ -9,6 +9,8 @@ from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.graded import AttemptGrading, AttemptReport
 from service.attempts.outcome import Outcome
 from service.attempts.recording import record
+from service.attempts.regrades.outdated import RegradedAttempt, Regrading
+from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.attempts import AttemptRequest
@@ -92,3 +94,12 @@ def new_attempt(
         request_digest="",
     )
     return replace(new, **more), graded.outcome
+
+
+def regraded(store: AttemptStore, regrading: Regrading) -> list[RegradedAttempt]:
+    """Regrade all outdated attempts, in as many batches as the machine needs."""
+    in_transaction(store.engine, regrading.enqueue)
+    done: list[RegradedAttempt] = []
+    while in_transaction(store.engine, regrading.waiting):
+        done += regrading.next_batch(store.engine)
+    return done

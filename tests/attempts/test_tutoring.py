@@ -17,7 +17,7 @@ from service.attempts.tutoring import (
     override,
 )
 from service.catalogue import Exercise, FeedbackLevel
-from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, recorded
+from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, recorded, regraded
 from tests.guards import ANSWER
 
 
@@ -68,9 +68,8 @@ def test_nothing_of_a_forgotten_learner_is_left(
     recorded(store, scara, "ada", RIGHT, 2)
     other = recorded(store, scara, "grace", RIGHT)
     regrading = Regrading(replace(scara, version="2"), FeedbackLevel.FULL)
+    regraded(store, regrading)
     with store.engine.execution_options(writes=True).begin() as connection:
-        regrading.enqueue(connection)
-        regrading.work(connection)
         override(connection, first.id, 1.0, "because", "me", NOON)
         connection.execute(regrade_queue.insert().values(attempt=first.number, exercise="scara"))
     with store.engine.execution_options(writes=True).begin() as connection:

@@ -21,11 +21,10 @@ from service.attempts.regrades.outdated import Regrading
 from service.attempts.results.grades import graded_attempts, written
 from service.attempts.results.listing import history, page
 from service.attempts.storage import database
-from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.databases import new_database, new_file
-from tests.attempts.recorded import RIGHT
+from tests.attempts.recorded import RIGHT, regraded
 
 OLDEST = "0001"
 MIGRATIONS = Path(database.__file__).parent / "migrations"
@@ -139,8 +138,7 @@ def test_attempts_of_the_first_version_are_read_regraded_and_exported(
     assert earlier.id == ROWS[0]["id"]
 
     regrading = Regrading(scara, FeedbackLevel.HINTS)
-    in_transaction(store.engine, regrading.enqueue)
-    done = in_transaction(store.engine, regrading.work)
+    done = regraded(store, regrading)
     assert [(each.learner, each.before, each.after) for each in done] == [
         ("ada", 0.0, table.points / 2),
         ("bob", 0.0, table.points),

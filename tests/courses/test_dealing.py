@@ -32,6 +32,7 @@ from service.courses.terms import terms_of
 from service.kinematics.chain import COLUMNS
 from service.variants.seeds import seed_of
 from service.variants.variant import built
+from tests.attempts.recorded import regraded
 from tests.courses.conftest import Class
 from tests.variants.varied_files import VARY, varied
 
@@ -405,15 +406,13 @@ def test_a_regrade_grades_each_attempt_by_its_variant(
     class_.do(lambda it: pin_choices(it, "robots", "homework", {"arm": other}, renew=True))
     with class_.store.engine.connect() as connection:
         assert changed.preview(connection, numbers) == []
-    class_.do(changed.enqueue)
-    assert changed.next_batch(class_.store.engine) == []
+    assert regraded(class_.store, changed) == []
     class_.do(lambda it: it.execute(update(assignments).values(choices=kept)))
     # The last twist is corrected; the values of the variants are the same.
     corrected = varied(more="10deg + ")
     assert corrected.vary is not None
     regrading = Regrading(corrected, FeedbackLevel.FULL)
-    class_.do(regrading.enqueue)
-    done = regrading.next_batch(class_.store.engine)
+    done = regraded(class_.store, regrading)
     assert [(each.before, each.after < 8) for each in done] == [(8, True), (8, True)]
     with class_.store.engine.connect() as connection:
         assert regrading.outdated(connection) == []

@@ -150,7 +150,8 @@ class Regrading:
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
         """Regrade some attempts of the queue that no other worker has taken, in a transaction.
 
-        The result is empty if there are none, or, in SQLite, if another worker was faster.
+        The result is empty if there are none, if none of the batch needs a regrade, or, in SQLite,
+        if another worker was faster.
         """
         prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
         return in_transaction(engine, partial(self.work, among=prepared))

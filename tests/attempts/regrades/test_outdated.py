@@ -13,14 +13,21 @@ import pytest
 from sqlalchemy import func, select, text
 
 from service.attempts.regrades import outdated as regrading_module
-from service.attempts.regrades.outdated import BATCH, RegradedAttempt, Regrading
+from service.attempts.regrades.outdated import BATCH, Regrading
 from service.attempts.results.listing import history
 from service.attempts.storage.database import in_transaction, open_database
 from service.attempts.storage.tables import attempts, earlier_reports
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
-from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded, recorded_all
-from tests.guards import ANSWER
+from tests.attempts.recorded import (
+    NO_TWIST,
+    RIGHT,
+    new_attempt,
+    recorded,
+    recorded_all,
+    regraded,
+)
+from tests.guards import ANSWER, STALL
 
 
 @pytest.fixture
@@ -30,14 +37,6 @@ def corrected(catalogue: Mapping[str, Exercise]) -> Exercise:
     table, *others = scara.parts
     parts = (table.model_copy(update={"points": 2 * table.points}), *others)
     return replace(scara, version="corrected", parts=parts)
-
-
-def work_off(store: AttemptStore, regrading: Regrading) -> list[RegradedAttempt]:
-    in_transaction(store.engine, regrading.enqueue)
-    done: list[RegradedAttempt] = []
-    while batch := regrading.next_batch(store.engine):
-        done += batch
-    return done
 
 
 def test_a_corrected_exercise_changes_points_and_keeps_the_reports_before(
@@ -52,7 +51,7 @@ def test_a_corrected_exercise_changes_points_and_keeps_the_reports_before(
         untouched = history(connection, before.id)
     assert untouched is not None
     assert untouched.attempt.points == 1.5
-    (done,) = work_off(store, regrading)
+    (done,) = regraded(store, regrading)
     assert done == previewed
     assert (done.learner, done.before, done.reasons) == (
         "ada",
@@ -72,7 +71,7 @@ def test_a_corrected_exercise_changes_points_and_keeps_the_reports_before(
         1.5,
         catalogue["scara"].version,
     )
-    assert work_off(store, regrading) == []
+    assert regraded(store, regrading) == []
 
 
 def test_a_regrade_does_not_raise_the_feedback_level(
@@ -83,7 +82,7 @@ def test_a_regrade_does_not_raise_the_feedback_level(
     under_a_ceiling = replace(catalogue["scara"], feedback_by_attempt=(FeedbackLevel.SCORE,))
     low = recorded(store, under_a_ceiling, "ada", NO_TWIST)
     usual = recorded(store, catalogue["scara"], "grace", NO_TWIST)
-    work_off(store, Regrading(corrected, FeedbackLevel.FULL))
+    regraded(store, Regrading(corrected, FeedbackLevel.FULL))
     told = []
     with store.engine.connect() as connection:
         for each in (low, usual):
@@ -100,7 +99,7 @@ def test_an_attempt_queued_again_is_not_regraded_twice(
 ) -> None:
     number = recorded(store, catalogue["scara"], "ada", RIGHT).number
     regrading = Regrading(corrected, FeedbackLevel.HINTS)
-    work_off(store, regrading)
+    regraded(store, regrading)
     again = text("INSERT INTO regrade_queue (attempt, exercise) VALUES (:number, 'scara')")
     in_transaction(store.engine, lambda connection: connection.execute(again, {"number": number}))
     assert in_transaction(store.engine, regrading.work) == []
@@ -117,7 +116,7 @@ def test_answers_to_a_removed_part_are_ignored(
     recorded(store, scara, "ada", RIGHT)
     table, *others = scara.parts
     renamed = replace(scara, version="2", parts=(table.model_copy(update={"id": "t"}), *others))
-    (done,) = work_off(store, Regrading(renamed, FeedbackLevel.HINTS))
+    (done,) = regraded(store, Regrading(renamed, FeedbackLevel.HINTS))
     assert done.before > done.after == 0
     assert done.reasons == ("table is no part any more", "t is new, missing")
     store.close()
@@ -139,7 +138,7 @@ def test_in_sqlite_others_write_while_a_worker_grades(
         return grade(*given)
 
     monkeypatch.setattr(Regrading, "_report", grade_beside_a_writer)
-    assert len(work_off(store, Regrading(corrected, FeedbackLevel.HINTS))) == 1
+    assert len(regraded(store, Regrading(corrected, FeedbackLevel.HINTS))) == 1
     store.close()
 
 
@@ -192,7 +191,7 @@ def test_attempts_of_a_killed_worker_are_regraded_once_by_another(
     os.kill(worker.pid, signal.SIGKILL)
     worker.join()
     assert left < count
-    work_off(store, regrading)
+    regraded(store, regrading)
     with store.engine.connect() as connection:
         times = Counter(connection.scalars(select(earlier_reports.c.attempt)))
         versions = set(connection.scalars(select(attempts.c.version)))
@@ -202,8 +201,12 @@ def test_attempts_of_a_killed_worker_are_regraded_once_by_another(
 
 
 def test_workers_do_not_wait_for_one_another(
-    postgresql_url: str, catalogue: Mapping[str, Exercise], corrected: Exercise
+    postgresql_url: str,
+    catalogue: Mapping[str, Exercise],
+    corrected: Exercise,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(regrading_module, "_BATCH_SECONDS", STALL)
     store = AttemptStore.open(postgresql_url)
     recorded_all(store, [new_attempt(catalogue["scara"], f"l{i}", RIGHT) for i in range(BATCH + 2)])
     regrading = Regrading(corrected, FeedbackLevel.HINTS)
