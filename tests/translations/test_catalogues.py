@@ -89,13 +89,14 @@ def _texts(string: object) -> tuple[str, ...]:
     return tuple(string) if isinstance(string, tuple | list) else (str(string),)
 
 
-# Another form of address than the glossary's, and words that it does not take for a term.
+# Another form of address than the glossary's, words that it does not take for a term, and in
+# French the straight apostrophe.
 OTHER_WORDS = {
     "de": r"\b([Dd]u|[Dd]ein\w*|[Dd]ich|[Dd]ir|[Ll]ernende\w*|Bericht(en?|s)?)\b",
     "es": r"(?i)(?<!que )(?<!quien )(?<!apartados que )\b(usted|indique|elija|escriba|añada|omita|"
     r"use|corrija|pida|defina|guárdelo|consérvelo|vínculos?|tramas?)\b",
     "fr": r"(?i)\b(tu|ton|tes|liaisons?|organe terminal|tentatives?|premier corps|"
-    r"corps de l.outil)\b",
+    r"corps de l.outil)\b|\b([cdjlmnst]|qu|jusqu|lorsqu|puisqu|quelqu)'\w",
     "zh": r"您|你|(?<![邀申])请(?!求)|旋转关节",
 }
 
