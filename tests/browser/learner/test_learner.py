@@ -54,6 +54,10 @@ RIGHT = [
 ]
 
 
+# Milliseconds in which a page shows what it has loaded.
+SHOWN = 1000
+
+
 def fill(page: Page, texts: list[str]) -> None:
     for i, text in enumerate(texts):
         cells(page).nth(i).fill(text)
@@ -148,7 +152,13 @@ def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     rows = page.locator(".handed-in li")
     expect(rows).to_have_count(2)
     expect(rows.first).to_contain_text("3.33 of 10 points")
+    # While the exercise cannot be read, the page does not say that it is gone.
+    page.route("**/v1/exercises/**", lambda route: route.abort())
     rows.last.get_by_role("link").click()
+    expect(page.get_by_role("alert")).to_contain_text("The service cannot be reached.")
+    page.unroute_all(behavior="ignoreErrors")
+    opened.complaints.clear()
+    page.get_by_role("button", name="Try again").click()
     expect(page.locator(".recorded td[data-verdict=incorrect]").first).to_be_visible()
     assert violations(page, "") == []
     page.get_by_role("link", name="All assignments").click()
@@ -163,8 +173,17 @@ def test_a_learner_hands_in(course: Course, visit: Opening, axe: str) -> None:
     expect(page.get_by_text("Closed since")).to_be_visible()
     expect(page.locator(".bar").get_by_role("button", name="Hand in")).to_be_hidden()
 
+    # What is still loading when the learner signs out does not appear afterwards.
+    waiting: list[Route] = []
+    page.route("**/v1/me", lambda route: waiting.append(route))
+    with page.expect_request("**/v1/me"):
+        page.get_by_role("link", name="All assignments").click()
     page.get_by_role("button", name="Sign out").click()
+    with page.expect_response("**/v1/me"):
+        waiting[0].continue_()
+    page.wait_for_timeout(SHOWN)
     expect(page.get_by_role("heading", name="You are signed out")).to_be_visible()
+    page.unroute_all(behavior="ignoreErrors")
     page.goto(f"{course.address}/learn#dhg_{'x' * 43}")
     expect(page.get_by_role("heading", name="This link is not valid any more")).to_be_visible()
     assert violations(page, "") == []

@@ -1,6 +1,7 @@
 // An exercise of an assignment: the form, the learner's attempts, a report, and the solution.
 
 import { h, visible } from "../shared/dom.js";
+import { nullIfRefused } from "../shared/service.js";
 import { momentIn } from "../student/handin/dates.js";
 import { attemptName, attemptPoints } from "../student/handin/own_state.js";
 import { besides } from "../student/hints/solution.js";
@@ -65,7 +66,7 @@ export async function report(service, place, { course, exercise: own }) {
   const assigned = service.within(place.path);
   const [found, exercise] = await Promise.all([
     service.attempt(place.attempt ?? ""),
-    assigned.exercise(place.exercise).catch(() => null),
+    assigned.exercise(place.exercise).catch(nullIfRefused),
   ]);
   const attempt = own.attempts.find(({ id }) => id === found.attempt.id);
   const drawn = new RecordedReport(exercise, found.submission, assigned);
@@ -96,7 +97,7 @@ export async function solution(service, { path, exercise }, { exercise: { attemp
   const counting = attempts.find(({ counts }) => counts);
   const [{ parts }, shown, found] = await Promise.all([
     service.assignedSolution(path, exercise),
-    service.within(path).exercise(exercise).catch(() => null),
+    service.within(path).exercise(exercise).catch(nullIfRefused),
     counting ? service.attempt(counting.id) : null,
   ]);
   const answers = /** @type {Record<string, unknown>} */ (found?.submission.answers ?? {});

@@ -84,6 +84,8 @@ async function exercise(view, place) {
 
 function signOut() {
   const leave = () => {
+    // What is still loading is not shown any more.
+    turn++;
     forgetKey();
     history.replaceState(null, "", location.pathname);
     key = "";

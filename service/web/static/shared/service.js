@@ -17,6 +17,17 @@ export class ServiceError extends Error {
   }
 }
 
+/**
+ * Return null if the service refused a request, as for an exercise that it no longer has. Throw other errors: whoever
+ * tries again gets the exercise.
+ *
+ * @param {Error & { kind?: string }} error
+ */
+export function nullIfRefused(error) {
+  if (error.kind === "refused") return null;
+  throw error;
+}
+
 export class Service {
   /**
    * `base` is the address of the service, with a slash at its end. `token` returns the learner's token, or null.

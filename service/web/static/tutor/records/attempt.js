@@ -1,6 +1,7 @@
 // The page of a recorded attempt: the answers, the reports and the overridden mark.
 
 import { byId, h, number, points, visible } from "../../shared/dom.js";
+import { nullIfRefused } from "../../shared/service.js";
 import { RecordedReport } from "./recorded_report.js";
 import { earned, failed, learnerName, moment, percent, tell } from "./records.js";
 import { placed, worded } from "../../shared/words/words.js";
@@ -21,7 +22,7 @@ async function load() {
     // The answers are about the learner's variant, which has other numbers.
     const shown = variant ? `${name}~${variant}` : name;
     /** @type {Api.Exercise | null} */
-    const exercise = await get(`v1/exercises/${encodeURIComponent(shown)}`).catch(() => null);
+    const exercise = await get(`v1/exercises/${encodeURIComponent(shown)}`).catch(nullIfRefused);
     // After this request, the browser sends the key of HTTP Basic to all other addresses below /v1, too.
     const { attempts } = await get(
       `v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`,
