@@ -1,4 +1,4 @@
-"""Right or wrong: frames that a student places on the joint axes, with all joint variables 0."""
+"""Judge the frames that a student places on the joint axes, with all joint variables 0."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ class FramesAtHome:
 
 @dataclass(frozen=True, slots=True)
 class PlacedFrame:
-    """A frame in numbers, each with its rounding error; None or NaN if it was not read."""
+    """A frame in numbers, each with its rounding error. What was not read is None or NaN."""
 
     axis: int | None
     z: Numbers | None

@@ -2,7 +2,7 @@
 
 If the frames are given, the rows are paired with the reference's. If they are free, the rows are
 paired with the joints, and the valid table nearest to them is found (``own_frames``). The cells are
-then compared with those of that table.
+then compared with the cells of that table.
 """
 
 import math
@@ -311,7 +311,7 @@ def _rows_right(
 ) -> NDArray[np.bool_]:
     """Return, for each joint axis, if the rows before and after it are right, ``(joints, 2)``.
 
-    An end of the table is right.
+    Beyond the ends of the table, this is true.
     """
     right = np.ones(len(cell_matches) + 2, np.bool_)
     right[1:-1] = (cell_matches >= Match.ROUNDED).all(axis=1)

@@ -63,7 +63,7 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     unlike={"2/3": "cos(theta)*cos(psi)", "3/3": "-sin(theta)"},
 )
 def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
-    """A turn about a moving axis was multiplied as if the axis were fixed, or the other way."""
+    """A turn about a moving axis was multiplied as one about a fixed axis, or the reverse."""
     exchanged = [replace(step, fixed=not step.fixed) for step in steps]
     finding = _with_rule(say("Every turn was multiplied from the wrong side."))
     yield _made_of(exchanged, finding)

@@ -96,7 +96,7 @@ class GivenMotion:
     def displacements(self) -> list[Displacement]:
         """The displacements whose sum is the position, those with the fewest turns first.
 
-        Empty if the position is no such sum.
+        The list is empty if the position is not a sum of displacements.
         """
         by_angles: dict[tuple[str, ...], list[str]] = {}
         for name in self.lengths:
@@ -116,7 +116,7 @@ class GivenMotion:
 
     @cached_property
     def order(self) -> tuple[str, ...] | None:
-        """The angles in the order of their turns, or None if the rotation is no such product."""
+        """The angles in the order of their turns; None if the rotation is no product of turns."""
         if not self.angles or not _is_zero(self.rotation(self.angles) - np.eye(3)[..., None]):
             return None
         right = self.rotation()

@@ -33,7 +33,7 @@ class WrongPlacement:
 
 @dataclass(frozen=True)
 class WrongJointAxis(WrongPlacement):
-    """The number of a joint that is not the frame's; ``right`` is the frame's joint."""
+    """A wrong joint number of a frame; ``right`` is the frame's own joint."""
 
     chosen: int
     right: int
@@ -48,7 +48,7 @@ class WrongFrameZ(WrongPlacement):
 
 @dataclass(frozen=True)
 class WrongFrameOrigin(WrongPlacement):
-    """An origin ``(SAMPLES, 3)`` that is at no right place."""
+    """An origin ``(SAMPLES, 3)`` at a wrong place."""
 
     origin: Numbers
 
@@ -77,7 +77,7 @@ _FRAMES = "stanford-arm-frames"
     unlike={"2/axis": "5"},
 )
 def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
-    """The joint is the one that the other convention takes."""
+    """The joint would be right in the other convention."""
     step = -1 if case.is_standard else 1
     if case.chosen != case.right + step:
         return None
@@ -121,7 +121,7 @@ def wrong_joint_axis(case: WrongJointAxis) -> Finding | None:
     unlike={"2/x": "+z"},
 )
 def z_not_along_axis(_: WrongFrameZ) -> Finding | None:
-    """The direction of z is another one than that of the axis."""
+    """The axis z does not point along the joint axis."""
     return says(
         say(
             "z must be along the joint axis about which the joint turns, or along which it "

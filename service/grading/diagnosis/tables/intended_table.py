@@ -32,8 +32,8 @@ def with_exchanged_row(
 ) -> IntendedTable | None:
     """Return the table with a and d exchanged in one row, if that gives the reference's row.
 
-    None if no row, or more than one, is such a row. Without this test another row may be blamed:
-    before a sliding joint, a wrong ``a`` can look like a choice of frames.
+    Return None unless exactly one row becomes right in this way. Without this reading another row
+    may be blamed: before a sliding joint, a wrong ``a`` can look like a choice of frames.
     """
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)

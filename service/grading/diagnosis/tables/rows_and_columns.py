@@ -290,7 +290,7 @@ def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, 
 def missing_links(rows: TableRows) -> Iterator[Slip]:
     """Yield the slips of one inner row that is missing in the product.
 
-    It is only listed together with exchanged rows, so it has no advice.
+    A report names this slip only together with exchanged rows, so it has no advice.
     """
     for row in range(1, len(rows.constants) - 1):
         cells = tuple(CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS)))

@@ -101,7 +101,7 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
 
 
 def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
-    """Return the finding; ``other`` is the convention in which the columns are there, or None."""
+    """Return the finding on shifted columns; in the ``other`` convention their places are right."""
     in_other = ""
     if other is Convention.STANDARD:
         in_other = say("In the standard convention they stand there.")

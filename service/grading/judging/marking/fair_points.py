@@ -1,8 +1,9 @@
-"""Hold that an empty row or cell of a table never earns more than anything written there.
+"""Make sure that an empty row or cell of a table never earns more than anything written there.
 
 A wrong row can hide the frames in which all other rows are right; an empty one cannot. So a wrong
 table earns at least as much as with one of its wrong rows given up: with numbers that are wrong in
-any frames. A table with empty cells earns at most as much as with such numbers in them.
+any frames. A table with empty cells earns at most as much as the same table with such numbers in
+these cells.
 """
 
 from collections.abc import Callable
@@ -106,7 +107,7 @@ def _missing_at_end(
 
 
 def _convention_of(part: DhTableSpec, answer: StudentTable) -> Convention | None:
-    """Return the convention in which a table is judged; None if it names none and may choose."""
+    """Return the convention in which a table is judged; None if it is open."""
     return answer.convention if part.convention == "either" else part.convention
 
 
@@ -138,7 +139,7 @@ def _counts_wrong(judged: Judged) -> list[int]:
 
 
 def _has_given_ends(part: DhTableSpec, judged: Judged) -> bool:
-    """True if only the frames are free, and no row is too many."""
+    """True if base, tool and directions are given, and the table has no row too many."""
     return freedom_of(part) == FrameFreedom() and judged.at_most is None
 
 
@@ -147,8 +148,8 @@ def _content_in_any_frames(
 ) -> list[tuple[int, int]]:
     """Return the rows, each with the number of its cells that are content cells in any frames.
 
-    These are the angle between its two axes, unless they are parallel, and their distance, unless
-    an axis only has a direction.
+    A row has at most two such cells: the angle between its two axes, unless the axes are parallel;
+    and the distance of the axes, unless one of them only has a direction.
     """
     convention = _convention_of(part, answer)
     table = grading.exercise.robot.tables.get(convention) if convention else None

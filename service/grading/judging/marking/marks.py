@@ -188,9 +188,9 @@ def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
     """Return the cost of the cells of each row that are not right.
 
-    A group of cells cannot lose more than it is worth. A content cell costs a unit, and so does
-    another one that is wrong or empty. What needs no knowledge and could not be read costs a fifth
-    in each row; so do the cells of the bottom row of a homogeneous matrix.
+    A group of cells cannot lose more than it is worth. A wrong, empty or unreadable content cell
+    costs a unit. So does any other cell that is wrong or empty. All other unreadable cells of a row
+    cost a fifth together; so do the cells of the bottom row of a homogeneous matrix.
     """
     if marking == "rows":
         pairs = zip(worth.rows, verdicts, strict=True)

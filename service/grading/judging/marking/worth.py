@@ -29,9 +29,10 @@ _ROUNDING_ERROR: Final = 1e-9
 class CellWorth:
     """The worth of the cells and rows of an answer, in steps of ``step`` points.
 
-    ``cells`` ``(rows, cells)`` and ``besides`` ``(rows,)``, which a row has besides its cells, sum
-    to ``total``. ``unit`` is the cost of a wrong cell; with ``is_fixed`` it is also that of a
-    content cell, whatever that is worth. ``slip`` is the cost of a slip outside all cells.
+    ``cells`` ``(rows, cells)`` is the worth of each cell. ``besides`` ``(rows,)`` is the worth that
+    each row has in addition. All of them sum to ``total``. ``unit`` is the cost of a wrong cell
+    that is not a content cell. With ``is_fixed``, a wrong content cell costs a unit, too, even if
+    the cell is worth more or less. ``slip`` is the cost of a slip outside all cells.
     ``least_besides`` is the smallest worth that a group has besides its cells.
     """
 
@@ -118,7 +119,7 @@ def worth_of(content: Content, marking: Marking, points: float) -> CellWorth:
 def _steps(content: Content, points: float) -> tuple[float, int]:
     """Return the step in points, and the number of steps of the part.
 
-    It does not depend on the answer.
+    Neither of them depends on the answer.
     """
     rows, cells = content.usual or (sum(content.earning), content.most or content.count)
     is_coarse = points >= max(POINTS_PER_ROW * rows, POINTS_PER_CELL * cells)
@@ -174,8 +175,8 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
 def _unit(cells: int, groups: int, total: int) -> int:
     """Return the worth of a content cell if each group is worth something besides.
 
-    It is rounded so that what is left for the groups is at most a quarter of all, which a lazy
-    answer earns, and a step for each group if possible.
+    The groups share the rest, which a lazy answer earns. So the worth is rounded so that the rest
+    is at most a quarter of all steps and, if possible, at least one step for each group.
     """
     if not cells:
         return total

@@ -34,7 +34,7 @@ def freedom_of(part: DhTableSpec) -> FrameFreedom:
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """A row and its joint. A row without joint is fixed; a joint without row has a missing row."""
+    """A row and its joint. A row without a joint is fixed; the row of a joint may be missing."""
 
     row: StudentRow | None
     joint: Joint | None

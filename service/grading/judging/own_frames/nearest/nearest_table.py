@@ -173,7 +173,7 @@ def _searched(
     freedom: FrameFreedom,
     scale: float,
 ) -> ChainMatch:
-    """Search the nearest valid table, from the base, or from the tool if only that is given.
+    """Search the nearest valid table, from the base, or from the tool if only the tool is given.
 
     If both are free, the search moves the base for each row. So if it finds nothing wrong except
     rounding, the table is searched again from each possible base.

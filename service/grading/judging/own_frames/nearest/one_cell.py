@@ -248,7 +248,7 @@ def _repairs(
 def _values(
     body: _Body, ends: Matrices, tool: Matrices, case: _Case
 ) -> Iterator[tuple[CellIndex, Numbers]]:
-    """Yield cells, each with the constant that repairs the table if no other cell changes."""
+    """Yield cells, each with a constant that may repair the table if no other cell changes."""
     if case.freedom.base or case.freedom.tool:
         starts = ends @ body.factors.before[:-1]
         sign = -1.0 if body.is_reversed else 1.0
