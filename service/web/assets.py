@@ -32,7 +32,8 @@ _WORDS: Final = "words.js"
 class Asset:
     """A file as it is served.
 
-    ``needs`` has the plain names of all files that it names, except the modules it imports later.
+    ``needs`` has the plain names of all files that this file refers to, except the modules that it
+    imports later.
     """
 
     name: str
@@ -68,7 +69,7 @@ class Assets:
         return [self.name(name) for name in found]
 
     def words(self, language: Language) -> str | None:
-        """Return the name of the dictionary of a language, or None if it needs none."""
+        """Return the name of a language's dictionary, or None if the language has no dictionary."""
         found = self.by_plain_name.get(_dictionary_name(language))
         return None if found is None else found.name
 
@@ -76,7 +77,7 @@ class Assets:
 def load_assets(folder: Path = FOLDER) -> Assets:
     """Return all files below a folder.
 
-    Raises LookupError if one names a file that does not exist, and ValueError if two have one name.
+    Raises LookupError if a file refers to a missing one, and ValueError if two have the same name.
     """
     found = [file for file in folder.rglob("*") if file.suffix in _MEDIA_TYPES]
     files = {file.name: file for file in found}
@@ -121,7 +122,7 @@ def _name(match: re.Match[str]) -> str:
 
 
 def _target(files: Mapping[str, Path], name: str, match: re.Match[str]) -> str:
-    """Return the plain name of the file that a match in the file ``name`` means."""
+    """Return the plain name of the file to which a match in the file ``name`` refers."""
     path = Path(os.path.normpath(files[name].parent / match[1]))
     if files.get(path.name) != path:
         raise LookupError(f"the static file {name} names {path}, which does not exist")

@@ -30,7 +30,7 @@ _JOINTS: Final = {"R": "revolute rotary turning", "P": "prismatic linear sliding
 
 
 def kinds_of(exercise: Exercise) -> Iterable[str]:
-    """Return the names of the kinds of its parts, each once."""
+    """Return the names of the kinds of an exercise's parts, without repetition."""
     return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
 
 

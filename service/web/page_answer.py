@@ -20,7 +20,7 @@ def page_answer(
     headers: Mapping[str, str] = PAGE_HEADERS,
     status: HTTPStatus = HTTPStatus.OK,
 ) -> HTMLResponse:
-    """Return the answer with a page in ``language_of(request)``, and keep a new choice of it."""
+    """Return the answer with a page in ``language_of(request)``; store a newly chosen language."""
     answer = HTMLResponse(content, status, headers=dict(headers))
     answer.headers["Content-Language"] = language_of(request).tag
     answer.headers["Vary"] = _VARY

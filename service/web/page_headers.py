@@ -7,7 +7,7 @@ def policy(**more: str) -> str:
     """Return the Content-Security-Policy of a page; ``more`` replaces some of its directives.
 
     It allows nothing from other hosts, and no script or style inside the page. Scripts may turn
-    text into markup only by the policy of markup.js.
+    text into markup only with the Trusted Types policy of markup.js.
     """
     directives = {
         "default_src": "'none'",

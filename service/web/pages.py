@@ -176,9 +176,9 @@ def page(
     """Return the page of a template that extends ``site.html``.
 
     ``root`` is the relative address of the catalogue. The menu has one more entry for a ``tutor``.
-    With ``is_framed``, a page has no menu: no other page opens in a frame.
-    A page without a ``language`` is in English, and does not offer others.
-    ``values`` are the variables of the template.
+    With ``is_framed``, the page has no menu, because other pages do not open in a frame. A page
+    without a ``language`` is in English, and does not offer others. ``values`` are the variables of
+    the template.
     """
     static = f"{root}static/"
     offers = language is not None and not is_framed and len(LANGUAGES) > 1

@@ -16,7 +16,7 @@ _PLACE: Final = "const FILES = {};"
 
 
 class ScriptSentences(NamedTuple):
-    """The English sentences of scripts; of ``counted`` ones, the singular and the plural."""
+    """The English sentences of scripts; ``counted`` has pairs of a singular and a plural."""
 
     plain: tuple[str, ...]
     counted: tuple[tuple[str, str], ...]
@@ -36,7 +36,7 @@ def sentences_in(scripts: Iterable[str]) -> ScriptSentences:
 
 
 def dictionary(language: Language, sentences: ScriptSentences) -> str:
-    """Return the module with the sentences that the language has."""
+    """Return the JavaScript module with all sentences that have a translation in the language."""
     words: dict[str, str] = {}
     counts: dict[str, tuple[str, str]] = {}
     translation = language.translation_of_scripts

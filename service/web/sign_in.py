@@ -95,7 +95,7 @@ def sign_in_address(path: str, query: str) -> str:
 
 
 def own_path(path: str) -> str:
-    """Return the path if it is that of a tutor's page; else that of the first one."""
+    """Return the path if it leads to a tutor's page; otherwise that of the first tutor's page."""
     is_ours = len(path) <= _LONGEST and _OURS.fullmatch(path) and ".." not in unquote(path)
     return path if is_ours else HOME
 
@@ -131,9 +131,10 @@ def _see(path: str) -> Response:
 
 
 def set_session_cookie(answer: Response, request: Request, session: str) -> None:
-    """Set the cookie of the session; without one, remove the cookies.
+    """Set the session cookie; without a session, remove the session cookies.
 
-    The browser knows whether it uses HTTPS; a service behind a proxy may not.
+    The ``Origin`` header of the browser shows whether the browser uses HTTPS. A service behind a
+    proxy may not know that otherwise.
     """
     origin = request.headers.get("origin", "")
     is_secure = origin.startswith("https:") or request.url.scheme == "https"

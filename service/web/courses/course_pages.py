@@ -35,8 +35,8 @@ class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
     ``handed_in`` has the number of learners with a readable attempt, by assignment; ``roster`` is
-    the context of a platform that tells its roster, or None. ``reports`` are those on handed-in
-    files that did not reach their platform.
+    the context of the course if its platform gives a roster, otherwise None. ``reports`` are the
+    reports on handed-in files that did not reach the platform.
     """
 
     course: Course
@@ -139,8 +139,8 @@ def learner_page(
 ) -> bytes:
     """Return the page of a learner: what the learner sees, the variants, scores and the link.
 
-    ``reports`` are those on handed-in files that did not reach their platform.
-    ``variants`` has the learner's variants by assignment.
+    ``reports`` are the reports on handed-in files that did not reach the platform. ``variants`` has
+    the learner's variants by assignment.
     """
     return _page(
         "learner",
@@ -171,7 +171,7 @@ def roster_page(
 
 
 def distribution(book: Gradebook) -> list[PointsGroup]:
-    """Return how many learners who have handed something in have which share of all points."""
+    """Group the learners who have handed something in by their share of all points."""
     most = sum(each.points for each in book.columns)
     counts = [0] * _GROUPS
     for row in book.rows:
@@ -194,7 +194,7 @@ def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
 
 
 def _shown(when: datetime | None) -> str:
-    """Return a date, which is in the time zone of the course already, or a dash."""
+    """Return a date as text, or a dash. The date is already in the course's time zone."""
     return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
 
 

@@ -43,7 +43,7 @@ class Landings:
         secret: Secret,
         feedback: FeedbackLevel = FeedbackLevel.FULL,
     ) -> None:
-        """``feedback`` is the most that students get."""
+        """``feedback`` is the highest feedback level for students."""
         self.catalogue, self.assets, self.store = catalogue, assets, store
         self.keys, self.secret = keys, secret
         self.platform_files = PlatformFiles(
@@ -106,7 +106,7 @@ class Landings:
         return picker_page(offer, Picked(), text, self.catalogue, self.assets, language)
 
     def _token(self, landing: Landing, now: datetime) -> str:
-        """Return the token of a learner, or one of a preview, which may only have graded."""
+        """Return a token for a learner or a preview, or "". A preview may only grade."""
         if landing.role is LtiRole.GUEST or not landing.key_id or landing.assignment is None:
             return ""
         is_learner = landing.role is LtiRole.LEARNER

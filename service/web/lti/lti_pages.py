@@ -24,11 +24,12 @@ _FOLDER = "web/lti/templates"
 def frame_headers(
     language: Language, origins: Iterable[str], *targets: str, style: str = ""
 ) -> dict[str, str]:
-    """Return the headers of a page in a language that only pages of these origins may frame.
+    """Return the headers of a page that only pages of ``origins`` may show in a frame.
 
-    Its forms may only be sent to us, or, if there are ``targets``, to these origins. The platform's
-    window must stay the opener: it may have the platform's storage. ``style`` is the hash of the
-    only style of a page that needs no other file.
+    ``language`` is the language of the page. Forms of the page may be sent only to ``targets``, or
+    only to us if there are no ``targets``. The platform's window must stay the opener of the page,
+    because that window may have the platform's storage. ``style`` is the hash of the page's only
+    style, if the page needs no other file.
     """
     ancestors = " ".join(dict.fromkeys(["'self'", *origins]))
     more = {"form_action": " ".join(dict.fromkeys(targets))} if targets else {}
@@ -77,8 +78,9 @@ def binding_page(
 ) -> bytes:
     """Return the page for a browser without the cookie of the login.
 
-    ``storage`` has the frame, the origin and the name of what the platform has stored; without it,
-    the page only has the button that opens the address ``window`` in a window of its own.
+    ``storage`` has the frame and the origin of the platform's storage, and the name of the stored
+    value. Without ``storage``, the page only has a button that opens the address ``window`` in a
+    window of its own.
     """
     frame, origin, name = storage or ("", "", "")
     scripts = [] if storage is None else ["platform_storage.js"]
@@ -115,7 +117,7 @@ def refused_page(
 def landing_page(
     landing: "Landing", token: str, catalogue: Catalogue, assets: Assets, language: Language
 ) -> bytes:
-    """Return the page of a learner, a preview or a guest; the token is only in this page."""
+    """Return the page of a learner, a preview or a guest. No other page contains the token."""
     assignment = landing.assignment
     if landing.learner and assignment is not None:
         return page(
@@ -197,7 +199,7 @@ def choosing_page(
 def found(
     catalogue: Catalogue, language: Language, search: str, chosen: Mapping[str, str]
 ) -> Sequence[tuple[Exercise, str]]:
-    """Return the exercises with all words of a search, after the chosen ones, and their points."""
+    """Return the chosen exercises, then those with all words of a search, all with their points."""
     words = search.lower().split()
 
     def has_words(each: Exercise) -> bool:

@@ -167,7 +167,7 @@ class _Launching:
         return known, begun
 
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
-        """Return the message in a token. Raises LtiError, after the registration has noted it."""
+        """Return the message in a token. Raises LtiError and notes it in the registration."""
         from service.lti.messages import key_id_of, message_in
         from service.lti.problems import LtiError
         from service.lti.registrations import note_refusal
@@ -184,9 +184,9 @@ class _Launching:
     def ask_to_bind(
         self, request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
     ) -> Response:
-        """Answer a browser without cookie: by the platform's storage, or in an own window.
+        """Answer a browser without the cookie of the login with ``binding_page``.
 
-        Raises LtiError if the page is in a window already.
+        Raises LtiError if the page already has its own window and the platform offers no storage.
         """
         from service.lti.problems import LtiError
 
@@ -212,7 +212,7 @@ class _Launching:
     async def answered(
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
-        """Return the answer of ``work``, or the page that says why it is refused."""
+        """Return the answer of ``work``, or a page with the reason of its LtiError."""
         from service.lti.problems import LtiError
 
         try:
@@ -221,7 +221,7 @@ class _Launching:
             return await self._refused(error, language)
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
-        """Answer with a page for the student; the log has the cause under the same number."""
+        """Answer with a page for the student; the page and the log line have the same reference."""
         from service.lti.registrations import all_registrations
 
         context = current_request()
@@ -237,10 +237,11 @@ class _Launching:
 def is_bound(
     request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
 ) -> bool:
-    """True if the browser has begun the login, False if it cannot say so yet. Raises LtiError.
+    """True if the browser has begun the login, False if it has not sent its secret yet.
 
-    It says so by a cookie, or by what the platform's storage has kept for it. The second is
-    accepted only from our own page: anybody may begin a login, and post its message elsewhere.
+    The browser sends its secret in a cookie, or in a form with the value from the platform's
+    storage. The form is accepted only from our own page: anybody may begin a login, and post its
+    message elsewhere. Raises LtiError.
     """
     from service.lti.problems import LtiError
 

@@ -1,7 +1,7 @@
 """The forms on a tutor's first page: choose the exercises of a link, and open the course.
 
 A page in a frame has no cookie. Its forms carry a ticket, and are accepted from our own pages only.
-The course opens in a window of its own, in which a cookie of ours is not a third party's.
+The course opens in a window of its own, in which our cookie is not a third-party cookie.
 """
 
 from collections.abc import Awaitable, Callable, Mapping
@@ -42,12 +42,12 @@ Answered = Callable[[Callable[[], Awaitable[Response]], Language], Awaitable[Res
 
 
 def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the routes of the forms; ``answered`` makes a page of an LtiError."""
+    """Return the routes of the forms; ``answered`` turns an LtiError into a page."""
     router = APIRouter(prefix="/lti")
     store, keys = landings.store, landings.keys
 
     async def asked(request: Request, text: str) -> LtiTicket:
-        """Return the ticket of a form of ours. Raises LtiError."""
+        """Return the ticket in one of our forms. Raises LtiError."""
         if not is_same_origin(request):
             raise LtiError("binding-from-elsewhere")
         return ticket_in(text, LtiTicket, landings.secret)

@@ -41,7 +41,7 @@ class Tutoring:
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
     in ``editor_dir``. ``records`` is true if the service records attempts, in ``store``.
     ``checking`` checks the text in the editor, and ``drafts`` has the exercises in its preview.
-    ``feedback`` is the most that students get.
+    ``feedback`` is the highest feedback level for students.
     """
 
     access: Access

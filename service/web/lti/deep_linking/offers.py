@@ -1,4 +1,4 @@
-"""What a tutor can choose for links of the platform, what was chosen, and the links made of it."""
+"""The links that a tutor makes for the platform: the offer, the tutor's choice, and its links."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ _LONGEST_LINE: Final = 200
 
 
 class NotYetError(Exception):
-    """Nothing can be made of what was chosen; the message says why."""
+    """The tutor's choice gives no links yet; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,10 @@ class Offer:
 
 @dataclass(frozen=True, slots=True)
 class Picked:
-    """What a tutor has filled in: ``points`` of each chosen exercise; ``message`` complains."""
+    """The fields that a tutor has filled in.
+
+    ``points`` has the points of each chosen exercise; ``message`` tells the tutor about an error.
+    """
 
     title: str = ""
     search: str = ""
@@ -53,7 +56,7 @@ class Picked:
     message: str = ""
 
     def with_message(self, message: str) -> "Picked":
-        """Return the same with this complaint."""
+        """Return a copy with this error message."""
         return replace(self, message=message)
 
 
@@ -70,7 +73,7 @@ def offer_of(connection: Connection, ticket: LinkingTicket, known: Registration)
 
 
 def picked_in(fields: Mapping[str, list[str]]) -> Picked:
-    """Return what the fields of the form say."""
+    """Return the values in the fields of the form."""
 
     def line(name: str) -> str:
         return " ".join(fields.get(name, [""])[0].split())[:_LONGEST_LINE]
@@ -131,7 +134,7 @@ def _of_exercises(
 
 
 def _checked(picked: Picked, points: Sequence[tuple[str, str]]) -> NewAssignment:
-    """Return the assignment of a form, whose id means nothing. Raises NotYetError."""
+    """Return the assignment of a form, with a placeholder as its id. Raises NotYetError."""
     fields: dict[str, Any] = {"id": "new", "title": picked.title or "Exercises"}
     fields["exercises"] = [{"exercise": name, "points": worth} for name, worth in points]
     fields |= {name: value for name in ("opens", "due") if (value := getattr(picked, name))}

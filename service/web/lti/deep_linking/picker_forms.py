@@ -39,7 +39,7 @@ _REFERRER: Final = {"Referrer-Policy": "strict-origin"}
 
 
 def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the route; ``answered`` makes a page of an LtiError."""
+    """Return the route; ``answered`` turns an LtiError into a page."""
     router = APIRouter(prefix="/lti")
     store, secret = landings.store, landings.secret
 
@@ -93,7 +93,7 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
 
 
 def _ask_for_notices(landings: Landings, known: Registration, url: str) -> None:
-    """Have the platform tell us of handed-in files. Raises NotYetError."""
+    """Ask the platform to send us notices of handed-in files. Raises NotYetError."""
     try:
         landings.platform_files.ask_for_notices(known, url)
     except ScoreError as error:
@@ -107,7 +107,7 @@ def _ask_for_notices(landings: Landings, known: Registration, url: str) -> None:
 
 
 def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:
-    """Return what a ticket offers. Raises LtiError."""
+    """Return the offer for a ticket. Raises LtiError."""
     try:
         known = registration(connection, ticket.registration)
     except RegistrationError as error:

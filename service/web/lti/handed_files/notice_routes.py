@@ -45,7 +45,10 @@ def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> AP
     router = APIRouter(prefix="/lti")
 
     async def accept(token: str, refusals: dict[str, str]) -> None:
-        """Queue the files of a notice. Raises LtiError, and adds it to those of the platform."""
+        """Queue the files of a notice. Raises LtiError.
+
+        If the notice names a registered platform, ``refusals`` gets the name of the error.
+        """
         key_id, now = key_id_of(token), datetime.now(UTC)
         parties = parties_of(token)
         known = await read(store, lambda it: find_registration(it, *parties))

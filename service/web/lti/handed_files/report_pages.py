@@ -43,12 +43,12 @@ class ReportPages:
         feedback: FeedbackLevel,
         platform: PlatformFiles,
     ) -> None:
-        """``feedback`` is the most that students get."""
+        """``feedback`` is the highest feedback level for students."""
         self._assets, self._store, self._secret = assets, store, secret
         self._catalogue, self._feedback, self._platform = catalogue, feedback, platform
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
-        """Return the report, or what the settings are. Raises LtiError."""
+        """Return the page with the report, or the page about the settings. Raises LtiError."""
         now = datetime.now(UTC)
 
         def found(connection: Connection) -> HandedFiles | None:
