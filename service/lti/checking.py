@@ -23,7 +23,7 @@ _CLOCKS: Final = 10.0
 
 
 class CheckLine(NamedTuple):
-    """A line of the self-test; ``is_fine`` is None if it only tells something."""
+    """A line of the self-test; ``is_fine`` is None if the line only informs."""
 
     is_fine: bool | None
     text: str

@@ -1,7 +1,7 @@
 """Fetch JSON from a platform with care: the address comes from outside.
 
-Only HTTPS, only public addresses (checked after the name was resolved, and then connected to), no
-redirect to another host, at most 64 KiB, at most five seconds.
+The limits: only HTTPS, only public addresses, no redirect to another host, at most 64 KiB, at most
+five seconds. The name of the host is resolved once: the connection goes to the checked address.
 """
 
 import json
@@ -114,7 +114,7 @@ def _tls() -> ssl.SSLContext:
 
 
 def _address(host: str, *, local: bool) -> IPv4Address | IPv6Address:
-    """Return an address of a host that may be connected to. Raises FetchError."""
+    """Return an address of the host to which we may connect. Raises FetchError."""
     try:
         found = {each[4][0] for each in socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)}
         addresses = sorted((ip_address(each) for each in found), key=lambda it: (it.version, it))

@@ -71,7 +71,7 @@ def enter(
 ) -> Landing:
     """Record a launch and return where it leads to. Raises LtiError.
 
-    Previews and guests see what is there and record nothing.
+    Previews and guests see what exists already, and record nothing.
     """
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
@@ -110,7 +110,8 @@ def enter(
 def pseudonym(registration: str, sub: str, secret: Secret) -> str:
     """Return the id of a platform's user in courses and attempts.
 
-    It tells nothing of the user, and two platforms with equal users get different ones.
+    The id reveals nothing about the user. Users of two platforms get different ids, even if their
+    ``sub`` is the same.
     """
     content = json.dumps([registration, sub]).encode()
     return f"lti-{hmac.digest(secret.lti_secret, b'learner ' + content, 'sha256').hex()[:24]}"
@@ -202,7 +203,7 @@ def new_assignment_id(link: int) -> str:
 def linked_assignment(
     connection: Connection, course: str, number: int | None
 ) -> CourseAssignment | None:
-    """Return the assignment with this number of a row, or None."""
+    """Return the assignment in the row with this number, or None."""
     if number is None:
         return None
     mine = (assignments.c.number == number) & (assignments.c.course == course)
@@ -222,7 +223,7 @@ def check_deployment(connection: Connection, message: LaunchMessage, now: dateti
 
 
 def _visit(connection: Connection, message: LaunchMessage) -> Landing:
-    """Return where the launch of a preview or a guest leads to, as far as it is there."""
+    """Return where the launch of a preview or a guest leads to; missing parts are empty."""
     context = known_context(connection, message)
     if context is None:
         return Landing(message.role, link_title=message.link_title)
@@ -334,8 +335,8 @@ def parameters_assignment(
     """Return the assignment that custom parameters ask for, or None.
 
     ``exercise`` names one or more exercises, with or without points: ``planar-rr=10,scara``.
-    ``opens`` and ``due`` are dates, in the time zone of the course if they name none. With
-    ``variants=true``, each learner gets variants of their own.
+    ``opens`` and ``due`` are dates; a date without a time zone is in the time zone of the course.
+    With ``variants=true``, each learner gets variants of their own.
     """
     named = [each.strip() for each in custom.get("exercise", "").split(",")]
     exercises = []

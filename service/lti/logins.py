@@ -66,7 +66,7 @@ class NewLogin:
 
 @dataclass(frozen=True, slots=True)
 class Login:
-    """A login that was begun; ``fields`` are those of its request."""
+    """A login that was begun; ``fields`` are the fields of its request."""
 
     state: str
     nonce: str
@@ -152,5 +152,5 @@ def use_login(connection: Connection, login: Login, now: datetime) -> None:
 
 
 def digest(text: str) -> str:
-    """Return the digest of a random text, which is stored instead of it."""
+    """Return the digest that is stored in place of a random text."""
     return sha256(text.encode(errors="replace")).hexdigest()

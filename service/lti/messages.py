@@ -121,7 +121,7 @@ def signed_claims(token: str, key: RSAPublicKey) -> dict[str, Any]:
 
 
 def check_parties(claims: Mapping[str, Any], registration: Registration) -> None:
-    """Check that claims are from this platform, and for us. Raises LtiError."""
+    """Check that claims come from this platform and are addressed to us. Raises LtiError."""
     if claims.get("iss") != registration.issuer:
         raise LtiError("wrong-issuer")
     audience = claims.get("aud")
@@ -234,7 +234,7 @@ def _reviewed(claims: Mapping[str, Any]) -> str:
 
 
 def _locale(presentation: Any) -> str:
-    """Return the language of the user. A launch is not refused because of it."""
+    """Return the language of the user, or "". An invalid language does not prevent a launch."""
     return _line(presentation.get("locale")) if isinstance(presentation, dict) else ""
 
 

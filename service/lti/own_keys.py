@@ -49,9 +49,10 @@ def own_key_list(connection: Connection) -> list[Row[Any]]:
 
 
 def signing_key(connection: Connection, secret: Secret, now: datetime) -> SigningKey:
-    """Return the newest key that may sign. Raises LtiError, if there is none or its secret differs.
+    """Return the newest key that may sign.
 
-    ``ensure_key`` makes the first one.
+    Raises LtiError if there is no such key, or if it was encrypted with another secret.
+    ``ensure_key`` makes the first key.
     """
     usable = own_keys.c.signs_from <= now
     newest = select(own_keys).where(usable).order_by(own_keys.c.signs_from.desc()).limit(1)

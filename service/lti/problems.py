@@ -140,13 +140,13 @@ class LtiError(Exception):
 
 
 def short_value(value: object) -> str:
-    """Return a sentence, or that of an error; anything else as a text that is not long."""
+    """Return a sentence, or the sentence of an error, as it is; shorten any other value."""
     said = value.args[0] if isinstance(value, Exception) and value.args else value
     return said if isinstance(said, Sentence) else str(value)[:200]
 
 
 def cause_without_values(name: str) -> str:
-    """Return the cause of a refusal with "…" in place of its values; of another name, the name."""
+    """Return the cause of a refusal with "…" for its values, or an unknown ``name`` as it is."""
     problem = LTI_PROBLEMS.get(name)
     if problem is None:
         return name

@@ -29,7 +29,7 @@ _LONGEST_ADDRESS: Final = 2000
 def begin_linking(
     connection: Connection, message: LaunchMessage, secret: Secret, now: datetime
 ) -> LinkingTicket:
-    """Return what a tutor may send back to the platform. Raises LtiError.
+    """Return the ticket with which a tutor may answer the platform. Raises LtiError.
 
     No course and no link is recorded: the tutor may give up.
     """
@@ -84,7 +84,7 @@ def _asked(message: LaunchMessage) -> Mapping[str, Any]:
 
 
 def _notices_url(message: LaunchMessage) -> str:
-    """Return where we ask for notices of handed-in files. Raises LtiError."""
+    """Return the address at which we ask for notices of handed-in files. Raises LtiError."""
     service = message.claims.get(_NOTICES)
     url = service.get("platform_notification_service_url") if isinstance(service, dict) else None
     if not isinstance(url, str) or not 0 < len(url) <= _LONGEST_ADDRESS:

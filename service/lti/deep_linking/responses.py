@@ -23,7 +23,7 @@ _LIFETIME: Final = timedelta(minutes=10)
 
 @dataclass(frozen=True, slots=True)
 class NewLink:
-    """A link for the platform: exercises with their points, or an assignment that is there."""
+    """A link for the platform: exercises with their points, or an existing assignment."""
 
     title: str
     points: Mapping[str, float]
@@ -34,7 +34,7 @@ class NewLink:
 
     @property
     def parameters(self) -> dict[str, str]:
-        """The custom parameters by which a launch finds what was chosen."""
+        """The custom parameters by which a launch finds the chosen assignment or exercises."""
         if self.assignment:
             return {"assignment": self.assignment}
         listed = ",".join(f"{name}={points:.10g}" for name, points in self.points.items())

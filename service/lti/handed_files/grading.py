@@ -29,7 +29,7 @@ _PASSED, _NOT_PASSED = "#1B7F4B", "#B45309"
 
 @dataclass(frozen=True, slots=True)
 class GradedFiles:
-    """The graded files of a submission; ``failures`` are those that are not graded, by file id."""
+    """The graded files of a submission; ``failures`` has the errors of other files, by file id."""
 
     submission: GradedSubmission | None
     failures: Mapping[str, NoFileError]
@@ -47,9 +47,9 @@ def graded_files(
 ) -> GradedFiles:
     """Grade all files of a submission together: they may answer different parts.
 
-    ``contents`` are their contents, or why there is none, by the ids of the files. ``ceiling`` is
-    the most feedback for students. Without a ``language``, it is that of the tutor who chose the
-    exercises.
+    ``contents`` has the content of each file, or an error, by file id. ``ceiling`` is the highest
+    feedback level for students. Without a ``language``, the reports are in the language of the
+    tutor who chose the exercises.
     """
     language = language or language_named(files.custom.get("locale", "")) or ENGLISH
     failures = {key: each for key, each in contents.items() if isinstance(each, NoFileError)}

@@ -83,7 +83,7 @@ def notice_in(
 ) -> SubmissionNotice | None:
     """Return the notice in a token; None if it is only a greeting. Raises LtiError.
 
-    The same notice may come again: its id says so.
+    A platform may send the same notice again, with the same id.
     """
     claims = signed_claims(token, key)
     check_parties(claims, registration)

@@ -35,9 +35,9 @@ class MissingReport:
 def missing_reports(
     connection: Connection, course: str, language: Language, learner: str | None = None
 ) -> list[MissingReport]:
-    """Return the reports of a course that did not arrive, the newest first; of one learner or all.
+    """Return the reports that did not arrive, newest first, of one learner or of a whole course.
 
-    A notice that names no course at the platform belongs to none here.
+    A notice that names no course at the platform belongs to no course here.
     """
     of_course = select(contexts).where(contexts.c.course == course)
     here = {

@@ -26,9 +26,9 @@ _MOST_REDIRECTS: Final = 3
 
 
 class NoFileError(Exception):
-    """The platform does not give a file, or it is not graded; ``reason`` says why.
+    """A file that the platform does not give, or that is not graded; ``reason`` says why.
 
-    ``code`` is one of the standard's codes of errors.
+    ``code`` is one of the standard's error codes.
     """
 
     def __init__(self, code: str, reason: str) -> None:
@@ -43,12 +43,12 @@ class PlatformFiles:
         self._services = GradeServices(tokens)
 
     def ask_for_notices(self, registration: Registration, service: str) -> None:
-        """Have the platform tell us when files are handed in. Raises ScoreError."""
+        """Ask the platform to send us notices of handed-in files. Raises ScoreError."""
         asked = {"notice_type": HANDED_IN, "handler": registration.address + NOTICES_PATH}
         self._send(registration, service, "PUT", NOTICES, asked)
 
     def send_report(self, registration: Registration, url: str, report: Mapping[str, Any]) -> None:
-        """Send a report; one that the platform has already may be newer. Raises ScoreError."""
+        """Send a report. Raises ScoreError, but not if the platform already has a newer report."""
         try:
             self._send(registration, url, "POST", REPORT, report)
         except ThisLaterError as error:
@@ -56,7 +56,7 @@ class PlatformFiles:
                 raise
 
     def content_of(self, registration: Registration, file: FileAtPlatform) -> bytes:
-        """Return the content of a file. Raises NoFileError; ScoreError if it may be there later.
+        """Return a file's content. Raises NoFileError, or ScoreError if a later try may succeed.
 
         Platforms redirect to the host that has their files. The token goes to the first host only.
         """
@@ -90,7 +90,7 @@ class PlatformFiles:
     def contents_of(
         self, registration: Registration, files: HandedFiles
     ) -> dict[str, bytes | NoFileError]:
-        """Return the contents of files by their ids, or why there is none. Raises ScoreError."""
+        """Return the content of each file, or its NoFileError, by file id. Raises ScoreError."""
         found: dict[str, bytes | NoFileError] = {}
         for each in files.assets:
             try:

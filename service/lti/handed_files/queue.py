@@ -39,7 +39,7 @@ def queue_files(
     learner: str,
     now: datetime,
 ) -> None:
-    """Queue the files of a notice; a notice that came before changes nothing. Raises LtiError."""
+    """Queue the files of a notice; a repeated notice changes nothing. Raises LtiError."""
     if not known.any_deployment and notice.deployment not in deployments_of(connection, known.id):
         raise LtiError("unknown-deployment", deployment=notice.deployment)
     connection.execute(delete(handed_files).where(_OF.received_at < now - _KEPT))
@@ -79,7 +79,7 @@ def take(connection: Connection, now: datetime) -> TakenFiles | None:
 
 
 def note_done(connection: Connection, number: int, refusal: str | None = None) -> None:
-    """Note that the platform has the reports, or why it has none."""
+    """Note that the platform has the reports, or the reason why they do not arrive."""
     _note(connection, number, state="refused" if refusal else "sent", refusal=refusal)
 
 
@@ -103,7 +103,7 @@ def next_due(connection: Connection) -> datetime | None:
 def files_of(
     connection: Connection, registration_id: str, submission: str, asset: str
 ) -> tuple[HandedFiles, str] | None:
-    """Return the files of a submission with this one, and their learner; None if unknown."""
+    """Return the files of a submission that has the file ``asset``, and their learner, or None."""
     mine = (_OF.registration == registration_id) & (_OF.submission == submission)
     newest = select(_OF.content, _OF.learner).where(mine).order_by(_OF.number.desc())
     for row in connection.execute(newest.limit(10)):

@@ -1,1 +1,1 @@
-"""How platforms join: by invitation (dynamic registration), or with a file of our values."""
+"""How platforms join: by invitation (dynamic registration), or with a file about this service."""

@@ -1,7 +1,8 @@
 """Invitations: one-time links by which a platform registers itself.
 
-Only a digest of the link is stored. The beginning of its text says whether the registration waits
-for ``dh-grader lti allow``; a changed beginning gives another digest.
+Only a digest of the link is stored. The text of the link begins with a mark if the registration
+waits for ``dh-grader lti allow``. Nobody can remove the mark, because it is part of the digested
+text.
 """
 
 import secrets
@@ -43,7 +44,7 @@ class Invitation:
 
     @property
     def is_development(self) -> bool:
-        """True if this service is on this machine, and so may the platform be."""
+        """True if the address of this service is local; the platform may then be local, too."""
         return any(self.address.startswith(f"http://{host}") for host in LOCAL_HOSTS)
 
 

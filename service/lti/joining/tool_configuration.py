@@ -33,8 +33,8 @@ def registration_request(
 ) -> dict[str, Any]:
     """Return the body of a dynamic registration.
 
-    ``scopes`` and ``messages`` (with their placements) are those that the platform supports; None
-    if it does not say.
+    ``scopes`` and ``messages`` (with their placements) are those that the platform supports, or
+    None if the platform does not list them.
     """
     launch = address + LAUNCH_PATH
     linking: dict[str, Any] = {"type": DEEP_LINKING, "target_link_uri": launch, "label": NAME}

@@ -38,7 +38,7 @@ class RosterQuestion:
 
 @dataclass(frozen=True, slots=True)
 class RosterChange:
-    """What a roster has changed in a course; ``learners`` is the number of all in the roster."""
+    """The changes of a course by a roster; ``learners`` is the number of learners in the roster."""
 
     learners: int
     added: int
@@ -47,7 +47,7 @@ class RosterChange:
 
 
 def roster_context(connection: Connection, course: str) -> Row[Any] | None:
-    """Return the row of the context of a course whose platform tells its roster, or None."""
+    """Return the row of a course's context, or None if its platform does not give a roster."""
     of = tables.contexts.c
     mine = (of.course == course) & of.memberships_url.is_not(None)
     return connection.execute(select(tables.contexts).where(mine).limit(1)).one_or_none()
@@ -93,9 +93,9 @@ def enrol_members(
     *,
     shows_names: bool | None = None,
 ) -> RosterChange:
-    """Enrol the learners of a roster, rename them, and remove those that are not in it any more.
+    """Enrol and rename the learners in a roster; remove learners who are no longer in the roster.
 
-    ``shows_names`` switches their names on or off; None leaves the switch.
+    ``shows_names`` says whether their names are shown; None leaves this setting as it is.
     """
     context, now = question.context, question.now
     if shows_names is None:

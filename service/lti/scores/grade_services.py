@@ -114,10 +114,10 @@ class GradeServices:
         *,
         redirects: bool = False,
     ) -> Iterator[httpx.Response]:
-        """Send a request with an access token, and with a new one if that is refused.
+        """Send a request with an access token; if the token is refused, try once with a new token.
 
-        Yield the answer if it is a success. With ``redirects``, it may be a redirect, and
-        TooLargeError is raised, too. Raises ScoreError.
+        Yield the successful answer. Raises ScoreError. With ``redirects``, the answer may also be a
+        redirect, and TooLargeError may be raised.
         """
         for is_last in (False, True):
             token = self._tokens.token(registration, scopes)
@@ -187,7 +187,10 @@ def _item_address(item: Any, lineitems_url: str) -> str:
 
 
 def _of_platform(url: str, lineitems_url: str) -> str:
-    """Return an address in an answer of a platform: the token is sent to its host only."""
+    """Return an address from a platform's answer. Raises ThisLaterError if its host is another one.
+
+    The access token is only sent to the platform's own host.
+    """
     if unusable(url, local=True) or origin_of(url) != origin_of(lineitems_url):
         raise ThisLaterError("unusable-answer", reason=say("an address is of another host"))
     return url

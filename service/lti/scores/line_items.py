@@ -49,7 +49,7 @@ def ensure_line_item(connection: Connection, link: int) -> None:
 
 
 def try_refused_again(connection: Connection, learner: str, now: datetime) -> None:
-    """Queue the refused scores of a learner, who is enrolled at the platform after a launch."""
+    """Queue a learner's refused scores again: after a launch, the platform knows the learner."""
     mine = (scores.c.learner == learner) & (scores.c.state == "refused")
     values = {"state": "waiting", "next_try_at": now, "version": scores.c.version + 1}
     connection.execute(update(scores).where(mine).values(values))

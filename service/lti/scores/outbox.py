@@ -1,7 +1,8 @@
 """The outbox of scores: take the next one under a lease, and note what became of it.
 
 A score is noted as under way before it is sent. If the process dies after that, the lease ends, and
-another one sends the score again, with a later timestamp: the platform ends with the right score.
+another process sends the score again, with a later timestamp. So the platform gets the right score
+in the end.
 """
 
 from collections.abc import Collection

@@ -64,8 +64,8 @@ def scores_of(
 def send_again(connection: Connection, course: str, wanted: SendAgainRequest, now: datetime) -> int:
     """Send scores again, also those that the platform has; return their number.
 
-    Scores without attempts stay at the platform: their attempts were deleted when their time was
-    over. Raises CourseError.
+    A score whose attempts have expired and were deleted is not sent: it stays at the platform as it
+    is. Raises CourseError.
     """
     _check(connection, course, wanted)
     has_attempt = exists().where(

@@ -64,7 +64,7 @@ class RefusedError(ScoreError):
 
 
 class LaterError(ScoreError):
-    """The platform takes nothing now; ``seconds`` is how long it asks to wait, if it says so."""
+    """The platform takes nothing now; ``seconds`` is the wait that it asks for, or None."""
 
     def __init__(self, name: str, /, seconds: float | None = None, **values: object) -> None:
         self.seconds = seconds
@@ -76,7 +76,10 @@ class ThisLaterError(ScoreError):
 
 
 def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = False) -> str:
-    """Return the sentence of a stored problem of a score, or of a report; or ""."""
+    """Return the sentence of a stored problem, or "".
+
+    ``of_report`` is True for a problem of a report on files, False for a problem of a score.
+    """
     if not stored:
         return ""
     name, values = json.loads(stored)

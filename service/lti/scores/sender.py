@@ -102,7 +102,7 @@ class ScoreSender:
         return min(resting, default=due)
 
     def _send(self, taken: TakenScore) -> None:
-        """Send a score and note that. Raises ScoreError."""
+        """Send a score, and note that it was sent. Raises ScoreError."""
         url = taken.url or self._line_item(taken)
         if url is None:
             return
@@ -143,7 +143,7 @@ class ScoreSender:
         return url
 
     def _rest(self, taken: TakenScore, error: LaterError) -> None:
-        """Leave a platform in peace, at least as long as it asks."""
+        """Begin a pause for a platform, at least as long as it asks, but not beyond a limit."""
         name, now = taken.registration.id, self.now()
         before = self._pauses.get(name)
         failures = 0 if before is None else before.failures
@@ -161,7 +161,7 @@ class ScoreSender:
         )
 
     def _doubled(self, failures: int) -> datetime:
-        """Return the end of the pause after some failures: 50 to 100 % of a doubled time."""
+        """Return the end of a pause, which doubles with each failure and is partly random."""
         pause = min(_FIRST * 2 ** min(failures, 20), _LONGEST)
         end: datetime = self.now() + pause * (0.5 + 0.5 * self._chance())
         return end

@@ -17,7 +17,7 @@ _LEAST: Final = 0.05
 
 
 class Sender(Protocol):
-    """What a thread does: send one after the other."""
+    """Sends queued items one by one, in the thread of a BackgroundSending."""
 
     now: Callable[[], datetime]
 
@@ -34,7 +34,7 @@ class BackgroundSending:
     def __init__(self, engine: Engine, sender: Sender, queued: str) -> None:
         """Listen to commits. A transaction that queues something sets ``queued`` in its info.
 
-        No other thread may commit meanwhile: it goes through the list of those that listen.
+        No other thread may commit during this call, because a commit iterates over the listeners.
         """
         self._sender, self._queued = sender, queued
         self._wake = threading.Event()
