@@ -55,7 +55,7 @@ def tell(message: str) -> None:
 
 
 def tell_verdict(is_fine: bool | None, message: str) -> None:
-    """Write the line of a check; None only tells something."""
+    """Write the line of a check; ``is_fine`` is None if the line only informs."""
     words = {True: spoken(say("ok")), False: spoken(say("WRONG")), None: ""}
     width = max(map(cell_len, words.values())) + 2
     typer.echo(set_cell_size(words[is_fine], width) + spoken(message))
@@ -92,7 +92,7 @@ def installed_exercise(exercise_id: str) -> Exercise:
 
 
 def named_exercise(name: str) -> Exercise:
-    """Return the exercise in a file ``….toml``, or the installed exercise or variant with an id.
+    """Return the exercise in a file ``….toml``, or the installed exercise or variant with this id.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """
@@ -100,7 +100,7 @@ def named_exercise(name: str) -> Exercise:
 
 
 def installed_file(exercise_id: str) -> Path:
-    """Return the file of the exercise of this installation with this id.
+    """Return the path of the file of an installed exercise.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """

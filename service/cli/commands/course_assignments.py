@@ -88,7 +88,7 @@ HintPricesOption = Annotated[
 
 
 def checked(model: type[M], **fields: Any) -> M:
-    """Return a body of these fields; end the program if it cannot be used."""
+    """Return a request body with these fields; end the program if the fields are invalid."""
     try:
         given = {name: value for name, value in fields.items() if value is not None}
         return model.model_validate(given)

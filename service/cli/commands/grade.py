@@ -294,8 +294,8 @@ def _variants_of_student(
 ) -> Assignment:
     """Return the assignment with the variants of the student whom a platform's file describes.
 
-    The scripts of bundles name this file, and that with the secret. An assignment without variants
-    stays as it is.
+    The scripts of bundles pass this file as ``platform_data``, and the file with the secret as
+    ``variants``. An assignment without variants is returned unchanged.
     """
     if not assignment.variants:
         return assignment
@@ -353,7 +353,7 @@ def _grading(
     output: Path | None,
     settings: Settings,
 ) -> AbstractContextManager[Iterator[GradedSubmission]]:
-    """A context with the graded submissions in order, from the server or from this machine."""
+    """Return a context with the graded submissions in order, from the server or this machine."""
     if server is not None:
         return graded_by(server, terms, found, jobs or REQUESTS, output, settings)
     jobs = max(1, min(jobs or jobs_for(len(found)), len(found)))
@@ -361,9 +361,9 @@ def _grading(
 
 
 class _Run:
-    """Passes graded submissions on; ``exit_code`` is that of the worst one so far.
+    """Yields the graded submissions; ``exit_code`` is the exit code of the worst one so far.
 
-    It calls ``check`` between submissions, which may end the run.
+    Between submissions, it calls ``check``. That function may end the run.
     """
 
     def __init__(

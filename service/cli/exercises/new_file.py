@@ -1,4 +1,4 @@
-"""Write a new exercise file, and never over another one; say when a service reads it."""
+"""Write a new exercise file, never over an existing one, and say when a service reads the file."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,7 +10,7 @@ from service.translations import say
 
 
 def write_new(folder: Path, exercise_id: str, text: str) -> Path:
-    """Write the file of a new exercise and return its path. Give up if it exists already."""
+    """Write the file of a new exercise and return its path. End the program if the file exists."""
     file = folder / f"{exercise_id}.toml"
     try:
         folder.mkdir(parents=True, exist_ok=True)

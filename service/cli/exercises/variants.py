@@ -42,7 +42,7 @@ _ROWS: Final[Mapping[str, str]] = {
 
 
 def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
-    """Check variants and print what differs; return True if one fails."""
+    """Check variants and print how they differ; return True if one fails."""
     try:
         checked = [checked_variant(exercise, str(seed)) for seed in range(1, count + 1)]
     except NoVariantError as error:
@@ -95,7 +95,7 @@ def _warn(console: Console, warning: str) -> None:
 
 
 def _table(checked: Sequence[CheckedVariant]) -> Table:
-    """Return the table of what differs: each count with its least and greatest value."""
+    """Return a table with the least, greatest and usual value of each measure of difficulty."""
     table = Table.grid(padding=(0, 2, 0, 2))
     rows: dict[str, list[float]] = defaultdict(list)
     for each in checked:

@@ -1,4 +1,4 @@
-"""`dh-grader lti scores`: what platforms got of a course."""
+"""`dh-grader lti scores`: the scores of a course at its platform."""
 
 from datetime import UTC, datetime
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""`dh-grader learners`: what is known of one learner."""
+"""`dh-grader learners`: the data about one learner."""
 
 import json
 from pathlib import Path

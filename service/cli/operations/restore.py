@@ -56,7 +56,7 @@ def command(
 
 
 def _copy(file: Path, target: Path) -> Path:
-    """Copy the backup beside the database, with the newest tables, and return the copy."""
+    """Copy the backup beside the database, update the copy's tables, and return its path."""
     new = target.with_name(f"{target.name}.new")
     for each in (new, *_logs(new)):
         each.unlink(missing_ok=True)

@@ -49,7 +49,7 @@ def _key(settings: Settings) -> str | None:
 
 
 def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExercise:
-    """Return the exercise with this id from the server, or from this installation without one.
+    """Return the exercise from the server, or, without a server, from this installation.
 
     Raises UnknownExerciseError. End the program with exit code 2 if the server fails.
     """

@@ -73,7 +73,10 @@ class ShardHeader:
 def with_header(
     lines: Iterable[bytes], shard: Shard, submissions: Sequence[str], exercises: Sequence[str]
 ) -> Iterator[bytes]:
-    """Yield the header of a shard, then its lines. The names are those of the whole run."""
+    """Yield the header of a shard, then its lines.
+
+    The header depends on all ``submissions`` and ``exercises`` of the run, by name.
+    """
     names = json.dumps([submissions, exercises])
     run = hashlib.sha256(names.encode()).hexdigest()
     header = ShardHeader(shard.number, shard.count, len(submissions), len(exercises), run)
