@@ -59,7 +59,7 @@ def serve(settings: Settings) -> bool:
 def _delayed_announcement() -> Iterator[Callable[[], None]]:
     """Suppress uvicorn's log line that the service is running; yield a function that writes it.
 
-    uvicorn writes it as soon as it has the port, but nobody listens until a worker does.
+    uvicorn would write the line as soon as it has the port, before any worker listens.
     """
     held: list[logging.LogRecord] = []
 

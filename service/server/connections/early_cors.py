@@ -18,7 +18,8 @@ def origin_in(head: bytes) -> str:
 def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
     """Return the headers that let a page of ``origin`` read the answer if ``origins`` has it.
 
-    If the request was refused before its ``origin`` was read, the only one of ``origins`` is used.
+    ``origin`` is "" if the request was refused before its head was read. Then, if ``origins`` has
+    only one entry, this entry is used.
     """
     if "*" in origins:
         allowed = "*"

@@ -1,8 +1,8 @@
 """Cut the bytes of a connection into pieces that each belong to one request.
 
-The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
-a pipeline before the last is answered. So it gets only as much as it should read now. The parser
-alone decides whether the pieces are valid; this module only finds where they end (RFC 9112).
+The parser reads all bytes that it gets, stores a head of any size, and begins the next request of a
+pipeline before the last is answered. So the parser gets only as much as it should read now. The
+parser alone decides whether the pieces are valid; this module only finds where they end (RFC 9112).
 """
 
 import re

@@ -1,8 +1,8 @@
 """All open connections of one process: count them and their bytes, and close some if needed.
 
-If there are too many connections, or if they hold too many bytes, some of those without a complete
-request are closed: first those of the client that has most of them, longest waiting first. A
-complete request is never dropped.
+If there are too many connections, or if they hold too many bytes, the process closes some of the
+connections without a complete request. It begins with the client that has the largest share, and
+there with the connection that has waited longest. A complete request is never dropped.
 """
 
 import asyncio
@@ -122,7 +122,10 @@ def _bytes(connection: OpenConnection) -> int:
 def closing_order(
     waiting: Iterable[OpenConnection], shares: Counter[str], weight: Callable[[OpenConnection], int]
 ) -> Iterable[OpenConnection]:
-    """Yield waiting connections: each time the oldest of the address with the largest share."""
+    """Yield waiting connections in the order in which to close them.
+
+    The next one always belongs to the address with the largest share, and has waited longest there.
+    """
     queues: dict[str, list[OpenConnection]] = {}
     for connection in sorted(waiting, key=lambda each: each.waiting_since or 0.0, reverse=True):
         queues.setdefault(connection.address, []).append(connection)
@@ -136,7 +139,7 @@ def closing_order(
 
 
 def allowed_here() -> ConnectionLimits:
-    """Return the limits that the process's limit of open files allows; raise that if possible."""
+    """Raise the limit of open files if needed; return the limits of connections that it allows."""
     try:
         import resource
     except ImportError:  # Windows, which has no such limit

@@ -1,7 +1,7 @@
 """HTTP/1.1 with limits: uvicorn's protocol, which gets one request at a time.
 
-uvicorn's own protocol reads a head of any size, waits for its end for ever, and reads on while a
-pipeline of requests is being answered.
+uvicorn's own protocol reads a head of any size, waits for the end of the head without a time limit,
+and continues to read while a pipeline of requests is being answered.
 """
 
 import asyncio
@@ -246,7 +246,7 @@ class GuardedProtocol(HttpToolsProtocol):
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Begin with the next request if this one has been read to its end."""
+        """Begin with the next request if the answered one has been read to its end."""
         self.server_state.total_requests += 1
         if self.transport.is_closing() or self._finishing:
             return
@@ -341,7 +341,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._raw.abort()
 
     def _give_up(self) -> bool:
-        """Tell the application that the client has gone; return False if it is not answering."""
+        """Tell the app that the client has gone; return False if no answer is in progress."""
         # uvicorn's annotation omits that this is None before the first request.
         cycle: RequestResponseCycle | None = self.cycle
         if cycle is None or cycle.response_complete:

@@ -68,9 +68,9 @@ class _Requests:
 class _Account:
     """The time that a connection has used, and its requests.
 
-    ``spent`` is the time of its last request; up to ``allowed`` of it is not yet charged to
-    ``used``. ``excess`` is the factor by which its time is charged. ``queue`` holds its waiting
-    requests.
+    ``spent`` is the time of the last request; up to ``allowed`` seconds of this time are not yet
+    charged to ``used``. ``excess`` is the factor by which time is charged. ``queue`` holds the
+    waiting requests of the connection.
     """
 
     used: float
@@ -144,7 +144,7 @@ class FairQueue:
             del self._clients[ticket.client.name]
 
     def push(self, ticket: Ticket) -> None:
-        """Add a request to the queue, which has arrived before."""
+        """Add a request to the queue; ``enter`` has noted its arrival before."""
         account = self._accounts[ticket.key]
         account.queue.append(ticket)
         self._waiting[ticket.key] = account

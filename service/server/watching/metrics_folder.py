@@ -1,4 +1,4 @@
-"""The folder in which several processes share their metrics. Does not import the metrics."""
+"""The folder in which processes share their metrics. This module does not import the metrics."""
 
 import os
 import tempfile
