@@ -28,8 +28,8 @@ _LONGEST_NAME = 60
 class GradingTerms:
     """The assignment to grade, and the options of the reports.
 
-    ``feedback`` is the level of the command line. Without it, the level is that of the submission,
-    or, with ``for_students``, at most that of the exercise. ``echo`` shows how each cell was read.
+    ``feedback`` is the level of the command line. If it is None, the submission sets the level;
+    with ``for_students``, the exercise limits that level. ``echo`` shows how each cell was read.
     Reports and the texts of exercises are in ``language``.
     """
 

@@ -1,7 +1,7 @@
 """Build a wheel of the running program from its installed files.
 
-A bundle then needs no package index for the program itself, and has the same version, whether that
-is installed from a wheel or from a checkout.
+A bundle with this wheel needs no package index for the program itself, and has the version of the
+running program. The program may be installed from a wheel or from a checkout.
 
 Source: https://packaging.python.org/en/latest/specifications/binary-distribution-format/.
 """

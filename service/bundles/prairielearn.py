@@ -77,7 +77,7 @@ def _page(content: BundleContent) -> bytes:
 
 
 def _places(content: BundleContent) -> Iterator[str]:
-    """Yield the HTML of each exercise, or the place where ``server.py`` puts that of a variant."""
+    """Yield the HTML of each exercise, or a placeholder that ``server.py`` fills with a variant."""
     variants = {} if content.variants is None else content.variants.deployed
     places = {name: f"  {{{{{{params.page_{i}}}}}}}\n" for i, name in enumerate(variants, 1)}
     for exercise in content.exercises:

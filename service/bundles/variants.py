@@ -19,7 +19,7 @@ DRAWN: Final = 40
 
 
 class UnknownStudentError(ValueError):
-    """The data of the platform do not say whose submission it is; the message says why."""
+    """The platform's data do not identify the student; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class BundleVariants:
         return self.deployed[exercise] or tuple(drawn)
 
     def file(self) -> BundledFile:
-        """Return the file from which the platform's script reads all of this."""
+        """Return the file with the secret and the seeds, which the platform's script reads."""
         content = {"secret": self.secret, "deployed": dict(self.deployed)}
         return BundledFile("variants.json", (json.dumps(content, indent=2) + "\n").encode())
 

@@ -2,8 +2,7 @@
 
 ``sentence`` makes sentences, ``languages`` has the catalogues. Each language is a folder with the
 sentences of reports (``sentences.po``), of pages (``pages.po``) and of the command line
-(``commands.po``). This is the lowest package: it
-imports no other.
+(``commands.po``). This is the lowest package: it imports no other.
 """
 
 from service.translations.languages import (

@@ -1,4 +1,4 @@
-"""The languages that sentences are told in, and the choice of one for a reader."""
+"""The languages of sentences, and the choice of a language for a reader."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ DOMAINS: Final = ("sentences", "pages", "commands")
 
 @dataclass(frozen=True)
 class Language:
-    """A language by its code, and its name in itself. ``tag`` is that of HTML."""
+    """A language: its code, its name in that language, and its tag in HTML."""
 
     code: str
     name: str
@@ -31,7 +31,7 @@ class Language:
 
     @cached_property
     def translation_of_scripts(self) -> NullTranslations | None:
-        """The catalogue for scripts: of a text that reports also have, the words of pages."""
+        """The catalogue for scripts; it prefers the translations of pages to those of reports."""
         return self._catalogue(("pages", "sentences"))
 
     @cached_property
@@ -40,7 +40,7 @@ class Language:
         return self._catalogue(("commands", "sentences"))
 
     def _catalogue(self, domains: Sequence[str]) -> NullTranslations | None:
-        """Return the texts of these domains; the first one with a text counts."""
+        """Return the merged catalogue of these domains; an earlier domain takes precedence."""
         if self.code == "en":
             return None
         # A template that no catalogue has stays English.
@@ -77,9 +77,9 @@ def language_named(tag: str | None) -> Language | None:
 
 
 def accepted_language(header: str | None) -> Language:
-    """Return the language of an ``Accept-Language`` header that the reader likes best.
+    """Return the known language that the reader of an ``Accept-Language`` header likes best.
 
-    Otherwise it is English. A header of any shape is allowed.
+    Return English if the header names no known language. The header may be invalid.
     """
     wanted = []
     for i, each in enumerate((header or "")[:500].split(",")):

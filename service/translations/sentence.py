@@ -1,13 +1,13 @@
 """Sentences for people: a template in English with named values.
 
-A sentence is its English text, and keeps the template and the values that made it. So whoever
-passes it on treats it as text, and the edge of the program can tell it in another language. ::
+A sentence is its English text, and keeps the template and the values that made it. So most code
+treats a sentence as plain text, and the edge of the program can still translate the sentence. ::
 
     say("Joint {joint} slides, and its variable is {name}.", joint=3, name="d3")
 
 The extraction finds the templates in the calls of ``say``, ``say_count`` and ``template``, so each
-is one string constant there. A value is a name, a number or a formula, which is the same in all
-languages, or a sentence of its own, which is translated, too.
+template must be one string constant there. A value is a name, a number or a formula, which is the
+same in all languages, or a sentence of its own, which is translated, too.
 """
 
 from collections.abc import Mapping, Sequence

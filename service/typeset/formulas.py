@@ -26,7 +26,8 @@ _NAME: Final = re.compile(
 def formula(text: str) -> str:
     """Return a formula in any names as HTML with MathML, or as text if it is unreadable.
 
-    No browser breaks a formula into lines, so each term of a sum is one, and a long term is text.
+    Browsers do not break a formula into lines. So each term of a sum becomes a formula of its own,
+    and a long term becomes text.
     """
     try:
         tree = _read(text).tree
@@ -57,10 +58,10 @@ def _term(tree: Node, sign: str = "") -> str:
 
 
 def matrix(text: str, name: str = "") -> str | None:
-    """Return a matrix in brackets as HTML with MathML, or None if the text is none.
+    """Return a matrix in brackets as HTML with MathML, or None if the text is not a matrix.
 
-    A line is a row, with commas between the entries; other forms of a pasted matrix are read, too.
-    ``name`` is what the matrix equals.
+    Each line of the text is a row, with commas between the entries; other forms of a pasted matrix
+    are read, too. ``name`` is shown before the matrix, with an equals sign.
     """
     try:
         rows = [[row(_read(cell.text).tree) for cell in line] for line in read_grid(text).rows]

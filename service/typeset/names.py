@@ -10,7 +10,7 @@ r"""Typeset the names in a text: theta1 becomes θ with the index 1.
 - frames in braces: {0}, {i-1}, {e},
 - ``x``, ``y`` and ``z`` before "axis" or "axes".
 
-Whatever stands in a web address, after a backslash or in a longer word is none.
+Text in a web address, after a backslash or in a longer word is never a name.
 """
 
 import re
@@ -84,7 +84,7 @@ def typeset(text: str, symbols: Container[str] = ()) -> str:
 
 
 def unbound(text: str, symbols: Container[str]) -> str:
-    """Return the HTML of a text that is only a part of a line."""
+    """Return a part of a line as HTML, without the final step ``in_one_line``."""
     return "".join(_html(text, symbols))
 
 

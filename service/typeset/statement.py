@@ -142,7 +142,7 @@ def _formula(latex: str, options: Mapping[str, Any]) -> str:
 
 
 def _plain(root: ET.Element) -> bool:
-    """True if all elements are plain MathML. Other attributes are removed."""
+    """Return True if all elements are plain MathML; remove attributes that are not allowed."""
     for element in root.iter():
         name = element.tag.removeprefix(f"{{{_MATHML}}}")
         if name not in _ELEMENTS:
