@@ -11,7 +11,7 @@ from service.catalogue import Exercise
 
 
 class InProcess(httpx.BaseTransport):
-    """Let a plain httpx.Client call an app. An exception in it is a 500, as with a server."""
+    """Let a plain httpx.Client call an app. An exception in the app becomes a 500."""
 
     def __init__(self, app: FastAPI) -> None:
         self._inner = httpx.ASGITransport(app, raise_app_exceptions=False)

@@ -241,7 +241,7 @@ def test_the_list_of_exercises_is_in_the_language() -> None:
 
 
 def plain_words(node: ast.AST) -> Iterator[str]:
-    """Yield the texts in a value that is printed; what a call returns is not looked at."""
+    """Yield the texts in a printed value, without the results of calls."""
     match node:
         case ast.Call(func=ast.Name(id="Text"), args=[text, *_]):
             yield from plain_words(text)

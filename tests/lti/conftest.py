@@ -75,7 +75,7 @@ class Begun:
 
 @dataclass
 class Tool:
-    """The service, and a browser that goes to and fro between it and the platform."""
+    """The service, and a browser that moves between the service and the platform."""
 
     app: Any
     store: AttemptStore
@@ -124,7 +124,7 @@ class Tool:
         return self.post(unescape(fields["state"]), unescape(fields["id_token"]), begun.cookies)
 
     def counts(self) -> dict[str, int]:
-        """Return the number of rows of all that a launch records."""
+        """Return the number of rows in each table in which a launch records something."""
         with self.store.engine.connect() as connection:
             return {
                 each.name: connection.scalar(select(func.count()).select_from(each)) or 0

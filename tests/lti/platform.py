@@ -46,7 +46,10 @@ Habit = Callable[[dict[str, Any]], None]
 
 
 def deep_linking(address: str, **settings: Any) -> Habit:
-    """Return the habit of asking for links, which are sent to an address; None leaves one out."""
+    """Return the habit of asking for links that are sent to ``address``.
+
+    A setting that is None is left out.
+    """
     asked = {
         "deep_link_return_url": address,
         "accept_types": ["link", "ltiResourceLink"],
@@ -78,7 +81,7 @@ def public_jwk(key: Any, key_id: str, **more: Any) -> dict[str, Any]:
 
 @dataclass
 class Platform:
-    """The platform. ``fetched`` are the paths that were asked for; ``keys`` what it publishes.
+    """The platform. ``fetched`` has the requested paths, ``keys`` the keys that it publishes.
 
     ``storage`` is true if its pages have the platform's storage. ``members`` is its roster, sent in
     pages of ``page_size``; ``next_page`` replaces the address of the second page.

@@ -1,4 +1,4 @@
-"""Addresses of platforms: nothing is fetched from a private address, and little from others."""
+"""Addresses of platforms: fetch nothing from a private address, and little data from others."""
 
 import gzip
 import json

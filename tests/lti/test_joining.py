@@ -1,4 +1,4 @@
-"""Dynamic registration behind one-time links, as Moodle, Canvas and Brightspace do it."""
+"""Dynamic registration by one-time links, as Moodle, Canvas and Brightspace do it."""
 
 import json
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ SCORE = "https://purl.imsglobal.org/spec/lti-ags/scope/score"
 
 @dataclass
 class Registrar:
-    """A platform that registers tools; ``changes`` are those of its configuration."""
+    """A platform that registers tools; ``changes`` are changes of its configuration."""
 
     token: str = "one-time-token"
     port: int = 0

@@ -212,7 +212,7 @@ def test_a_tutor_reviews_the_attempts_of_a_learner(tool: Tool) -> None:
 @pytest.mark.long
 @KINDS
 def test_launches_of_a_class_share_no_row_that_changes(tool: Tool) -> None:
-    """Otherwise, they would wait for each other in PostgreSQL."""
+    """If two launches changed the same row, one would wait for the other in PostgreSQL."""
     tool.launch("ada")
     changed = []
 

@@ -85,7 +85,7 @@ def free_port() -> int:
 
 
 def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None] | None:
-    """Return the seconds until a server closes each client, or None if it cannot be installed."""
+    """Return the seconds until a server closes each connection, or None without the server."""
     with tempfile.TemporaryDirectory() as folder, (Path(folder) / "log").open("wb") as log:
         pip = [sys.executable, "-m", "pip", "install", "--quiet", "--target", folder]
         if packages and subprocess.run([*pip, *packages], stderr=log, check=False).returncode:

@@ -1,6 +1,6 @@
-"""Simulate clients of one process on a simulated clock, which work and waiting advance.
+"""Simulate clients of one process on a simulated clock, which advances by work and by waiting.
 
-The event loop and the admission are the real ones. So waiting times are exact, however busy the
+The event loop and the admission are the real ones. The waiting times are exact, however busy this
 machine is.
 """
 
@@ -43,8 +43,8 @@ class _Clock(selectors.SelectSelector):
 class Process:
     """A simulated process with fair admission; each request says how long it takes.
 
-    A grading has a checkpoint every ``step`` seconds, at which it may be suspended. ``slower`` says
-    how many times as long this machine takes for the same work.
+    A grading has a checkpoint every ``step`` seconds, at which it may be suspended. ``slower`` is
+    the factor by which the simulated machine is slower than usual.
     """
 
     def __init__(

@@ -25,7 +25,7 @@ async def large(_scope: Any, _receive: Any, send: Any) -> None:
 
 
 async def unsent_to(clients: int, *, reading: bool) -> tuple[int, int]:
-    """Return the unsent bytes of the answers to ``clients``, and how many stay connected."""
+    """Return the unsent bytes of answers to ``clients``, and the number of connected clients."""
     loop = asyncio.get_running_loop()
     config = uvicorn.Config(large, http=GuardedProtocol, ws="none", log_level="critical")
     config.load()

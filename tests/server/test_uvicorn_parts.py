@@ -1,6 +1,6 @@
 """Check the parts of uvicorn that the server uses although they are not documented.
 
-If one of them changes in a new version, these tests name it.
+If a new version of uvicorn changes one of these parts, the tests name the part.
 """
 
 import ast

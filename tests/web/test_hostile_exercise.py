@@ -62,7 +62,7 @@ def tutor_of(text: str, folder: Path) -> Tutor:
 
 @pytest.fixture(scope="module")
 def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tutor, Tutor]:
-    """A service with the hostile exercise, and one with a plain one of the same kind."""
+    """A service with the hostile exercise, and a service with a plain exercise of the same kind."""
     folder = tmp_path_factory.mktemp("exercises")
     assert "stolen" not in PLAIN
     return tutor_of(HOSTILE_EXERCISE, folder / "hostile"), tutor_of(PLAIN, folder / "plain")

@@ -1,4 +1,4 @@
-"""The pages in other languages: the choice, the switch, and what is told in them."""
+"""The pages in other languages: the choice of a language, the switch, and the sentences."""
 
 import asyncio
 import re

@@ -26,7 +26,7 @@ def says_so(answer: httpx.Response) -> bool:
 
 
 def silent(guarded: Guarded, credential: str, routes: set[str]) -> tuple[list[str], set[str]]:
-    """Return the routes whose German answers do not say so, and all that answer in German."""
+    """Return the routes whose German answers lack language headers, and all with German answers."""
 
     async def answers() -> dict[str, httpx.Response]:
         async with guarded.client(credential) as client:

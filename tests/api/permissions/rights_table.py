@@ -37,7 +37,7 @@ def _row(route: str, right: Right) -> str:
 
 
 def with_table(page: str) -> str:
-    """Return the page with the current table in place of its own."""
+    """Return the page with the current table in place of the old one."""
     before, start, rest = page.partition(_START)
     assert start, "docs/keys.md has no table of routes"
     return before + table() + "\n" + rest.partition("\n\n")[2]

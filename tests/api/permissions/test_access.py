@@ -1,4 +1,4 @@
-"""Only a request from the machine itself is taken for a tutor's, however a student sends one."""
+"""Only a request from the machine itself counts as a tutor's, whatever a student sends."""
 
 import asyncio
 from typing import Any

@@ -40,7 +40,7 @@ def test_a_route_without_an_entry_prevents_startup(catalogue: Mapping[str, Exerc
 def test_the_exercise_of_a_right_is_that_of_the_route(
     client_of: Callable[[FastAPI], httpx.Client],
 ) -> None:
-    """The last of several exercises in a query counts, for the right and for the route alike."""
+    """If a query names several exercises, the last one counts, for the right and for the route."""
     app = FastAPI()
 
     @app.get("/{exercise_id}")

@@ -42,7 +42,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Tutor:
-    """A client of a service in this process, at the machine itself unless ``at`` differs."""
+    """A client of a service in this process, which it calls at ``at``, by default this machine."""
 
     def __init__(
         self, exercises: Mapping[str, Exercise], store: AttemptStore | None,

@@ -132,7 +132,7 @@ def test_the_environment_may_name_several_folders(
 
 @pytest.mark.long
 def test_in_a_pipe_lines_are_plain_and_not_wrapped(arm: Path) -> None:
-    """The output in a course's CI."""
+    """A course's CI reads the output in a pipe."""
     changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
     result = subprocess.run(
         [sys.executable, "-m", "service", "exercises", "check", str(arm)],

@@ -21,7 +21,7 @@ LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
 class FileStore:
     """Files by id, the handler of notices, and the reports in their order.
 
-    ``other_host`` is where the platform has its files: it redirects there.
+    If ``other_host`` is set, the platform has its files there, and redirects requests to that host.
     """
 
     platform: "Platform"

@@ -192,7 +192,10 @@ def test_several_files_are_graded_together(course: Course) -> None:
 
 
 def test_a_text_that_was_typed_at_the_platform_is_read(course: Course) -> None:
-    """Platforms give it as a web page without a name; a single exercise with one part is clear."""
+    """Platforms give the text as a web page without a file name.
+
+    If a single exercise with one part is set, the service can grade the text.
+    """
     course.store.files["text"] = (
         b"<table><tr><td>a1</td><td>0</td><td>0</td><td>q1</td></tr></table>"
     )
@@ -357,7 +360,7 @@ def test_after_three_days_files_are_given_up(course: Course) -> None:
 
 
 def test_a_killed_process_reports_again(course: Course) -> None:
-    """The platform takes the second report: its time is later."""
+    """The platform takes the second report, because its time stamp is later."""
     course.hand_in(table_csv=RIGHT)
     taken = course.tool.do(lambda it: queue.take(it, course.clock.now()))
     assert taken is not None

@@ -1,7 +1,7 @@
 """A platform by others, the library lti1p3platform: its messages, gradebook and roster over HTTP.
 
-The library checks and makes tokens and messages. What it leaves to its users is here: the storage,
-and the way from a request to its handlers.
+The library checks and makes tokens and messages. This module has the parts that the library leaves
+to its users: the storage, and the routes that call the library's handlers.
 """
 
 from collections.abc import Callable
@@ -39,7 +39,7 @@ _FORM: Final = "application/x-www-form-urlencoded"
 
 
 class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
-    """The registration of our service at the other platform, with the keys of ours."""
+    """The registration of our service at the other platform, with the platform's key."""
 
     def init_platform_config(self, **kwargs: Any) -> None:
         platform = kwargs["platform"]
@@ -50,7 +50,7 @@ class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
         self.sign_with(platform.key)
 
     def sign_with(self, key: Any) -> None:
-        """Change the key: what the old one has signed is not accepted any more."""
+        """Change the platform's key: messages signed with the old key are no longer accepted."""
         private = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
         public = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)
         self._registration.set_platform_public_key(public.decode())

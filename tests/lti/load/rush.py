@@ -1,9 +1,9 @@
 """`python -m tests.lti.load.rush`: a class of 200 opens its exercise from the course in a minute.
 
-Each student logs in at the platform, launches, and asks for all that the first page needs. A tenth
-of them come before with new browsers, which also ask for the scripts. All have one address, as on a
-campus. Print the waiting times and the processor time of the service for one student. Exit with 1
-if an answer is a failure, or if a view costs more than 300 ms.
+Each student logs in at the platform, launches, and asks for all that the first page needs. Before
+that, a tenth of the students come with new browsers, which also ask for the scripts. All students
+have one address, as on a campus. Print the waiting times and the processor time of the service for
+one student. Exit with 1 if an answer is a failure, or if a view costs more than 300 ms.
 """
 
 import argparse
@@ -43,7 +43,7 @@ _LIMITS: Final = httpx.Limits(max_connections=6)
 
 @dataclass
 class Rush:
-    """What a class has seen: seconds from the login to the view, and answers that are failures."""
+    """The results of a class: seconds from the login to the view, and answers that are failures."""
 
     waits: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -141,7 +141,7 @@ def processor_time(running: Service) -> float:
 
 
 def measure(kind: str, students: int, seconds: float, workers: int) -> list[str]:
-    """Let a tenth of a class come, all, and all in less time; return the broken promises."""
+    """Let a tenth of a class come, then all, then all in less time; return the missed limits."""
     broken = []
     with (
         tempfile.TemporaryDirectory() as name,

@@ -25,7 +25,7 @@ WRONG = {"table": "7 1 1 0\n7 1 1 0"}
 
 @dataclass
 class Clock:
-    """The time of this machine, and what tests have added."""
+    """The time of this machine, plus the time that tests have added."""
 
     added: timedelta = timedelta()
 
@@ -95,7 +95,7 @@ class Journey:
         return pseudonym("moodle", f"user {user}", SECRET)
 
     def known(self, user: str = "ada") -> dict[str, Any]:
-        """Return what is stored of a user's learner."""
+        """Return all stored data about the learner of a platform's user."""
         with self.tool.store.engine.connect() as connection:
             return everything_of(connection, self.learner(user))
 
@@ -128,7 +128,7 @@ class Journey:
         return most
 
     def rows(self) -> list[Row[Any]]:
-        """Return the outbox."""
+        """Return the rows of the outbox."""
         ordered = select(tables.scores).order_by(tables.scores.c.sub)
         found: list[Row[Any]] = self.tool.do(lambda it: it.execute(ordered).all())
         return found

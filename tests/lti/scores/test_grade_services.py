@@ -40,7 +40,7 @@ def test_scores_is_a_part_of_the_path() -> None:
 def test_a_failing_platform_is_asked_ever_more_rarely(
     journey: Journey, trouble: tuple[int, dict[str, str]]
 ) -> None:
-    """The platform is asked ever more rarely; then all scores arrive, hand-ins first."""
+    """The pauses between the tries grow. When the platform works again, all scores arrive."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.trouble = trouble
@@ -105,7 +105,7 @@ def test_a_token_is_used_until_shortly_before_its_end(journey: Journey) -> None:
 
 
 def test_a_refused_token_is_renewed_once(journey: Journey) -> None:
-    """It is asked twice, and then left in peace."""
+    """The sender tries once more with a new token, and then waits."""
     journey.gradebook.lifetime = -1
     journey.hand_in()
     assert journey.send() == 1
@@ -131,7 +131,7 @@ def test_the_audience_of_the_token(journey: Journey) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("status", [400, 403, 404, 422])
 def test_the_score_of_a_learner_waits_for_the_enrolment(journey: Journey, status: int) -> None:
-    """The refusal is final until the learner launches again."""
+    """A refused score stays refused until the learner launches again."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.enrolled = {"user grace"}
@@ -163,7 +163,7 @@ def test_a_line_item_is_found_at_its_new_address(journey: Journey) -> None:
 
 
 def test_a_deleted_line_item_is_not_made_again(journey: Journey) -> None:
-    """The teacher has deleted the column: it is not made again."""
+    """A teacher has deleted the column at the platform. The service does not make it again."""
     journey.hand_in()
     journey.gradebook.items.clear()
     journey.send()
@@ -207,7 +207,7 @@ UNUSABLE: list[object] = [
 
 @pytest.mark.long
 def test_unusable_lists_of_line_items_cost_one_try(journey: Journey) -> None:
-    """Hostile lists of line items cost a try, and no more; the token goes to its host only."""
+    """A hostile list of line items costs one try. The token goes only to the platform's host."""
 
     def habit(claims: dict[str, dict[str, object]]) -> None:
         claims[ENDPOINT].pop("lineitem")

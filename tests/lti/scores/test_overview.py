@@ -1,4 +1,4 @@
-"""What tutors see of the scores that went to a platform, and sending again."""
+"""The list of sent scores for tutors, and sending scores again."""
 
 import pytest
 

@@ -49,7 +49,7 @@ def test_a_hand_in_an_override_and_a_forgotten_learner_arrive(journey: Journey) 
 
 
 def test_only_the_best_attempt_is_sent(journey: Journey) -> None:
-    """A worse attempt, and one as good as the best, change nothing at the platform."""
+    """An attempt that is worse than the best, or as good, changes nothing at the platform."""
     journey.hand_in(answers=WRONG)
     journey.send()
     best = journey.hand_in()
@@ -96,7 +96,7 @@ def test_points_of_the_assignment_that_change(journey: Journey) -> None:
 
 
 def test_a_regrade_queues_only_what_it_changes(journey: Journey) -> None:
-    """Of two learners, the report of one gave other points than the program of today does."""
+    """An earlier program gave one of two learners wrong points. Only that score is queued."""
     changed = journey.hand_in("ada")
     journey.hand_in("grace")
     journey.send()
@@ -216,7 +216,7 @@ def test_a_score_is_refused_if_its_line_item_may_not_be_made(
 
 
 def test_earlier_scores_are_sent_once_the_platform_takes_scores(journey: Journey) -> None:
-    """Later it does: then the attempts that are there are sent."""
+    """The platform takes scores only later. Then the scores of earlier attempts are sent, too."""
     journey.tool.platform.habits.append(lambda claims: claims.pop(ENDPOINT))
     journey.hand_in()
     assert journey.rows() == []
@@ -243,7 +243,7 @@ def test_names_that_change_change_no_score(journey: Journey) -> None:
 
 @pytest.mark.long
 def test_no_timestamp_is_in_the_future(journey: Journey) -> None:
-    """Of many changes in a second, some wait; the platform refuses none, and ends with the last."""
+    """Of many changes in a second, some wait. The platform refuses none, and gets the last one."""
     attempt = journey.hand_in()
     for points in range(1, 7):
         body = {"points": points, "reason": "r", "author": "t"}

@@ -1,4 +1,4 @@
-"""Replicas send scores, and are killed after the platform has one, before it has answered."""
+"""Replicas send scores. They are killed when the platform has a score but has not answered yet."""
 
 import asyncio
 import random
@@ -50,7 +50,7 @@ class Replicas:
         draft.replace(self._file)
 
     def kill(self, number: int) -> None:
-        """Kill some of them, and wait until they are gone."""
+        """Kill some of the replicas, and wait until they are gone."""
         self._ask("kill", number)
         self._number -= number
 
@@ -98,7 +98,7 @@ class Round:
 
 
 def killed(journey: Journey, replicas: Replicas, rounds: int) -> str:
-    """Change scores in each round, and kill the senders at one of them; check the platform."""
+    """Change scores in each round, kill the senders at one of the scores, check the platform."""
     choose = random.Random(rounds)
     ids = {user: journey.hand_in(user) for user in USERS}
     most = ids["ada"]["max_points"]
@@ -141,7 +141,7 @@ def _wait(until: Callable[[], bool]) -> None:
 def test_the_service_sends_what_it_has_committed(
     journey: Journey, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The thread wakes up after the commit, long before it would look by itself."""
+    """The thread wakes up after the commit, long before its next regular look at the queue."""
     monkeypatch.setattr("service.lti.scores.sending._LOOK", 3600)
     # A closed one takes no note away.
     closed = BackgroundSending(journey.tool.store.engine, journey.sender, QUEUED)
@@ -163,7 +163,7 @@ def test_the_service_sends_what_it_has_committed(
 def test_all_listen_before_a_thread_begins(
     catalogue: Mapping[str, Exercise], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A thread that commits goes through the list of those that listen."""
+    """A commit iterates over the listeners, so all must be added before a thread begins."""
     store = AttemptStore.open(new_file(tmp_path))
     keys = KeyRing(store.engine, Secret(SECRET_TEXT))
     access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)

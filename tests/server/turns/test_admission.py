@@ -104,7 +104,7 @@ async def passes(number: int) -> None:
 
 @pytest.fixture
 def alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let each request take the same time: one slice."""
+    """Let each request take the same time, which is one time slice."""
     clock = itertools.count()
     monkeypatch.setattr(admission, "thread_time", lambda: next(clock) * 1.01 * SLICE)
 

@@ -17,7 +17,7 @@ ORDINARY = 0.015
 def come(
     queue: FairQueue, client: str, connection: int = 1, size: int = 1, shares: float = SHARES
 ) -> Ticket:
-    """Add a waiting request to the queue; return it."""
+    """Add a waiting request to the queue; return the request."""
     ticket = Ticket(Client(client, shares), connection, size)
     queue.enter(ticket)
     queue.push(ticket)
@@ -25,7 +25,7 @@ def come(
 
 
 def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
-    """Serve a number of turns to clients that always wait again; return the client of each turn."""
+    """Serve a number of turns; each served client waits again. Return the client of each turn."""
     served = []
     for _ in range(turns):
         ticket = queue.pop()

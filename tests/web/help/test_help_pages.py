@@ -1,4 +1,4 @@
-"""The pages of help: each example is read as the page says, and every page leads to them."""
+"""The pages of help: each example is read as its page says, and every page links to the help."""
 
 import asyncio
 import html
