@@ -37,7 +37,7 @@ class BundleVariants:
         }
 
     def some(self, exercise: str) -> Sequence[str]:
-        """Return seeds to choose from: the deployed ones, or some made from the secret."""
+        """Return seeds to choose from: the deployed seeds, or else seeds made from the secret."""
         drawn = (seed_of(self.secret, f"variant {i}", exercise, 0) for i in range(DRAWN))
         return self.deployed[exercise] or tuple(drawn)
 

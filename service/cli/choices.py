@@ -37,9 +37,9 @@ def listed(of: type[StrEnum]) -> str:
 
 
 def report_language(settings: Settings, output_format: str) -> Language:
-    """Return the language of reports; end the program if reports are not in this language.
+    """Return the language of reports; end the program if the chosen language is unknown.
 
-    Without a setting, only the format for the screen follows the locale.
+    Without a setting, reports in the format ``text`` are in the language of the user.
     """
     if output_format == "text" and "language" not in settings.model_fields_set:
         return user_language()

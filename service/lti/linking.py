@@ -47,8 +47,8 @@ DATES: Final = ("opens", "due")
 class Landing:
     """Where a launch leads to.
 
-    ``context`` and ``link`` are numbers of rows; 0 means that there is none, because the launch
-    records nothing. ``assignment`` is None as long as no exercises are chosen for the link.
+    ``context`` and ``link`` are numbers of rows, or 0 if the launch records nothing. ``assignment``
+    is None as long as no exercises are chosen for the link.
     """
 
     role: LtiRole

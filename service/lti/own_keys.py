@@ -72,9 +72,9 @@ def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
 
 
 def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
-    """Add a key and remove those that no longer sign; return when the new one begins to sign.
+    """Remove all keys but the newest, and add a key; return when the added key begins to sign.
 
-    There are at most two keys. If one does not sign yet, none is added.
+    There are at most two keys. If the newest key does not sign yet, nothing changes.
     """
     ensure_key(connection, secret, now)
     waiting: datetime | None = connection.scalar(

@@ -77,7 +77,7 @@ class PlatformKeys:
 
 
 def usable_keys(found: Any) -> dict[str, RSAPublicKey | None]:
-    """Return the keys of a JSON Web Key Set by id, None for those that must not be used.
+    """Return the keys of a JSON Web Key Set by id; a key that must not be used is None.
 
     Raises FetchError.
     """

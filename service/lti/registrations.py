@@ -38,7 +38,7 @@ _Address = Annotated[str, StringConstraints(min_length=1, max_length=1000)]
 
 
 class RegistrationError(Exception):
-    """A registration cannot be added, or there is none. The message says why."""
+    """A registration cannot be added, or does not exist. The message says why."""
 
 
 class NewRegistration(BaseModel):

@@ -93,7 +93,8 @@ def paragraph(*sentences: str) -> str:
 def joined(separator: str, sentences: Sequence[str]) -> Sentence:
     """Return complete sentences, joined by a separator that every language uses.
 
-    A line break is one. A blank is not, because Chinese has none: see ``paragraph``.
+    A line break is a possible separator. A blank is not, because Chinese has no blanks: see
+    ``paragraph``.
     """
     values = {f"sentence{i}": sentence for i, sentence in enumerate(sentences)}
     return Sentence(separator.join(f"{{{name}}}" for name in values), values)

@@ -131,7 +131,7 @@ def _assignment(
 
 
 def _names(files: HandedFiles) -> dict[str, str]:
-    """Return names for the files, all different, and without folders, by their ids."""
+    """Return a different name for each file, without folders, by file id."""
     names: dict[str, str] = {}
     for i, each in enumerate(files.assets):
         name = PurePosixPath(each.filename.replace("\\", "/").replace("\0", "")).name[-100:]

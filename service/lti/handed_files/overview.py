@@ -22,7 +22,7 @@ _MOST: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class MissingReport:
-    """Files whose report did not arrive, and why. Without ``next_try_at`` it was given up."""
+    """Files whose report did not arrive, and why. Without ``next_try_at``, no more tries follow."""
 
     learner: str
     name: str

@@ -20,8 +20,8 @@ READ: Final = f"{AGS}lineitem.readonly"
 def ensure_line_item(connection: Connection, link: int) -> None:
     """Note the line item of a resource link, if the platform takes scores for it.
 
-    If its address is unknown, the first score looks it up, or makes it. The scores of earlier
-    attempts are queued.
+    If the address of the line item is unknown, the sender of the first score looks up the line
+    item, or makes it. The scores of earlier attempts are queued.
     """
     row = connection.execute(
         select(resource_links).where(resource_links.c.number == link)
@@ -56,7 +56,7 @@ def try_refused_again(connection: Connection, learner: str, now: datetime) -> No
 
 
 def takes_scores(scopes: str) -> bool:
-    """True if a platform allows that scores are sent."""
+    """True if the scopes of a platform allow us to send scores."""
     return SEND in scopes.split()
 
 

@@ -51,7 +51,7 @@ class ConnectionCounts:
 
 @dataclass(frozen=True)
 class SharedPort:
-    """A shared port, as one worker process gets it."""
+    """A shared port, and the place of one worker process among those that share it."""
 
     listener: socket.socket
     counts: ConnectionCounts
@@ -133,7 +133,7 @@ class Acceptor:
         self._waiting = self._loop.call_later(seconds, self._resume)
 
     def _resume(self) -> None:
-        """Accept one connection that no other process has accepted; then listen again."""
+        """Accept one connection, if one still waits; then listen again."""
         self._waiting = None
         self._accept()
         if self._waiting is None:

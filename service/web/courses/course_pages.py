@@ -58,7 +58,7 @@ class PointsGroup(NamedTuple):
 def courses_page(
     courses: Sequence[Course], assets: Assets, language: Language, *, creates: bool
 ) -> bytes:
-    """Return the page with the list of courses; with ``creates``, it has a form for a new one."""
+    """Return the page with the list of courses; with ``creates``, also a form for a new course."""
     scripts = ["course_forms.js"]
     return _page("courses", assets, language, "../", scripts, courses=courses, creates=creates)
 
@@ -73,7 +73,7 @@ def course_page(
     has_keys: bool,
     deletes: bool,
 ) -> bytes:
-    """Return the page of a course; with ``deletes``, the caller may delete it."""
+    """Return the page of a course; with ``deletes``, the caller may delete the course."""
     return _page(
         "course",
         assets,
