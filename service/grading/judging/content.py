@@ -39,7 +39,7 @@ def of_rows(
     most: int | None = None,
     usual: tuple[int, int] | None = None,
 ) -> Content:
-    """Return the content of rows ``(rows, cells)`` that each have a worth: tables and screws."""
+    """Return the content of a table or of screws ``(rows, cells)``: each row has a worth, too."""
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
     return Content(rows, groups, besides=True, most=most, usual=usual)

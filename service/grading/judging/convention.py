@@ -38,9 +38,9 @@ _NOT_ASKED_FOR = register(
 def judged_in_convention(
     part: DhTableSpec, table: StudentTable, grading: Grading
 ) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
-    """Return the convention of the table, its judgement in it, and findings on the convention.
+    """Return the table's convention, the judgement in it, and findings on the convention.
 
-    If the part allows both and the answer names none, choose the convention in which fewer
+    If the part allows both conventions and the answer names none, choose the one in which fewer
     cells are wrong. If the counts are equal, choose the reference's convention.
     """
     if part.convention == "either" and table.convention is None:
@@ -84,7 +84,7 @@ def _taken(convention: Convention) -> Finding:
 
 
 def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...]:
-    """Return the finding on an answer that names another convention than the part does."""
+    """Return a finding if the answer names another convention than the part asks for."""
     if table.convention in (None, asked):
         return ()
     if asked is Convention.STANDARD:

@@ -40,7 +40,7 @@ AXIS, Z, ORIGIN, X = 0, 1, slice(2, 5), 5
 
 @dataclass(frozen=True, slots=True)
 class FramesAtHome:
-    """The frames to be placed, with all joint variables 0, and the given ones.
+    """The frames to be placed and the given frames, with all joint variables 0.
 
     ``joints`` are the numbers of the frames' joints. ``base`` and ``tool`` are ``(SAMPLES, 4, 4)``.
     """
@@ -155,11 +155,11 @@ def ways_to_judge(
     written: Sequence[StudentFrame] | None,
     home: Samples,
 ) -> list[JudgedFrames]:
-    """Judge frames, each relative to its neighbour as it was placed, in all sensible ways.
+    """Judge frames in all sensible ways, each frame relative to its neighbour as placed.
 
-    The axis of a sliding joint has no fixed place. The first way puts each of these axes through
+    The axis of a sliding joint has no fixed place. The first way puts each sliding axis through
     the origin that the student chose, if the rules allow that. If cells are then wrong, the other
-    ways leave some of these axes where the figure draws them, or put one where the frames beside it
+    ways leave some sliding axes where the figure draws them, or put one where the frames beside it
     need it. So one wrong origin need not make another frame wrong.
     ``written`` are the entries, which may be rounded.
     """
@@ -190,8 +190,9 @@ def _axis_by_others(
     """Return the axis of a sliding joint, moved to where the student's x axes meet it.
 
     A sliding joint determines only the direction of its axis. The x axis of each frame that has
-    this axis as its neighbour must cross it. The x axis of its own frame must cross both this axis
-    and its neighbour. Return None if the frame is on the axis as drawn, or if no x axis is written.
+    this axis as its neighbour must cross the sliding axis. The x axis of the joint's own frame must
+    cross both the sliding axis and the neighbouring axis. Return None if the frame is on the axis
+    as drawn, or if no x axis is written.
     """
     asked, own = robot.asked[i], placed[i]
     if not asked.slides or own.point is None:
@@ -272,7 +273,7 @@ def table_of_frames(
 ) -> Table:
     """Return the DH table ``(rows, 4, samples)`` that follows from right frames.
 
-    A frame whose z axis is opposite to its joint's counts the joint variable negative.
+    If the z axis of a frame is opposite to its joint's axis, the joint variable has a minus sign.
     """
     frames = [robot.base]
     senses = {0: np.ones(len(robot.base))} if robot.convention is Convention.STANDARD else {}

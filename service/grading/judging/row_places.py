@@ -128,7 +128,7 @@ def row_too_many(i: int) -> Finding:
 
 
 def extra_row(i: int) -> Finding:
-    """The finding on a row that belongs to nothing."""
+    """The finding on a row that belongs neither to a joint nor to the end effector."""
     return EXTRA_ROW.finding(
         say(
             "Row {row} of your table belongs to no joint and not to the end effector: leave it "

@@ -66,11 +66,11 @@ class JudgedRow:
 class Judgement:
     """A table compared with the right one, in the frames that it is judged in.
 
-    ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``roles``
-    are those of the submitted rows if the student chose the frames. ``departures`` is the cost of
-    these frames, infinite if the intended ones are unknown. ``extra`` are the rows without a
-    counterpart; ``in_place`` is true if each row was compared with the reference's row of the same
-    place, ``reached`` if the rows lead to the given tool frame. ``lost`` are the
+    ``matches`` is the Match of each cell, ``(rows, 4)``; no cell of a missing row matches.
+    ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures`` is
+    the cost of these frames, infinite if the intended frames are unknown. ``extra`` are the rows
+    without a counterpart. ``in_place`` is true if each row was compared with the reference's row of
+    the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost`` are the
     units that the wrong cells lose, in the frames in which they lose the fewest.
     """
 

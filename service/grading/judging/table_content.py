@@ -62,7 +62,7 @@ def _differs_from_lazy(
 
 @dataclass(frozen=True)
 class _Task:
-    """The key of a cache for a part's table; tasks are equal if their exercise versions are."""
+    """A cache key for a part's table: equal for the same exercise version, part and convention."""
 
     version: str
     part_id: str

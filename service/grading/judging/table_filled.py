@@ -40,7 +40,7 @@ def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) 
 
 
 def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
-    """Return the table with ``more`` rows of such numbers at its end."""
+    """Return the table with ``more`` rows at its end, of numbers that are wrong in any frames."""
     rows = len(answer.rows)
     numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
     values = np.repeat(numbers, SAMPLES, axis=-1)
@@ -73,7 +73,7 @@ def written_content(answer: StudentTable, given: Sequence[bool], grading: Gradin
 
 
 def with_zeros(answer: StudentTable) -> Table:
-    """Return the numbers of the table, with 0 in empty cells, so that their joints do not move."""
+    """Return the numbers of the table, with 0 in empty cells: joints of empty cells do not move."""
     return np.where(empty_cells(answer)[..., None], 0.0, answer.values)
 
 

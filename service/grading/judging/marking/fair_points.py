@@ -43,9 +43,9 @@ def with_fair_points(
     work: float,
     grading: Grading,
 ) -> Judged:
-    """Return the judgement of a wrong table, with the limits of its points.
+    """Return ``judged``, the judgement of a wrong table, with limits on its points.
 
-    ``judged_again`` judges another table, which costs ``work``.
+    ``judged_again`` judges another table. ``work`` is the work of judging a table with messages.
     """
 
     def lost(other: Judged) -> int:
@@ -134,7 +134,7 @@ def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
 
 
 def _counts_wrong(judged: Judged) -> list[int]:
-    """Return the number of cells of each row that are not right."""
+    """Return, for each row, the number of its cells that are not right."""
     return [sum(c.verdict is not Verdict.CORRECT for c in row.cells) for row in judged.rows]
 
 

@@ -41,7 +41,7 @@ _Verdicts = Sequence[Sequence[Verdict]]
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """Steps that were lost: in the cells of the row with this index, or in the whole answer."""
+    """Steps lost in the cells of the row with index ``row``, or in the whole answer if None."""
 
     code: str
     steps: int
@@ -50,7 +50,7 @@ class _Loss:
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """The steps that an answer has lost: in all, place by place, and by row."""
+    """The steps that an answer has lost: ``lost`` in all, ``losses`` by place, ``rows`` by row."""
 
     worth: CellWorth
     lost: int
@@ -96,8 +96,8 @@ def unjudged_report(
 def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
     """True if an answer has earned at least ``share`` (0 to 1) of the points by content.
 
-    For a rotation with a position, it must be more than ``share``: later parts that follow from a
-    right rotation alone are easy.
+    For a rotation with a position, the answer must have earned more than ``share``, because later
+    parts that need only a right rotation are easy.
     """
     marks = _marks(judged, "content", part.points)
     earned, least = marks.worth.total - marks.lost, share * marks.worth.total
@@ -110,7 +110,7 @@ def steps_lost(part: PartSpec, judged: Judged) -> int:
 
 
 def least_lost(part: PartSpec, judged: Judged, cells: int) -> int:
-    """Return the steps that a wrong row loses at least if it has ``cells`` content cells."""
+    """Return the fewest steps that a wrong row with ``cells`` content cells can lose."""
     if part.marking != "content":
         return 0
     worth = worth_of(judged.content, part.marking, part.points)
@@ -131,7 +131,7 @@ def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
 
 @lru_cache(maxsize=1024)
 def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
-    """Return the marks if everything is right; most answers to a part have these."""
+    """Return the marks of a right answer; memoized, because most answers are right."""
     worth = worth_of(content, marking, points)
     return _Marks(worth, 0, (), (0,) * len(worth.rows))
 
@@ -139,7 +139,7 @@ def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
 def _losses(
     judged: Judged, marking: Marking, points: float, worth: CellWorth, charges: list[int]
 ) -> tuple[_Loss, ...]:
-    """Return what a wrong answer has lost, place by place."""
+    """Return the steps that a wrong answer has lost, one ``_Loss`` for each place."""
     if judged.stands_still:
         return (_Loss(NO_JOINT_MOVES, worth.total),)
     if marking == "whole":
@@ -186,7 +186,7 @@ def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: 
 
 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
-    """Return the cost of the cells of each row that are not right.
+    """Return, for each row, the cost of its cells that are not right.
 
     A group of cells cannot lose more than it is worth. A wrong, empty or unreadable content cell
     costs a unit. So does any other cell that is wrong or empty. All other unreadable cells of a row
@@ -227,10 +227,10 @@ def _is_right(row: Sequence[Verdict]) -> bool:
 
 
 def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
-    """Return the steps that each row loses; none loses more than it is worth.
+    """Return the steps that each row loses; no row loses more than it is worth.
 
-    A row loses what its cells cost. If it is worth less, the other rows of its group lose the rest,
-    then those that have lost something, then all.
+    A row loses the cost of its cells. If the row is worth less, other rows lose the rest: first the
+    rows of the same group, then the rows with a cost, then all rows.
     """
     rows = apportioned(min(lost, sum(charges)), charges)
     groups = worth.content.groups

@@ -86,7 +86,7 @@ class CellWorth:
         return units
 
     def fifth(self, group: int) -> int:
-        """Return the cost of all unread cells of a row in a group that are not content cells."""
+        """Return the common cost of a row's unread cells in ``group`` that need no knowledge."""
         return max(1, round(self.units[group] * BESIDES))
 
     def points(self, steps: int) -> float:
@@ -173,7 +173,7 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
 
 
 def _unit(cells: int, groups: int, total: int) -> int:
-    """Return the worth of a content cell if each group is worth something besides.
+    """Return the worth of a content cell if each group is also worth something besides its cells.
 
     The groups share the rest, which a lazy answer earns. So the worth is rounded so that the rest
     is at most a quarter of all steps and, if possible, at least one step for each group.

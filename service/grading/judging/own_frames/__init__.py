@@ -18,6 +18,6 @@ In the order in which they are used:
 - ``best_roles``: choose the pairing of rows and joints with the nearest valid table
 - ``remarks``: messages on valid frames that are not the reference's
 
-``reference`` has the reference in the forms that the others need. ``validity`` also tests many
-tables at once.
+``reference`` has the reference in the forms that the other modules need. ``validity`` also tests
+many tables at once.
 """

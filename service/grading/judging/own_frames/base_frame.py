@@ -1,8 +1,8 @@
 """Find the poses that a free frame 0 may have, and test tables from there.
 
 All comparisons are in the home configuration (all joint variables 0), where the positive direction
-of a joint does not matter. The joint screws and the pose there determine a chain (Lynch and Park,
-*Modern Robotics*, section 4.1).
+of a joint does not matter. The joint screws and the pose in this configuration determine a chain
+(Lynch and Park, *Modern Robotics*, section 4.1).
 """
 
 from collections.abc import Iterator
@@ -28,10 +28,10 @@ def possible_bases(
 ) -> Iterator[Matrices | None]:
     """Yield possible poses ``(L, 4, 4)`` of frame 0 in the reference's frame 0; None for identity.
 
-    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of a table; ``joint_signs`` ``(rows +
-    1,)`` the signs of the joint variables that they start from. A given tool allows one pose.
-    Otherwise the joint axes must lie on the reference's, in the directions that the signs give, or
-    in either direction if the directions are free.
+    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of a table. ``joint_signs`` ``(rows +
+    1,)`` has the sign of the joint variable that each row starts from. A given tool allows one
+    pose. Otherwise the joint axes must lie on the reference's axes, in the directions that the
+    signs give, or in either direction if the directions are free.
     """
     if not freedom.base:
         yield None

@@ -121,5 +121,5 @@ def usual_rows(convention: Convention, grading: Grading) -> int:
 
 
 def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
-    """Return the joint of each row, and whether the row is missing."""
+    """Return the joint of each role, and whether its row is missing."""
     return [(role.joint, role.row is None) for role in roles]

@@ -52,7 +52,7 @@ class _Case:
     """A table with unread cells at one set of link lengths; the unit is the typical length.
 
     ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells ``(U, 2)``. ``variables`` ``(U,
-    L)`` is the joint variable that belongs in each of them, ``target`` ``(L, 4, 4)`` the
+    L)`` is the joint variable that belongs in each unread cell. ``target`` ``(L, 4, 4)`` has the
     reference's tool frames.
     """
 
@@ -259,7 +259,7 @@ def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
 def _moved(
     freedom: FrameFreedom, base: Matrices, tool: Matrices, twists: Numbers
 ) -> tuple[Matrices, Matrices]:
-    """Return a free base and a free tool after their twists, ``(S, 1, 4, 4)`` each."""
+    """Return the base and the tool, ``(S, 1, 4, 4)`` each, moved by ``twists`` if they are free."""
     if freedom.base:
         base = exponential(twists[:, None, :6], 1.0) @ base
     if freedom.tool:

@@ -62,7 +62,7 @@ def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
 def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
     """Return the reference's frames on the joint axes and its tool frame.
 
-    The shape is ``(joints + 1, samples, 4, 4)``. They are the frames of a table in this convention,
+    The shape is ``(joints + 1, samples, 4, 4)``. The frames are those of a table in ``convention``,
     even if the robot has no such table.
     """
 
@@ -83,11 +83,12 @@ def frames_on_axes(
     convention: Convention,
     mechanism: Mechanism,
 ) -> Matrices:
-    """Return the student's frames on the joint axes in the reference's: ``(joints, ..., 4, 4)``.
+    """Return the student's frames on the joint axes, as seen from the reference's frames.
 
-    ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are those of the frames before each joint's Z.
-    ``links`` ``(rows + 1, 4, ...)`` are the regrouped constants. The frame on the axis is the one
-    before Z in the standard convention, and the one after Z in the modified convention.
+    The shape is ``(joints, ..., 4, 4)``. ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are the
+    relative poses of the frames before each joint's Z. ``links`` ``(rows + 1, 4, ...)`` are the
+    regrouped constants. The frame on a joint axis is the frame before Z in the standard convention,
+    and the frame after Z in the modified convention.
     """
     places = [i for i, _ in joint_cells(roles)]
     on_axes = relative_poses[places]

@@ -79,7 +79,7 @@ def roles_of(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Return the roles of the rows; the reference's table has ``expected_rows``.
+    """Return the roles of the rows; the reference's table has ``expected_rows`` rows.
 
     If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
     Otherwise the joint variables decide: the pairing in order with the most matching variables is

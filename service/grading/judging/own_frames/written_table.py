@@ -27,7 +27,7 @@ class WrittenTable(Rereadable):
     """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
 
     Each value is the sum of ``constants`` and ``motion``, the part that depends on the joint
-    variables. ``reference`` is the reference's table if it has as many rows. Each of the
+    variables. ``reference`` is the reference's table if both have equally many rows. Each of the
     ``exchanges`` names two lengths and holds the change of the table when they are exchanged.
     """
 

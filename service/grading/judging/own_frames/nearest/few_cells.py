@@ -52,9 +52,10 @@ class NearestTable:
     """The valid table nearest to a handed-in one: ``expected`` is ``(rows, 4, SAMPLES)``.
 
     ``frames`` ``(joints, samples, 4, 4)`` are its frames on the joint axes as seen from the
-    reference's. ``cost`` is that of ``frame_choice``: below 1 the handed-in table is valid.
-    ``lost`` are the units of marks that the wrong cells lose, compared with the valid table for
-    which these are the fewest (not always this table); infinite if unknown.
+    reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1, the handed-in
+    table is valid. ``lost`` is the number of units of marks that the wrong cells lose, compared
+    with the valid table for which they lose the fewest (not always this table); infinite if
+    unknown.
     """
 
     roles: tuple[Role, ...]
@@ -91,7 +92,10 @@ class _Case:
         return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
 
     def from_reference(self, reached: Matrices) -> Matrices:
-        """Return the frames on the joint axes in the reference's; see ``_from_reference``."""
+        """Return the frames on the joint axes, as seen from the reference's frames.
+
+        For the shapes, see ``_from_reference``.
+        """
         return _from_reference(reached, self.roles, self.convention, self.grading)
 
 
@@ -135,9 +139,9 @@ def single_repairs(
 def frames_from_reference(
     table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """Return a table's frames on the joint axes in the reference's, at a subset of the samples.
+    """Return a table's frames on the joint axes, as seen from the reference's frames.
 
-    The shape is ``(joints, samples, 4, 4)``.
+    The shape is ``(joints, samples, 4, 4)``, at a subset of the samples.
     """
     reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
     return _from_reference(reached, roles, convention, grading)[:, 0]
@@ -146,9 +150,10 @@ def frames_from_reference(
 def _from_reference(
     reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """Return the frames on the joint axes in the reference's, ``(joints, T, subset, 4, 4)``.
+    """Return the frames on the joint axes, as seen from the reference's frames.
 
-    ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables.
+    The shape is ``(joints, T, subset, 4, 4)``. ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all
+    frames of T tables.
     """
     of_joints = [role.joint is not None for role in roles]
     on_axes = joint_frames(reached, convention)[of_joints]
@@ -182,9 +187,10 @@ def _repairs(case: _Case) -> list[CellRepair]:
 def _admissible(
     repairs: Iterable[CellRepair], counts: Container[int], case: _Case
 ) -> list[CellRepair]:
-    """Return repairs of ``counts`` cells that leave every cell depending correctly on the joints.
+    """Return the repairs after which all cells depend correctly on the joints.
 
-    Their lengths are in the table's unit.
+    The number of cells of a repair must be in ``counts``. The lengths in the returned repairs are
+    in the table's unit.
     """
     of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) in counts)
     return [
@@ -201,9 +207,10 @@ def _in_one_row(repair: CellRepair) -> bool:
 def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
     """Return the table after the repair of the likeliest slip.
 
-    Repairs of few cells are cheap, and cells in one row are cheaper than in several. Then repairs
-    with frames near the reference's come first; the search ends if the frames alone cost more than
-    the best repair so far.
+    A repair is cheap if it has few cells, if these are in one row, and if its frames are near the
+    reference's. Repairs are tried in the order of this cost. The search ends when this cost alone
+    is at least the full cost of the best repair so far, which includes the unlikelihood of
+    its slips.
     """
     tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
     for k, repair in enumerate(repairs):
@@ -229,7 +236,7 @@ def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | Non
 
 
 def _lost(repair: CellRepair, case: _Case) -> float:
-    """Return the units of the marks that the cells of a repair lose."""
+    """Return the units of marks that the cells of a repair lose."""
     if len(repair.cells) == 1:
         return WRONG_CELL
     repaired = case.table[..., SUBSET_SAMPLES].copy()
@@ -240,7 +247,7 @@ def _lost(repair: CellRepair, case: _Case) -> float:
 
 
 def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
-    """Return the cost of the wrong cells, without that of the ``departures`` of the frames."""
+    """Return the cost of the wrong cells, without the cost ``departures`` of the frames."""
     rows = [role.row for role in case.roles]
     if all((row := rows[i]) and not row.entries[c].readable for i, c in repair.cells):
         return UNREAD
@@ -258,7 +265,10 @@ def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
 
 
 def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
-    """Return a cell that changes as it should, minus its joint variable with either sign."""
+    """Return the constant in ``values`` of a cell: without the joint variable, of either sign.
+
+    ``values`` must change with the joints as the cell should.
+    """
     variable: Numbers = case.variables[cell]
     error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
     return values - variable if error.max() < SAME_MOTION else values + variable

@@ -77,9 +77,9 @@ def nearest_for_roles(
 def _as_intended(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """Return the table without a mistake in convention or angle unit, if that table is valid.
+    """Return the intended table if correcting the convention or angle unit makes the table valid.
 
-    Such a slip makes most cells wrong at once. But the intended table is known, and with it the
+    Such a mistake makes most cells wrong at once. But the intended table is known, and so is the
     right value of each cell.
     """
     values = handed_in_values(roles)
@@ -175,8 +175,8 @@ def _searched(
 ) -> ChainMatch:
     """Search the nearest valid table, from the base, or from the tool if only the tool is given.
 
-    If both are free, the search moves the base for each row. So if it finds nothing wrong except
-    rounding, the table is searched again from each possible base.
+    If both are free, the search moves the base for each row. So if the search finds nothing wrong
+    except rounding, it is repeated from each possible base.
     """
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions

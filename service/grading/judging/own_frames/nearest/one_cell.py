@@ -50,7 +50,7 @@ class _Repair:
     """Another constant ``(L,)`` of a cell, and the pose of one end of the chain that it implies.
 
     The end is frame 0 or the last frame, ``(L, 4, 4)``, in the reference's frame 0. ``attempt`` is
-    the number of the underlying assumption.
+    the index of the underlying assumption in ``_ends``.
     """
 
     cell: CellIndex
@@ -77,7 +77,7 @@ class _Body:
 
     @property
     def reversed(self) -> "_Body":
-        """Return the table with its factors from the last frame."""
+        """Return the same table with its factors in the order from the last frame."""
         return _Body(
             reversed_factors(self.factors),
             len(self.factors.axes) - 1 - self.joints[::-1],
@@ -116,7 +116,7 @@ class _Case:
     length_scale: float
 
     def body(self, samples: int) -> tuple[_Body, Matrices]:
-        """Return the table at the first samples, and the reference's last frame there."""
+        """Return the table and the reference's last frame, both at the first ``samples``."""
         factors = factors_of(self.table[..., :samples], self.convention)
         joints = joint_cells(self.roles)
         axes = np.array(list(accumulate(self.mechanism.joints[:, :samples], np.matmul)))
@@ -180,7 +180,7 @@ def one_cell_match(
 
 
 def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
-    """Return the repair with frames near the reference's and the likeliest slip."""
+    """Return the cheapest repair: its frames are near the reference's, and its slip is likely."""
     links = np.moveaxis(found.links, 0, 2)
     frames = frames_on_axes(found.poses, links, case.roles, case.convention, case.mechanism)
     departures = departure(frames.reshape(-1, *frames.shape[2:]), case.length_scale)
@@ -233,7 +233,8 @@ def _repairs(
 ) -> Iterator[_Repair]:
     """Yield the values that single cells would need if they alone were wrong.
 
-    The values are at the first ``samples``. If ``attempts`` are given, yield only these.
+    The values are at the first ``samples``. If ``attempts`` are given, yield only the repairs of
+    these attempts and cells.
     """
     body, tool = case.body(samples)
     for attempt, (seen, ends) in enumerate(_ends(body, tool, case.freedom)):
@@ -266,9 +267,10 @@ def _values(
 
 
 def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[_Body, Matrices]]:
-    """Yield the table from each usable end, and the poses of that end if a factor is wrong.
+    """Yield the table as seen from each usable end, and possible poses of that end.
 
-    The poses ``(K, L, 4, 4)``, one for each wrong factor, are in the reference's frame 0.
+    The poses ``(K, L, 4, 4)`` are in the reference's frame 0. The k-th pose assumes that only the
+    k-th factor is wrong.
     """
     count = len(body.factors.axes)
     if not freedom.base:
@@ -282,7 +284,7 @@ def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[
 
 
 def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
-    """Yield poses of a free end that put the axes before the wrong factor on the reference's."""
+    """Yield poses of a free end that put the axes before a wrong factor on the reference's axes."""
     n, samples = body.axes.shape[:2]
     on_axes = body.factors.before[body.joints]
     # A variable may be the wrong cell, or have either sign. The first axis and the next one that is

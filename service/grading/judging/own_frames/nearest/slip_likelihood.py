@@ -54,7 +54,7 @@ _Terms = dict[str, float]
 
 
 def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
-    """Return a constant as a sum of letters and a number, without quarter turns, or None."""
+    """Return a constant as a sum of letters and a number, or None; quarter turns are left out."""
     found = multiples(constant[:HALF], angle, grading.exercise, grading.samples)
     if found is None:
         return None

@@ -1,7 +1,7 @@
 """Spoil the only wrong row of a table, so that no cell of it fits by chance.
 
-A search compares rows with what is written in them. So entries of a wrong row can hide the frames
-in which the other rows are right.
+A search compares valid rows with the written rows. So the entries of a wrong row can hide the
+frames in which the other rows are right.
 """
 
 from typing import Final
@@ -30,8 +30,8 @@ def with_spoiled_row(
 ) -> tuple[Role, ...] | None:
     """Return the roles with wrong numbers in the only row that is not as ``expected``.
 
-    Return None if several rows differ: each would cost a search. Return None if the row has such
-    numbers already.
+    Return None if several rows differ, because each would cost a search. Return None also if the
+    row is missing, or has such wrong numbers already.
     """
     handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
     right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)

@@ -15,9 +15,9 @@ def units_lost(
 ) -> float:
     """Return the units that the ``wrong`` cells ``(rows, 4)`` lose.
 
-    Each cell loses a unit, but several in a row lose no more than the row is worth. A single one in
-    a row of zeros also loses a unit: it may be the sign of a joint variable, and a table of zeros
-    with wrong axes must lose enough.
+    Each wrong cell loses a unit, but several in one row lose no more than the row is worth. A
+    single wrong cell in a row of zeros also loses a unit: the mistake may be the sign of a joint
+    variable, and a table of zeros with wrong axes must lose enough.
 
     ``expected`` ``(rows, 4, samples)`` is the right table; ``variables`` has the joint variable
     alone in each cell.

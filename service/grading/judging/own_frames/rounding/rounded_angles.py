@@ -29,9 +29,10 @@ EVERY_COLUMN = np.ones(len(COLUMNS), dtype=np.bool_)
 def with_exact_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> tuple[Role, ...]:
-    """Return the roles with rounded angles made exact; ``as_written`` of a row keeps its numbers.
+    """Return the roles with rounded angles made exact.
 
-    If no angle was rounded, return ``roles`` itself.
+    ``as_written`` of a changed row has the written numbers. If no angle was rounded, return
+    ``roles`` itself.
     """
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
@@ -67,7 +68,7 @@ def known_angles(
 def _slack_of_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> Numbers | None:
-    """Return the slack of the rounded angles; None if there are none or angles are arbitrary."""
+    """Return the slack of the rounded angles; None if there is none or angles are arbitrary."""
     if not any(role.row.has_decimal for role in roles if role.row):
         return None
     slack = slack_of_cells(roles, samples, IS_ANGLE)

@@ -60,8 +60,8 @@ class _Chain:
     """A table to be made valid, at L sets of links.
 
     ``links`` ``(rows + 1, 4, L)`` are its regrouped constants; ``values`` ``(rows, 4, SAMPLES)``
-    its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, None if that is given. The
-    ``unknown`` cells may have any value.
+    its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or None if frame 0 is
+    given. The ``unknown`` cells may have any value.
     """
 
     links: Table
@@ -81,8 +81,8 @@ class _Chain:
     def misfits(self, shifts: Numbers, free: Numbers) -> Numbers:
         """Return the errors at the targets ``(K, n, L)``.
 
-        ``shifts`` ``(K, count)`` are those of the decimals, ``free`` ``(K, free, L)`` the other
-        unknowns.
+        ``shifts`` ``(K, count)`` are the shifts of the decimals, ``free`` ``(K, free, L)`` the
+        other unknowns.
         """
         count = self.links.shape[-1]
         cells = self.values.reshape(-1, SAMPLES)
@@ -106,7 +106,7 @@ class _Chain:
         return np.asarray(turn @ self.base)
 
     def _sizes(self) -> Numbers:
-        """Return the largest change of its cell per unit of each decimal: ``(count,)``."""
+        """Return, for each decimal, the largest change of its cell per unit: ``(count,)``."""
         cells = self.values.reshape(-1, SAMPLES)
         moved = self.decimals.shifted(np.eye(self.decimals.count), cells) - cells
         lengths = np.tile(np.where(IS_ANGLE, 1.0, self.length_scale), len(self.values))
@@ -168,9 +168,10 @@ def with_true_numbers(
 def with_rounded_cells(
     nearest: NearestTable, convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Compute the nearest table of a table with wrong cells from the exact numbers of its decimals.
+    """Return the nearest table of a wrong table, computed from the exact numbers of its decimals.
 
-    ``nearest`` was computed from the rounded numbers, so that even right cells differ slightly.
+    ``nearest`` was computed from the rounded numbers, so that even its right cells differ slightly
+    from the written ones.
     """
     roles = nearest.roles
     if nearest.cost < WRONG_CELL or not _has_decimals(roles):
@@ -242,7 +243,7 @@ def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading)
 def _with_known_angles(
     roles: tuple[Role, ...], grading: Grading
 ) -> tuple[tuple[Role, ...], list[CellIndex]]:
-    """Return the roles as written, except known rounded angles made exact, and their cells."""
+    """Return the roles as written but with known angles made exact, and the angles' cells."""
     exercise, samples = grading.exercise, grading.samples
     written = _as_written(roles)
     known = [(i, column) for i, column in np.argwhere(known_angles(written, exercise, samples))]
