@@ -124,7 +124,7 @@ def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]
     """Return the SHIFT and TURN of each transform about its axis, and its deviation from a screw.
 
     For transforms ``(K, L, 4, 4)`` and axes ``(K,)``, the results are the sizes ``(K, 2, L)`` and
-    the deviations ``(K, L)``: the tilt of the axis plus the distance of the origin from it.
+    the deviations ``(K, L)``: the tilt of the axis plus the distance of the origin from the axis.
     """
     k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3

@@ -93,7 +93,7 @@ def adjoint(transform: Matrices) -> Matrices:
 
 
 def moved(transform: Matrices, screws: Numbers) -> Numbers:
-    """Return screw axes ``(..., 6)``, given in the second frame of ``transform``, in the first."""
+    """Convert screw axes ``(..., 6)`` from the second frame of ``transform`` to the first frame."""
     return np.asarray((adjoint(transform) @ screws[..., None])[..., 0])
 
 

@@ -83,8 +83,8 @@ def matches(
     """Return the Match of each entry ``(...)`` as written, from values ``(..., samples)``.
 
     ``scale`` is the unit of the tolerance: 1 for angles and direction cosines, a typical length for
-    lengths. It gives the tolerance an absolute minimum, so that sin² + cos² − 1 always equals 0.
-    The minimum is far too small to hide a wrong constant in a large entry.
+    lengths. ``scale`` gives the tolerance an absolute minimum, so that sin² + cos² − 1 always
+    equals 0. The minimum is far too small to hide a wrong constant in a large entry.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         plain = actual - expected
@@ -133,7 +133,7 @@ def is_rounded(
     *,
     angle: bool = False,
 ) -> bool:
-    """True if shifts of its rounded decimals make an entry equal to ``expected`` ``(samples,)``."""
+    """True if shifts of an entry's decimals make the entry equal ``expected`` ``(samples,)``."""
     if not expression.has_decimal or not 0 < len(decimals_of(expression).units) <= MAX_DECIMALS:
         return False
     # A table is compared several times, and most of its cells with the same numbers.
@@ -184,8 +184,8 @@ def nearly_equal(
     """Return a mask ``(...)`` of the values ``(..., samples)`` that are equal except for rounding.
 
     Use this for guesses, such as which slip explains an answer, but never for a verdict. ``slack``
-    is a known rounding error. The tolerance is at least a thousandth of the values' size, which
-    counts at most as much as the robot's largest numbers.
+    is a known rounding error. The tolerance is at least a thousandth of the values' size, or of the
+    robot's largest numbers if the values are larger.
     """
     error = np.abs(difference(one, other, angle)).max(axis=-1)
     size = np.sqrt(np.mean(other * other, axis=-1))
@@ -238,10 +238,10 @@ def _rounding_slack(expression: Expression, samples: Samples) -> float:
 def fitted_shifts(
     errors: Callable[[Numbers], Numbers], units: Numbers, tolerance: float
 ) -> Numbers | None:
-    """Return shifts ``(m,)`` of decimals that leave no error; None if there are none.
+    """Return shifts ``(m,)`` of decimals that leave no error, or None.
 
-    ``errors`` returns the errors ``(K, n)`` for shifts ``(K, m)``; ``units`` ``(m,)`` are those of
-    the decimals. Each shift is at most as large as rounding or cutting off allows.
+    ``errors`` returns the errors ``(K, n)`` for shifts ``(K, m)``; ``units`` ``(m,)`` are the units
+    of the decimals. Each shift is at most as large as rounding or cutting off allows.
     """
     count = len(units)
     steps = difference_steps(units)
@@ -305,7 +305,8 @@ def fitted_unknowns(
 class SharedDecimals:
     """The rounded decimals of several entries that can only be right together.
 
-    ``units`` ``(count,)`` are those of the decimals; ``count`` is 0 if there are none or too many.
+    ``units`` ``(count,)`` are the units of the decimals. ``count`` is 0 if there are no decimals or
+    too many.
     """
 
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
@@ -341,8 +342,9 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
 
     ``bounds`` ``(2, count)`` are the lower and upper bounds of the shifts. ``determined`` ``(N,
     N)`` projects unknowns on those with an effect. If only the sum of two decimals has an effect,
-    both may have to share the shift. Alternating projections on the two sets converge to their
-    intersection (von Neumann, Bregman), or end if a plane separates the sets.
+    both may have to share the shift. The unknowns are projected in turn on the set with the same
+    effect and on the set within bounds. These projections converge to the intersection of the sets
+    (von Neumann, Bregman), or end if a plane separates the sets.
     """
     (lower, upper), count = bounds, bounds.shape[1]
     effect = determined @ unknowns
@@ -373,7 +375,7 @@ def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
-    """Return the largest difference of equal values: ``(...)``."""
+    """Return the largest difference at which values count as equal: ``(...)``."""
     # ``np.mean`` takes as long as the rest of this function, so compute the mean directly.
     size = np.sqrt((expected * expected).sum(axis=-1) / expected.shape[-1])
     return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)

@@ -11,7 +11,7 @@ from service.kinematics.transforms import Numbers
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the two halves of values ``(..., samples)``: the same links, other joint values."""
+    """Return the halves of values ``(..., samples)``: same links, different joint values."""
     half = values.shape[-1] // 2
     return values[..., :half], values[..., half:]
 
@@ -39,7 +39,7 @@ def joint_counts(
     """Return whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
 
     ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Return the counts ``(cells,
-    joints)`` and a mask ``(cells,)`` of the cells with that form, angles up to whole turns.
+    joints)`` and a mask ``(cells,)`` of the cells that have this form (angles up to whole turns).
 
     All cells are one least-squares problem, because the two halves of the samples differ only in
     the joints.

@@ -95,13 +95,13 @@ class Samples:
         return self.with_names(absent).values if absent else self.values
 
     def renamed(self, meanings: Mapping[str, str]) -> "Samples":
-        """Return these samples with the values of other symbols, as in ``meanings``."""
+        """Return these samples, where each name in ``meanings`` has the values of its meaning."""
         values = {name: self.values[meaning] for name, meaning in meanings.items()}
         return Samples({**self.values, **values}, self.in_degrees)
 
     @staticmethod
     def subset_of(values: Numbers, count: int) -> Numbers:
-        """Return the values ``(..., SAMPLES)`` at the samples of ``subset``."""
+        """Return the values ``(..., SAMPLES)`` at the samples that ``subset`` keeps."""
         return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
@@ -131,7 +131,7 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
 
 @dataclass(frozen=True, slots=True)
 class _Symbols:
-    """The symbols of an exercise; equal if the exercise versions are."""
+    """The symbols of an exercise; equal if the exercise versions are equal."""
 
     version: str
     variables: tuple[Variable, ...] = field(compare=False)
@@ -139,7 +139,7 @@ class _Symbols:
 
 @dataclass(frozen=True, slots=True)
 class _Ranges:
-    """The ranges of an exercise's symbols, ``(n, 1)``; those of the joints are first.
+    """The ranges of an exercise's symbols, ``(n, 1)``; the joint variables come first.
 
     ``moving`` is the number of joint variables, ``angles`` are the names of all angles.
     """

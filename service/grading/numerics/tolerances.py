@@ -1,4 +1,4 @@
-"""All tolerances of grading, with their reasons; those of poses are in kinematics.
+"""All tolerances of grading, with their reasons; tolerances of poses are in kinematics.
 
 Lengths are in the exercise's typical length, angles in radians, unless stated otherwise.
 """

@@ -67,7 +67,10 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
 
 
 def _known_to_first(joints: int) -> NDArray[np.bool_]:
-    """Return, for the first m axes, a mask of the known directions, points, and the arbitrary x."""
+    """Return a mask ``(n, 2 n + 1)`` of what is known if the first 1 to n axes are known.
+
+    Its columns are the n directions, the n points, and the arbitrary x.
+    """
     first = np.tri(joints, dtype=np.bool_)
     return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)
 

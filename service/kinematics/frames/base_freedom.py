@@ -1,4 +1,4 @@
-"""Track how much freedom is left of a base frame that the student chooses, from row to row.
+"""Track, from row to row, how freely a base frame that the student chooses may still be moved.
 
 If the base is free, frame 0 may be turned about the axis of joint 1 and moved along it (and moved
 anywhere, if that joint is prismatic). The choice has an effect only where the chain first leaves
@@ -26,10 +26,10 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class BaseFreedom:
-    """The ways to move the student's frame, in the reference frame on the same axis.
+    """The ways to move the student's frame, given in the reference's frame on the same axis.
 
-    With ``turn``, it may be turned about z. With ``anywhere``, it may be moved in all directions;
-    else it may be moved only along ``slide`` ``(L, 3)``, or not at all if ``slide`` is None.
+    With ``turn``, the student's frame may be turned about z. With ``anywhere``, it may be moved in
+    all directions; else only along ``slide`` ``(L, 3)``, or not at all if ``slide`` is None.
     """
 
     turn: bool = False

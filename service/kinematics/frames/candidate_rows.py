@@ -168,8 +168,8 @@ def _signs(
 
     x is along a normal at the angle ``theta`` ``(H, L)``, where the link length is ``a``, or points
     the opposite way. If ``a`` is a difference of lengths, its sign may change between samples, but
-    that of x does not. So x first points the same way as the reference's x; if the axis was moved,
-    the directions of the written θ and a are tried, too.
+    the direction of x does not. So x first points the same way as the reference's x. If the axis
+    was moved, the directions of the written θ and a are tried, too.
     """
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     along = np.cos(theta - x_angle)

@@ -43,11 +43,12 @@ class Target:
 class RowConstants:
     """The constants of a row as written.
 
-    ``written`` is ``(4, L)``, NaN without a usable number. These are ``(4,)``: ``is_gradable``
-    marks the cells that can be right or wrong, ``wrong_regardless`` those that are wrong in any
-    frames, ``absent`` those that the table does not have (they are 0), and ``slack`` is the
-    rounding error of each cell. ``variable`` is the column of the joint variable that the row
-    starts from, or None. ``joint_sign`` is the sign of that variable: +1, −1, or 0 if unknown.
+    ``written`` is ``(4, L)``, NaN without a usable number. The next four are ``(4,)``.
+    ``is_gradable`` marks the cells that can be right or wrong, ``wrong_regardless`` the cells that
+    are wrong in any frames, and ``absent`` the cells that the table does not have (they are 0).
+    ``slack`` is the rounding error of each cell. ``variable`` is the column of the joint variable
+    that the row starts from, or None. ``joint_sign`` is the sign of that variable: +1, −1, or 0 if
+    unknown.
     """
 
     written: Numbers
@@ -63,9 +64,9 @@ class RowConstants:
 class ChainMatch:
     """A valid table, and its frames relative to the reference's.
 
-    ``rows`` ``(rows, 4, L)`` are the right rows; ``relative_poses`` ``(rows, L, 4, 4)`` are those
-    at each target; ``cost`` is the distance of the written table from this one, ``lost`` the units
-    of marks that it loses (``frame_choice``).
+    ``rows`` ``(rows, 4, L)`` are the right rows. ``relative_poses`` ``(rows, L, 4, 4)`` are the
+    relative poses at each target. ``cost`` is the distance of the written table from this one,
+    ``lost`` the units of marks that the written table loses (``frame_choice``).
     """
 
     rows: Numbers
@@ -137,8 +138,8 @@ def match_tables(
 def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
     """Return the errors of relative poses at the targets, ``(tables, n, L)``: 0 for valid ones.
 
-    ``poses`` ``(rows, tables, L, 4, 4)`` are those of ``match_tables``. The directions of the axes
-    are ignored.
+    ``poses`` ``(rows, tables, L, 4, 4)`` are the relative poses that ``match_tables`` returns. The
+    directions of the axes are ignored.
     """
     unit = np.array([1.0, 1.0, 1.0, length_scale])
     missed: list[Numbers] = []

@@ -2,10 +2,10 @@
 
 Denavit-Hartenberg tables are not unique (``chain_match`` explains when two describe one mechanism).
 So the search proceeds from the base to the tool. It compares each written row with all rows that
-are valid after the choices of frames so far. A wrong cell costs 1, and each further one in the same
-row less, so that one wrong row is cheaper than errors in several rows. A frame other than the
-reference's has a small cost, so that an uncompensated shift is found in the row where it was made.
-Only the cheapest hypotheses are kept (a beam search).
+are valid after the choices of frames so far. A wrong cell costs 1. Each further wrong cell in the
+same row costs less, so that one wrong row is cheaper than errors in several rows. A frame other
+than the reference's has a small cost, so that an uncompensated shift is found in the row where it
+was made. Only the cheapest hypotheses are kept (a beam search).
 
 Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
 a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame in the reference's.
@@ -62,8 +62,8 @@ _Path = tuple[tuple[Numbers, Matrices], ...]
 class _Beam:
     """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them.
 
-    ``lost`` ``(H,)`` are the units of marks that they lose. ``begun`` has the counts of a row of
-    the table that is not yet complete.
+    ``lost`` ``(H,)`` are the units of marks that the hypotheses lose. ``begun`` has the counts of a
+    row of the table that is not yet complete.
     """
 
     pose: Matrices
@@ -118,9 +118,10 @@ def nearest_table(
 
     ``z_ends_rows`` is true if a row of the table has its X before its Z.
 
-    ``base_given`` is true if frame 0 is known: at ``start`` ``(L, 4, 4)`` in the reference's frame
-    0, or equal to that. ``directions_given`` is true if each joint's positive direction is given,
-    so that a reversed z axis needs a variable with the opposite sign.
+    ``base_given`` is true if frame 0 is known. Its pose in the reference's frame 0 is ``start``
+    ``(L, 4, 4)``, or the identity if ``start`` is None. ``directions_given`` is true if each
+    joint's positive direction is given, so that a reversed z axis needs a variable with the
+    opposite sign.
     """
     samples = rows[0].written.shape[-1]
     if base_given:
@@ -297,7 +298,7 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
 def departure(pose: Matrices, length_scale: float) -> Numbers:
     """Return the cost ``(N,)`` of frames that are not the reference's: small, but not 0.
 
-    ``pose`` are their relative poses ``(N, L, 4, 4)``.
+    ``pose`` ``(N, L, 4, 4)`` are the relative poses of the frames.
     """
     # An axis at a right angle is not reversed, whatever the rounding error of its cosine is.
     cost = np.where(pose[:, 0, 2, 2] < -SAME_POSE, TURNED_OVER, 0.0)

@@ -1,8 +1,9 @@
 """The rules by which frames are placed on joint axes, and the DH rows that follow.
 
-A frame has its z axis along its joint's axis. Its x axis crosses, at a right angle, the
-neighbouring axis: that of the frame before in the standard convention, that of the next frame in
-the modified one. So the origin is at the foot of the common normal; parallel axes leave it free.
+A frame has its z axis along its joint's axis. Its x axis crosses the neighbouring axis at a right
+angle. This is the z axis of the previous frame in the standard convention, and of the next frame in
+the modified convention. So the origin is at the foot of the common normal; parallel axes leave the
+origin free.
 Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §3.2.2; Craig, *Introduction to
 Robotics*, §3.4. All arrays are batched: directions and points are ``(L, 3)``.
 """
@@ -21,7 +22,7 @@ from service.kinematics.transforms import Matrices, Numbers, cross, identity, in
 
 
 class AxisPosition(StrEnum):
-    """How two axes lie: the first two determine one common normal, the others many."""
+    """How two axes lie. Skew or crossing axes have one common normal, other axes have many."""
 
     SKEW = "skew"
     CROSSING = "crossing"
@@ -97,10 +98,10 @@ def normal_foot(neighbour: AxisLine, own: AxisLine) -> Numbers:
 class AskedFrame:
     """A frame that is to be placed, and the axes that its place depends on.
 
-    ``joint`` is the index of the joint that turns about its z axis, ``own`` that axis. Its x axis
-    must cross ``neighbour``, the axis of the asked frame ``neighbour_frame``, or of a given frame
-    if that is None. The axis of a joint that slides may lie anywhere, as long as it meets the lines
-    ``must_meet``.
+    ``own`` is the frame's z axis, ``joint`` the index of the joint with this axis. The frame's x
+    axis must cross ``neighbour``: the axis of the asked frame ``neighbour_frame``, or of a given
+    frame if ``neighbour_frame`` is None. The axis of a joint that slides may lie anywhere, as long
+    as it meets the lines ``must_meet``.
     """
 
     joint: int
@@ -180,7 +181,8 @@ def right_places(
 
     ``may_move`` is false for sliding joints whose axis must be taken as drawn; ``axes`` has the
     axes that are known, by frame. The axis of a sliding joint moves to the chosen origin if the
-    origin is farther from the axis than its tolerance, and if the rules hold for the moved axis.
+    origin is farther from the axis than the frame's tolerance, and if the rules hold for the moved
+    axis.
     """
     found: list[RightPlace | None] = [None] * len(frames)
     # The neighbour's axis must be known first.
@@ -212,9 +214,9 @@ def right_places(
 
 
 def axis_across(axis: AxisLine, lines: Sequence[AxisLine], near: Numbers) -> AxisLine:
-    """Return the parallel of an axis that meets all ``lines``, as near to the points as possible.
+    """Return the parallel of ``axis`` that meets all ``lines``, as near to ``near`` as possible.
 
-    If no parallel meets them all, it has the least distances from them.
+    If no parallel meets all lines, return the one with the least distances from them.
     """
     across = np.stack([_unit(cross(axis.direction, line.direction)) for line in lines], axis=1)
     apart = np.stack([line.point - near for line in lines], axis=1)
@@ -230,7 +232,7 @@ def _may_lie(
     tolerance: float,
     length_scale: float,
 ) -> bool:
-    """True if a sliding joint's axis may lie where it was moved, with the frame at its point."""
+    """True if a sliding joint's axis may be ``moved``, with the frame's origin at its point."""
     relation = axis_relation(neighbour, moved, length_scale)
     if relation.has_one_normal and largest(normal_foot(neighbour, moved) - moved.point) > tolerance:
         return False

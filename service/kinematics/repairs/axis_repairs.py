@@ -2,9 +2,9 @@
 
 If one cell is wrong, the factors before and after its factor are two rigid bodies with fixed joint
 axes. The pose of the first body is known from a given frame 0, or from its own axes, which lie on
-the reference's. So each axis of the second body must lie on the reference's axis, seen from the
-frame before the wrong factor, and one axis that the cell moves gives its value. Other axes may
-contradict this value, so the caller must test it on the whole table.
+the reference's axes. Then each axis of the second body must lie on the reference's axis, as seen
+from the frame before the wrong factor. So one axis that the cell moves determines the value of the
+cell. Other axes may contradict this value, so the caller must test it on the whole table.
 
 A turn t about the axis e takes a direction u to v if t = atan2(e·(u × v), u·v − (e·u)(e·v)). A
 shift along e brings a point p as near as possible to a line through r with the direction v if it is
@@ -65,7 +65,10 @@ def _shifts(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield the shift of each factor that brings the next axis across it onto the wanted one."""
+    """Yield the shift of each factor that brings the next axis onto the wanted one.
+
+    An axis that is parallel to the factor's axis is passed over.
+    """
     k = np.arange(len(axes))
     v = wanted[..., :3, 2]
     cosine = v[k, :, :, axes]

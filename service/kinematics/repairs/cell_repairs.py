@@ -1,15 +1,16 @@
 """Repair the pose of a table by one or two cells.
 
 The pose is a product of factors, screws about x and z in turn (``factors``). If one factor alone is
-wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S that after it and T the true
-pose. If F is a screw about that factor's axis, its shift and its turn are what the two cells should
-be; where one of the two is as written, the other cell alone repairs the table.
+wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S the product after it and T
+the true pose. If F is a screw about that factor's axis, the shift and the turn of F are the right
+values of the two cells. If one of these values is as written, the other cell alone repairs the
+table.
 
 If one cell is wrong in each of two factors, A(x) M B(y) = N, where N = P⁻¹ T S⁻¹ as before and M is
 the product between the wrong cells, the right cells of the two factors included; A and B are a turn
 or a shift. A turn leaves the points and the direction of its axis unchanged, a shift leaves all
-directions unchanged. So the motion that takes what B leaves unchanged from M to N gives x; what
-then remains must be a B.
+directions unchanged. So A(x) takes the points or directions that B leaves unchanged from M to N,
+which determines x. The remaining motion must then be a B(y).
 
 Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``; angles in radians. Lengths should be
 measured in a unit that suits the robot, so that one tolerance serves them and angles.
@@ -132,7 +133,7 @@ def _solved(
 def _right_part(
     factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_], samples: slice
 ) -> Matrices:
-    """Return the factors with only their right cell, the wrong one at 0: ``(C, L, 4, 4)``."""
+    """Return the factors with their right cell as written and the wrong one 0: ``(C, L, 4, 4)``."""
     sizes = factors.sizes[which, :, samples]
     shifts, turns = sizes[:, SHIFT], sizes[:, TURN]
     return screws(

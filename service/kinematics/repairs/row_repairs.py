@@ -26,7 +26,7 @@ def one_row_repairs(
 ) -> list[CellRepair]:
     """Return the repairs of single rows: the cells that must be changed, and their values.
 
-    The ``wrong`` cells are always among them.
+    The cells of a repair always include the ``wrong`` cells of its row.
     """
     needed = factors.inverse_before[:-1:2] @ pose @ factors.inverse_after[2::2]
     numbers = np.flatnonzero(_misfit(needed, factors).max(axis=-1) < SAME_POSE)
