@@ -61,7 +61,8 @@ _NO_SYMBOLS: Final = Vocabulary([])
 class ReadingOptions(NamedTuple):
     """How a text is read.
 
-    With ``degrees``, angles are in degrees; then ``is_angle`` is True if the whole entry is one.
+    With ``degrees``, angles are in degrees; then ``is_angle`` is True if the whole entry is an
+    angle.
     """
 
     vocabulary: Vocabulary
@@ -93,7 +94,7 @@ class Expression:
         symbols: frozenset[str],
         options: ReadingOptions | None = None,
     ) -> None:
-        """Store ``tree`` only without ``options``; with them, ``source`` can be parsed again."""
+        """Store ``tree`` only if ``options`` is None; else ``source`` can be parsed again."""
         self.source: Final = source
         self.notes: Final = notes
         self.symbols: Final = symbols
@@ -158,7 +159,7 @@ def evaluate_all(
     values: Mapping[str, SampleArray],
     memo: dict[str, Any],
 ) -> list[SampleArray | float]:
-    """Return the result of ``evaluate`` for each expression, and nan for None, in less time."""
+    """Return the value of each expression, and nan for None; faster than calls of ``evaluate``."""
     with np.errstate(all="ignore"):
         programs = [math.nan if each is None else each._program for each in expressions]
         return [each if isinstance(each, float) else each(values, memo) for each in programs]
@@ -297,7 +298,7 @@ def _shared(symbols: frozenset[str]) -> frozenset[str]:
 
 
 def _is_small(tokens: list[Token]) -> bool:
-    """True if no tree of these tokens exceeds a limit. This is faster than to look at the tree."""
+    """True if no tree of these tokens can exceed a limit. This is faster than checking the tree."""
     if len(tokens) > _FEW_TOKENS:
         return False
     levels = sum([_LEVELS.get(token[0], 1) for token in tokens])

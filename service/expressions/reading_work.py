@@ -54,7 +54,7 @@ class _Count(NamedTuple):
 
 
 def symbols_in(text: str) -> int:
-    """Return about the number of names, numbers and signs in a text, never much too few."""
+    """Estimate the number of names, numbers and signs in a text, never much too low."""
     return _of_text(text).symbols
 
 

@@ -1,4 +1,7 @@
-"""Numbers with a decimal comma, for exercises that allow it: 1,5 is 1.5, atan2(1,5; 2) has two."""
+"""Numbers with a decimal comma, for exercises that allow it: 1,5 is 1.5.
+
+A semicolon separates arguments: atan2(1,5; 2).
+"""
 
 import re
 from typing import Final

@@ -11,7 +11,7 @@ _MOST_PARTS: Final = 64
 
 
 def check_unit(operand: Node, span: Span) -> None:
-    """Raise UnreadableError for an operand in degrees that contains π; ``span`` has the unit."""
+    """Raise UnreadableError if ``operand``, which has the unit of degrees, contains π."""
     if _is_of_pi(operand):
         inside = (operand.start, operand.end)
         raise UnreadableError("ambiguous_unit", span, opens=False, of_pi=True, inside=inside)
@@ -43,7 +43,7 @@ def _has(node: Node, kind: type[Node]) -> bool:
 
 
 def _parts(node: Node) -> list[Node]:
-    """Return the first parts of ``node``."""
+    """Return ``node`` and the nodes inside it, up to a limited number."""
     found = [node]
     for part in found:
         if len(found) > _MOST_PARTS:

@@ -58,7 +58,7 @@ def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
 
 
 def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
-    """Return ``source`` with blanks for a name and its equals sign, and a note if there are any."""
+    """Replace a name and its equals sign by blanks. Return the text, and a note if it changed."""
     left = left_side(source, vocabulary)
     if left is None:
         return source, None

@@ -137,9 +137,10 @@ class Builder:
         return Binary("^", base, exponent, base.start, exponent.end)
 
     def unit(self, operand: Node, unit: UnitName, end: int, start: int | None = None) -> Node:
-        """Build an operand with a unit; ``start`` is that of deg2rad(…).
+        """Build an operand with a unit; ``start`` is the place where deg2rad(…) starts.
 
-        Raises UnreadableError for an angle or a length, also for π°, but not for (π)deg.
+        Raises UnreadableError if the operand is an angle or a length. π° is also refused, but
+        (π)deg is read.
         """
         span = (operand.start, end)
         for node in _outside_calls(operand):
@@ -307,7 +308,7 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 
 def _names(node: Node) -> set[str]:
-    """Return the functions and the stems of symbols in ``node``, of at most 64 parts."""
+    """Return the functions and the stems of symbols in the first 64 parts of ``node``."""
     found: set[str] = set()
     pending = [node]
     # The arguments of atan2 may be long and nested.
@@ -324,7 +325,7 @@ def _names(node: Node) -> set[str]:
 
 
 def _arity(name: str, arguments: Sequence[Node] = ()) -> int:
-    """Return the number of arguments that a function takes; any number is right for some."""
+    """Return the number of arguments of a function: ``len(arguments)`` if any number is right."""
     number = BUILT.get(name)
     return ARITY.get(name, 1) if number is None else number or len(arguments)
 

@@ -13,7 +13,7 @@ _LARGEST_FACTOR: Final = 1.0
 
 
 def check_product(source: str, left: Node, right: Node) -> None:
-    """Raise UnreadableError if a product without a sign is rather two values."""
+    """Raise UnreadableError if a product without a sign is more likely to be two values."""
     kind = type(right)
     if kind is SymbolNode or kind is Call:
         return
@@ -55,7 +55,7 @@ def _is_decimal(value: Node) -> bool:
 
 
 def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
-    """True for two angles, and in brackets for an angle and a number that is no usual factor."""
+    """True for two angles or, in brackets, an angle and a number that is not a usual factor."""
     of_left, of_right = _parts(left), _parts(right)
     if 180.0 in {part.value for part in (*of_left, *of_right) if type(part) is Number}:
         return False
@@ -84,7 +84,7 @@ def _is_constant(node: Node) -> bool:
 
 
 def _parts(node: Node) -> list[Node]:
-    """Return the first parts of ``node``."""
+    """Return ``node`` and the nodes inside it, up to a limited number."""
     found = [node]
     for part in found:
         if len(found) > _MOST_PARTS:

@@ -27,7 +27,7 @@ _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
 def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
     """True if ``node`` needs brackets as an operand in ``place``, in a drawn formula or in text.
 
-    ``signed`` is True if its sign would follow an operator.
+    ``signed`` is True if the sign of ``node`` would follow an operator.
     """
     precedence = ATOM
     # Comparing types takes a third of the time of ``match``.

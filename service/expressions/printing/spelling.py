@@ -135,7 +135,7 @@ def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
 def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
     """Return the common spelling of formulas: the most frequent unit, and the first names.
 
-    ``degrees`` is True if the student works in degrees, for formulas that show no unit.
+    ``degrees`` is True if the student works in degrees. It decides if no formula shows a unit.
     """
     names: dict[str, str] = {}
     angles: Counter[str] = Counter()

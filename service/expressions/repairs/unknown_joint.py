@@ -51,7 +51,7 @@ def _place(failure: Failure, goes_on: bool) -> Span:
 
 
 def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
-    """Return the sum of the angles of the joints in ``index``, or None if it is not such a sum.
+    """Return the sum of the angles of the joints in ``index``, or None if it means no such sum.
 
     Joints that slide are left out, because they have no angle.
     """

@@ -22,7 +22,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _counted(name: str, wanted: int, found: int) -> str:
-    """Return the sentence that compares the number of arguments with that of the function."""
+    """Return the sentence on the number of arguments that a function takes and the number found."""
     if wanted == 1:
         return say(
             "The function {name} takes one value, and {found} values stand here.",
@@ -44,7 +44,7 @@ def _counted(name: str, wanted: int, found: int) -> str:
 
 
 def _with_points(failure: Failure) -> str | None:
-    """Return the source with all argument commas as decimal points, or None if one cannot be."""
+    """Return the source with decimal points for all argument commas, or None if impossible."""
     places = failure.details["places"]
     source = failure.source
     for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):

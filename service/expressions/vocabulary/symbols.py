@@ -64,8 +64,8 @@ def _shared(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
 class Vocabulary:
     """The declared symbols, by all their names. Immutable, equal by content.
 
-    They are the symbols of an exercise, or, with ``of_books``, of textbooks; messages then do not
-    mention an exercise. With ``decimal_comma``, numbers may have a decimal comma.
+    The symbols are those of an exercise. With ``of_books``, they are those of textbooks, and
+    messages do not mention an exercise. With ``decimal_comma``, numbers may have a decimal comma.
 
     Raises ValueError if two symbols have the same name, two joint variables have the same index, or
     a name cannot be written in an expression.

@@ -55,9 +55,10 @@ class Lexer(WordLexer):
         return self.tokens
 
     def _plain_run(self, text: str) -> int:
-        """Read an unchanged text as ``_run_from`` does, but from a list of strings: a fast path.
+        """Read the tokens of an unchanged text from a list of strings: a fast path.
 
-        Return the place after the first token that takes more than its string.
+        Stop where a token is not exactly its string; ``_run_from`` reads the rest. Return the place
+        after the text read.
         """
         tokens, operands, end = self.tokens, self.vocabulary.operands, 0
         for string in _STRING.findall(text):

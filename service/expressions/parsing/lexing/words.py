@@ -88,8 +88,8 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 def sole_operand(run: str, vocabulary: Vocabulary) -> Operand | None:
     """Return the meaning of a run that is one symbol or one shorthand, or None.
 
-    None also if the run is the name of a module, or if its shorthand may get a note. The vocabulary
-    keeps the result.
+    Return None also if the run is the name of a module, or if its shorthand may get a note. A
+    meaning that is found is stored in ``vocabulary``.
     """
     pieces = None if run in functions.MODULES else split(run, vocabulary)
     if pieces is None or len(pieces) > 1:
@@ -163,7 +163,7 @@ def _with_other_readings(pieces: tuple[Piece, ...], run: str) -> tuple[Piece, ..
 
 
 def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:
-    """Return the possible pieces at ``start``, longest first; a symbol precedes others as long."""
+    """Return the possible pieces at ``start``, longest first; of equal length, symbols first."""
     shorthand = _shorthand(run, start, vocabulary) or _angle_shorthand(run, start, vocabulary)
     found: list[tuple[Piece, ...]] = [] if shorthand is None else [(shorthand,)]
     for end in range(min(len(run), start + vocabulary.longest), start, -1):
