@@ -39,7 +39,10 @@ def of_rows(
     most: int | None = None,
     usual: tuple[int, int] | None = None,
 ) -> Content:
-    """Return the content of a table or of screws ``(rows, cells)``: each row has a worth, too."""
+    """Return the content of a table or of screws: each row has a worth besides its cells.
+
+    ``known`` is ``(rows, cells)``.
+    """
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
     return Content(rows, groups, besides=True, most=most, usual=usual)

@@ -232,7 +232,7 @@ def _may_lie(
     tolerance: float,
     length_scale: float,
 ) -> bool:
-    """True if a sliding joint's axis may be ``moved``, with the frame's origin at its point."""
+    """True if ``moved`` may be a sliding joint's axis, with the frame's origin at its point."""
     relation = axis_relation(neighbour, moved, length_scale)
     if relation.has_one_normal and largest(normal_foot(neighbour, moved) - moved.point) > tolerance:
         return False

@@ -79,8 +79,8 @@ def _as_intended(
 ) -> NearestTable | None:
     """Return the intended table if correcting the convention or angle unit makes the table valid.
 
-    Such a mistake makes most cells wrong at once. But the intended table is known, and so is the
-    right value of each cell.
+    A wrong convention or unit makes most cells wrong at once. But the intended table is known, and
+    so is the right value of each cell.
     """
     values = handed_in_values(roles)
     if not np.isfinite(values).all():
