@@ -8,10 +8,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from service.catalogue import Exercise, PartSpec
+from service.catalogue import Exercise, PartSpec, Robot
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.catalogue.parts.find_slip import FindSlipSpec
+from service.catalogue.parts.frames import FramesSpec
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.grading import Report
 from service.grading.kinds.find_slip import MARKED
 from service.grading.report import (
@@ -80,7 +82,7 @@ def hint_step(
         return None
     if isinstance(part, FindSlipSpec):
         part = part.table
-    convention = _convention(part, answers.get(part.id), told)
+    convention = _convention(exercise, part, answers.get(part.id), told)
     name = _rule_name(message, topic, part)
     rule = RULES[name]
     if step == 2:
@@ -115,12 +117,19 @@ def _has_axes(part: PartSpec) -> bool:
     return isinstance(part, DhTableSpec | DhRowSpec)
 
 
-def _convention(part: PartSpec, answer: object, report: PartReport) -> Convention:
-    """Return the convention in which the answer was read; of a part without one, standard."""
-    if isinstance(part, DhRowSpec):
+def _convention(
+    exercise: Exercise, part: PartSpec, answer: object, report: PartReport
+) -> Convention:
+    """Return the convention in which the answer was read.
+
+    For a part without a convention, this is the robot's convention; without a table, the standard
+    one.
+    """
+    if isinstance(part, DhRowSpec | FramesSpec | LinkTransformsSpec):
         return part.convention
     if not isinstance(part, DhTableSpec):
-        return Convention.STANDARD
+        robot = exercise.reference
+        return robot.convention if isinstance(robot, Robot) else Convention.STANDARD
     if isinstance(part.convention, Convention):
         return part.convention
     named = answer.get("convention") if isinstance(answer, dict) else None

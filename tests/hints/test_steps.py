@@ -82,6 +82,16 @@ def test_each_message_on_a_mistake_has_all_steps(record: Record) -> None:
                 assert len(texts) == 3, message
 
 
+def test_a_placed_frame_has_the_rules_of_its_convention(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    frames = {"rows": [{"axis": 1}, {"axis": 3}, {"axis": 3}]}
+    topic = Topic("frames", "axis_of_other_convention", "2", "axis")
+    _, rule, _ = steps_of(catalogue["planar-rrr-frames"], frames, topic)
+    # Craig, section 3.4: the z axis of frame {i} lies along joint axis i.
+    assert rule.startswith("z_i lies along the axis of joint i,")
+
+
 def test_the_row_of_the_end_effector_has_axes_of_its_own(catalogue: Mapping[str, Exercise]) -> None:
     table = "0 0 0 θ1\nl1 0 0 θ2\nl2 0 0 θ3\n0 0 0 0"
     topic = Topic("table", "distance_left_out", "e", "a")
