@@ -111,7 +111,9 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
         tuple(rows),
         _content(right, part, grading),
         tuple(messages),
-        stands_still=stands_still(np.moveaxis(answer.values, 1, -1), HOMOGENEOUS, grading),
+        stands_still=stands_still(
+            np.array([matrix.with_zeros for matrix in answer.matrices]), HOMOGENEOUS, grading
+        ),
         chain=answer.chain,
     )
 

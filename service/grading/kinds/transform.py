@@ -57,7 +57,7 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
         judged.rows,
         of_rigid(values, part, grading),
         judged.feedback,
-        stands_still=may_stand_still and stands_still(answer.values, HOMOGENEOUS, grading),
+        stands_still=may_stand_still and stands_still(answer.with_zeros, HOMOGENEOUS, grading),
         chain=lambda: _chain(answer),
     )
 

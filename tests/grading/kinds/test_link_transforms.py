@@ -1,6 +1,7 @@
 """Link transforms in the frames of the reference, and in those of the student's table."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import pytest
 
@@ -74,3 +75,19 @@ def test_an_answer_without_matrices_is_unreadable(scara: Exercise, answer: objec
     part = graded(scara, links=answer)["links"]
     assert part.verdict is Verdict.UNREADABLE
     assert part.points == 0
+
+
+@pytest.mark.parametrize("first", ["0", "", None])
+def test_links_that_no_joint_moves_earn_nothing_with_an_empty_entry(
+    catalogue: Mapping[str, Exercise], first: str | None
+) -> None:
+    # The third row of a standard link is (0, sin α, cos α, d); α is -90°, 90°, 0, -90°, 90°, 0.
+    thirds = [(-1, 0), (1, 0), (0, 1)] * 2
+    links: list[Any] = [
+        [[0] * 4, [0] * 4, [0, sine, cosine, 0], [0, 0, 0, 1]] for sine, cosine in thirds
+    ]
+    report = graded(
+        catalogue["stanford-arm"], links=[[[first, 0, 0, 0], *links[0][1:]], *links[1:]]
+    )
+    assert "no_joint_variable" in {message.code for message in report["links"].feedback}
+    assert report["links"].points == 0

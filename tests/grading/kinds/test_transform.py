@@ -111,3 +111,14 @@ def test_an_unexplained_product_is_reported_entry_by_entry(rpr: Exercise) -> Non
     assert all_codes(report).isdisjoint(
         {"home_on_wrong_side", "missing_home", "reversed_product", "moment_sign"}
     )
+
+
+@pytest.mark.parametrize("first", ["0", "", None])
+def test_a_pose_that_no_joint_moves_earns_nothing_with_an_empty_entry(
+    catalogue: Mapping[str, Exercise], first: str | None
+) -> None:
+    # The tool points down, which is the only constant in the rotation of the RRRP arm.
+    pose = [[first, 0, 0, 0], [0, 0, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
+    report = part(handed_in(catalogue["rrrp"], {"pose": pose}), "pose")
+    assert "no_joint_variable" in {message.code for message in report.feedback}
+    assert report.points == 0

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
+import numpy as np
+
 from service.expressions import Expression, Kind
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.numerics.samples import Samples
@@ -19,6 +21,7 @@ from service.grading.reading.entry import (
 from service.grading.reading.matrices.matrix_entry_names import misnamed_entry
 from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
 from service.grading.reading.unit_comments import refuse_other_lengths
+from service.grading.report import Verdict
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.transforms import Numbers
 from service.translations import say
@@ -41,6 +44,12 @@ class StudentMatrix:
     def expressions(self) -> list[Expression | None]:
         """The expressions of the entries, row by row; None for an unreadable entry."""
         return [entry.expression for row in self.entries for entry in row]
+
+    @property
+    def with_zeros(self) -> Numbers:
+        """The values, with 0 in empty entries."""
+        empty = [[entry.verdict is Verdict.MISSING for entry in row] for row in self.entries]
+        return np.where(np.array(empty)[..., None], 0.0, self.values)
 
     def values_at(self, samples: Samples) -> Numbers:
         """Return the values at other samples."""
