@@ -84,7 +84,7 @@ async function exercise(view, place) {
 
 function signOut() {
   const leave = () => {
-    // What is still loading is not shown any more.
+    // A page that is still loading must not appear afterwards.
     turn++;
     forgetKey();
     history.replaceState(null, "", location.pathname);

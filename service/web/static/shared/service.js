@@ -18,8 +18,8 @@ export class ServiceError extends Error {
 }
 
 /**
- * Return null if the service refused a request, as for an exercise that it no longer has. Throw other errors: whoever
- * tries again gets the exercise.
+ * Return null if the service refused the request, for example because the exercise no longer exists. Throw any other
+ * error, because another try may succeed.
  *
  * @param {Error & { kind?: string }} error
  */

@@ -67,13 +67,13 @@ export async function sendPatiently(path, body) {
 /** @param {number} seconds @returns {Promise<void>} */
 export const pause = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
 
-/** The service refused a request. `pause` is the number of seconds until it may be repeated, or 0. */
+/** The service did not do what was asked. `pause` is the number of seconds until another try, or 0. */
 class Refusal extends Error {
-  /** @param {string} reason @param {number} pause */
-  constructor(reason, pause) {
+  /** @param {string} reason @param {number} pause @param {number} status */
+  constructor(reason, pause, status) {
     super(reason);
     this.pause = pause;
-    this.kind = pause ? "busy" : "refused";
+    this.kind = pause ? "busy" : status >= 500 ? "failed" : "refused";
   }
 }
 
@@ -87,7 +87,7 @@ async function asked(path, options) {
   const problem = await answer.json().catch(() => null);
   const reason = problem?.detail ?? worded("The service answered with the status {status}.", { status: answer.status });
   const wait = Number(answer.headers.get("Retry-After"));
-  throw new Refusal(reason, wait);
+  throw new Refusal(reason, wait, answer.status);
 }
 
 /**
