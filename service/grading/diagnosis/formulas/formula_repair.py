@@ -29,8 +29,9 @@ MAX_TEXT = 200
 class Rewritten(Repaired[Node]):
     """The student's formula without the misconception.
 
-    It explains the entry if it is right. Unless ``signed``, it also explains the entry if only its
-    sign is wrong. The sign and the correction are added to the finding.
+    The formula explains the entry if the formula is right. Unless ``signed``, a formula that has
+    only the wrong sign explains the entry, too. ``WrongEntry`` adds sign and correction to the
+    finding.
     """
 
     signed: bool = False

@@ -112,7 +112,7 @@ def without_degrees(node: Node) -> Node:
 def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
     """Return a rewriting of the sine or cosine of one joint angle.
 
-    The angle becomes the sum of the angles from joint ``first`` up to its joint: c12 for c2.
+    The angle becomes the sum of the angles from joint ``first`` up to this joint: c12 for c2.
     """
 
     def rewrite(node: Node) -> Node:
@@ -163,7 +163,7 @@ def _joints_in(call: Call) -> set[int]:
 
 
 def _joint_of(node: Node) -> int | None:
-    """Return the turning joint if the node is its angle alone, or None."""
+    """Return the turning joint whose angle alone is the node, or None."""
     if isinstance(node, SymbolNode) and node.symbol.kind == "angle":
         return node.symbol.joint
     return None
@@ -211,8 +211,8 @@ def _merged_term(group: list[_Term]) -> Signed:
 def products_merged(tree: Node, joints: frozenset[int] | None = None) -> Node:
     """Return the tree with f(a) f(b) merged to f(a + b); f is the sine or the cosine.
 
-    With ``joints``, only factors of these joints' angles are merged, in products that contain all
-    of them.
+    With ``joints``, only the angles of these joints are merged, and only in products that contain
+    all these angles.
     """
 
     def visit(node: Node) -> Node:
@@ -250,7 +250,10 @@ def _merged_factors(
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
-    """Return runs of ``turning`` joints whose sines (or cosines) are factors of one product."""
+    """Return the joints whose sines (or cosines) are factors of the same product.
+
+    Each set has two or more consecutive joints of ``turning``.
+    """
     found: dict[frozenset[int], None] = {}
     for factors in _products(tree):
         for function in EXCHANGED:

@@ -17,8 +17,8 @@ _DEEPEST: Final = 60
 def quantity_of(tree: Node, depth: int = 0) -> Quantity:
     """Return the quantity of a formula, or None if it is unknown.
 
-    A number added to an angle or a length counts as one, too. ``90deg`` and ``pi/2`` are angles,
-    ``2 l1`` and ``l1 cos(theta1)`` are lengths.
+    The sum of a number and an angle is an angle; the sum of a number and a length is a length.
+    ``90deg`` and ``pi/2`` are angles, ``2 l1`` and ``l1 cos(theta1)`` are lengths.
     """
     if depth > _DEEPEST:
         return None

@@ -168,7 +168,7 @@ def lost_sign(case: WrongValue) -> Hypotheses:
     unlike="[theta6, theta5, theta4]",
 )
 def half_turn(case: WrongValue) -> Hypotheses:
-    """The direction is the opposite one."""
+    """The angle is off by half a turn (180°)."""
     finding = finding_on(
         case,
         say(
@@ -225,7 +225,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
 
 @check(of=WrongAngle, rank=200)
 def of_sum(case: WrongValue) -> Explained | None:
-    """The angle is a sum of the wrong angles."""
+    """The right angle is a sum of angles, and the student's sum has a slip (``angle_sum``)."""
     return explanation(case, WrongSum.of(case))
 
 

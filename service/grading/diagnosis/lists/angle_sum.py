@@ -18,7 +18,7 @@ MAX_ADDENDS = 6
 
 
 def addends(case: WrongValue) -> dict[str, int]:
-    """Return the count of each symbol in the right angle; empty if it is no sum of angles."""
+    """Return the count of each symbol in the right angle; empty if the angle is not a sum."""
     names = list(case.samples.values)
     columns = [case.samples.values[name] for name in names]
     system = np.stack([*columns, np.ones_like(case.expected)], axis=1)
@@ -31,9 +31,9 @@ def addends(case: WrongValue) -> dict[str, int]:
 
 
 def _computed(case: WrongValue, names: Sequence[str]) -> dict[str, int]:
-    """Return the count of each symbol in an angle that atan2 or the like computed.
+    """Return the count of each symbol in an angle that was computed, for example by atan2.
 
-    Such an angle may differ from its sum by whole turns.
+    A computed angle may differ from the sum of its symbols by whole turns.
     """
     sums = [
         dict(zip(some, signs, strict=True))
@@ -67,13 +67,13 @@ class WrongSum:
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:
-        """Yield each proper subset of the angles with its part of the sum, the smallest first."""
+        """Yield each proper subset of the angles and the sum of its angles, the smallest first."""
         names = list(self.counts) if len(self.counts) <= MAX_ADDENDS else []
         for some in chain.from_iterable(combinations(names, k) for k in range(1, len(names))):
             yield some, _sum_of(self.case, {name: self.counts[name] for name in some})
 
     def others(self) -> Iterator[tuple[str, Numbers]]:
-        """Yield the symbols with their values that only the student's angle contains."""
+        """Yield the symbols that only the student's angle contains, with their values."""
         for name in sorted(self.case.expression.symbols) if self.counts else ():
             if name not in self.counts:
                 yield name, self.case.samples.values[name]

@@ -90,7 +90,10 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
 
 
 def _on_angles(finding: Finding, angles: Numbers) -> Finding:
-    """Return the finding, reworded if an angle in the wrong unit is a formula."""
+    """Return the finding on ``angles``.
+
+    If their unit is wrong, and one of the angles is a formula, the hint is reworded.
+    """
     is_of_unit = finding.hint in (angle.FITS_IN_DEGREES, angle.FITS_IN_RADIANS)
     if is_of_unit and not all(map(angle.is_constant, angles)):
         return replace(finding, hint=angle.CONVERTED)
@@ -180,5 +183,8 @@ def _asked_for(sequence: str, *, fixed: bool) -> Sentence:
 
 
 def explain_triple(case: WrongTriple) -> Explained | None:
-    """Return the hypothesis that explains the angles, or None; its entries have the slip."""
+    """Return the hypothesis that explains the angles, or None.
+
+    The ``entries`` of the hypothesis are the angles that have the slip.
+    """
     return None if case.is_right else explanation(case)

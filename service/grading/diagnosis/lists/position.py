@@ -29,8 +29,8 @@ class WrongPosition(WrongNumbers):
     """Wrong coordinates ``(n, SAMPLES)`` of a point, along the ``axes`` 0, 1, 2.
 
     ``chains`` holds the links that lead to the point if it is the end of a chain. ``slips``
-    compares it with the answers that slips of the table lead to. ``motion`` holds the displacements
-    in the formulas of the exercise.
+    compares the point with the answers that slips of the table lead to. ``motion`` holds the
+    displacements in the formulas of the exercise.
     """
 
     axes: tuple[int, ...]

@@ -21,7 +21,7 @@ SEARCH_WORK = 15.0
 def search_of(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> SlipSearch | None:
-    """Return the search for slips of the table that explain a list of values, if there is one."""
+    """Return the search for slips of the table that explain a list of values, or None."""
     if answers is None:
         return None
     student = compared.student

@@ -1,8 +1,8 @@
 """Slips in the inverse of a homogeneous transform.
 
-If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. In an answer
-that is not an inverse, the same numbers mean a vector in the wrong frame or in the opposite
-direction.
+If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. If the
+expected transform is not an inverse, the same wrong numbers mean a vector in the wrong frame or in
+the opposite direction.
 """
 
 import numpy as np
@@ -83,7 +83,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def negated_for_inverse(case: MatrixCase) -> Hypotheses:
-    """All signs, or those of the position, were changed, and nothing was transposed."""
+    """All signs, or only the signs of the position, were changed. Nothing was transposed."""
     if case.is_transform:
         rotation, position = _parts(case)
         for sign in (1, -1):

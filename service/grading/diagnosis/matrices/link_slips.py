@@ -46,7 +46,10 @@ class LinkAmongOthers:
         convention: Convention,
         count: int,
     ) -> "LinkAmongOthers":
-        """Return the last of ``links`` ``(k, SAMPLES, 4, 4)``, at ``count`` samples per half."""
+        """Return the case of the last of ``links`` ``(k, SAMPLES, 4, 4)``.
+
+        It has ``count`` samples of each half.
+        """
         turning = [joint.variable for joint in joints[: len(links) - 1] if not joint.prismatic]
         values = samples.subset(count).values
         subset = Samples.subset_of(np.moveaxis(links, 1, -1), count)

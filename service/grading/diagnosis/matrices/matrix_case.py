@@ -29,8 +29,8 @@ class MatrixCase(WrongNumbers):
     ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` is
     True for a transform (4×4) or a rotation (3×3). ``chains`` holds the links whose product the
     matrix is; it is empty for other matrices. ``motion`` holds the single motions in the formulas
-    of the exercise. ``slips`` compares the matrix with the answers that slips of the table lead to;
-    it is None if no robot is involved.
+    of the exercise. ``slips`` compares the matrix with the answers that slips of the table lead to,
+    or is None if there are no such answers.
     """
 
     wrong: Mask
@@ -41,7 +41,7 @@ class MatrixCase(WrongNumbers):
 
     @property
     def is_transform(self) -> bool:
-        """True if it is homogeneous: a rotation, a position and the bottom row."""
+        """True if the matrix has a rotation, a position and the bottom row."""
         return self.rigid and self.expected.shape[:2] == (4, 4)
 
     @cached_property
@@ -85,7 +85,7 @@ class Explanation:
 
 
 def as_explanations(case: MatrixCase, found: Explained | None) -> list[Explanation]:
-    """Return the findings of a hypothesis with the entries that it explains; none for None."""
+    """Return the findings of a hypothesis, with the entries that it explains; [] for None."""
     if found is None:
         return []
     return [Explanation(finding, case.mask(found.entries)) for finding in found.findings]

@@ -139,7 +139,7 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def sum_of_cosines(case: WrongEntry) -> Formulas:
-    """The cosine of a sum was written as a sum of cosines, or the same with the sine."""
+    """The cosine (or sine) of a sum was written as a sum of cosines (or sines)."""
     finding = says(
         say(
             "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the "
@@ -234,7 +234,7 @@ def angle_left_out(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def angle_too_many(case: WrongEntry) -> Formulas:
-    """A sum of joint angles contains one too many: c123 for c12."""
+    """A sum of joint angles contains one angle too many: c123 for c12."""
     for symbol in _joint_angles(case):
         finding = says(
             say(
@@ -254,7 +254,10 @@ def _joint_angles(case: WrongEntry) -> list[Symbol]:
 def _with_angles_changed(
     case: WrongEntry, change: rewriting.Rewriting, finding: Finding
 ) -> Formulas:
-    """Yield the formula with ``change`` everywhere; if it is short, also in each single place."""
+    """Yield the formula with ``change`` in all its sines and cosines.
+
+    If the formula is short, also yield it with ``change`` in each single sine or cosine.
+    """
     yield Rewritten(rewriting.at_sines_and_cosines(case.tree, change), finding, signed=True)
     if 1 < len(case.sines_and_cosines) <= MAX_PLACES:
         for tree, _ in rewriting.one_place(case.tree, change):
@@ -290,9 +293,9 @@ def diagnose_entries(
     work_budget: float = WORK_BUDGET,
     requirements: Requirements | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """Return the finding on each wrong entry that the submission's budget ``affords``.
+    """Return the findings on the wrong entries, as far as the submission's budget ``affords``.
 
-    After ``work_budget``, the budget of the matrix, is used up, formulas are not rewritten.
+    ``work_budget`` is the budget of the matrix. When it is used up, formulas are not rewritten.
     """
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():

@@ -142,7 +142,7 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     unlike={"3/2": "0"},
 )
 def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
-    """One turn has the angle of another, or two turns have exchanged angles."""
+    """One turn has the angle of another turn, or two turns have exchanged their angles."""
     for i, j in permutations(range(len(steps)), 2):
         finding = says(
             say(

@@ -1,6 +1,6 @@
 """Slips in a whole matrix, or in its whole rotation or position.
 
-Entries that such a slip explains get no finding of their own.
+Entries that a slip of the whole matrix or block explains get no finding of their own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -279,7 +279,10 @@ def bottom_row(case: MatrixCase) -> Explained | None:
 
 @dataclass(frozen=True)
 class WrongAxes:
-    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix, and the codes of its wrong entries."""
+    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix.
+
+    ``codes`` are the codes of the findings on its entries.
+    """
 
     rotation: Numbers
     codes: list[str]
@@ -327,7 +330,10 @@ def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
 
 
 def _fault(rotation: Numbers) -> Sentence | None:
-    """Name the first column without length 1, else the first two that are not at right angles."""
+    """Return the message on the first column without length 1, or None.
+
+    If all columns have length 1, the message is on the first two that are not at right angles.
+    """
     products = np.swapaxes(rotation, 1, 2) @ rotation
     wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
@@ -374,10 +380,10 @@ def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
 
 
 def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:
-    """Return the finding on a property of rotations that the student's lacks, or None.
+    """Return the finding that the student's rotation lacks a property of rotations, or None.
 
-    A left-handed frame is always named, other faults only if an entry is unexplained. ``slips`` are
-    the findings on the entries.
+    A left-handed frame is always reported, other faults only if an entry is unexplained. ``slips``
+    are the findings on the entries.
     """
     rotation = np.moveaxis(case.actual[ROTATION_BLOCK], -1, 0)
     codes = [finding.code for (i, j), finding in slips.items() if i < 3 and j < 3]

@@ -1,8 +1,8 @@
 """A motion composed of several, whose result the exercise gives in formulas.
 
 The formulas show the single motions. A displacement is the part of the position that contains
-certain lengths; the turns before it are those whose angles change this part. A turn is the rotation
-with all angles but one set to 0.
+certain lengths. The turns before a displacement are the turns whose angles change this part. A turn
+is the rotation with all angles but one set to 0.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,8 +1,8 @@
 """Slips in a product of link transforms.
 
 Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the pose, its
-rotation or its position. So a finding has only the name of the pose and an advice; ``named`` makes
-sentences of them: "This matrix is …", "The position comes from …".
+rotation or its position. Therefore a finding has only the name of the pose and advice. ``named``
+puts both into a sentence: "This matrix is …", "The position comes from …".
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -296,8 +296,8 @@ def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
 def named(pose: Explained, told: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
     """Return a function that builds the findings on a pose.
 
-    ``told`` is the template of their hints, such as "This matrix is {pose}. {advice}". The findings
-    ``others`` come first.
+    ``told`` is the template of the hints on the pose, such as "This matrix is {pose}. {advice}".
+    The findings ``others`` come first.
     """
 
     def findings() -> Iterator[Finding]:

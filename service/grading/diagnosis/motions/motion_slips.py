@@ -144,7 +144,7 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
 
 
 def _are_numbered(found: Sequence[Displacement]) -> bool:
-    """True if displacement ``i`` is that of motion ``i + 1``."""
+    """True if displacement ``i`` belongs to motion ``i + 1``, after ``i`` turns."""
     return [len(each.angles) for each in found] == list(range(len(found)))
 
 
@@ -237,7 +237,7 @@ OTHER_ORDER = says(
     unlike={"2/2": "0"},
 )
 def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
-    """The motions were multiplied in reverse order; the last turn may come before its shift."""
+    """The motions were multiplied in reverse order; the last two may be in the right order."""
     steps = motion.steps
     if steps is not None and len(steps) > 2:
         *moved, last = steps

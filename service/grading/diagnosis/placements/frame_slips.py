@@ -22,12 +22,15 @@ class WrongPlacement:
     slack: float
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return the hypotheses: none of them is compared with numbers."""
+        """Return all hypotheses, because none is compared with numbers."""
         return hypotheses
 
     @property
     def is_standard(self) -> bool:
-        """True if x must cross the z axis of the frame before, False for the frame after."""
+        """True if x must cross the z axis of the frame before.
+
+        Otherwise x must cross the z axis of the frame after.
+        """
         return self.convention is Convention.STANDARD
 
 
@@ -104,7 +107,7 @@ def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
     unlike={"2/axis": "2"},
 )
 def wrong_joint_axis(case: WrongJointAxis) -> Finding | None:
-    """The joint is any other one."""
+    """The frame has the number of any other wrong joint."""
     return says(
         say("z of this frame belongs on the axis of another joint: count the joints again."),
         say("Put z along the axis of joint {joint}.", joint=case.right),

@@ -119,8 +119,8 @@ def other_frame(case: WrongScrews) -> Hypotheses:
 def explain_screws(case: WrongScrews) -> Finding | None:
     """Return the finding that explains all wrong axes, or None.
 
-    None also if an axis could not be read. With a single wrong axis, only the order of its halves
-    is checked.
+    Return None, too, if an axis could not be read. If only one axis is wrong, only the order of its
+    halves is checked.
     """
     if not np.isfinite(case.actual).all():
         return None

@@ -51,7 +51,7 @@ class WrongScrew(WrongNumbers):
         return self.expected[3:] - self.pitch * self.direction
 
     def with_velocity(self, velocity: Numbers) -> Numbers:
-        """Return the screw of the expected ω and this v."""
+        """Return the screw axis with the expected ω and the given v."""
         return np.concatenate([self.direction, velocity])
 
 
