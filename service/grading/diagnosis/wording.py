@@ -19,16 +19,16 @@ __all__ = [
 # The symbol of each table column, and the axis along or about which it is measured.
 SYMBOLS = ("a", "α", "d", "θ")
 AXES = ("x", "x", "z", "z")
-# How many times as large as they should be lengths in another unit are.
+# Lengths in another unit are too large by one of these factors.
 UNIT_FACTORS: Final = (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001)
 
 
 def axes_of_row(axis: str, label: str, last: int) -> str:
-    """Return the names of the two axes ``x`` or ``z`` that a row leads between.
+    """Return the names of the two x or z axes that a row connects; ``axis`` is "x" or "z".
 
-    ``label`` is the label of the row; ``last`` is the number of the last joint. A row without a
-    label, a fixed row before the first joint, and the second row after the last joint have axes
-    without names.
+    ``label`` is the label of the row; ``last`` is the number of the last joint. The axes have no
+    names in a row without a label, in a fixed row before the first joint, and in the second row
+    after the last joint.
     """
     if label.isdecimal() and label != "0":
         return listed([f"{axis}{int(label) - 1}", f"{axis}{label}"])

@@ -169,7 +169,7 @@ class WrongNumbers:
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
         """Return the hypotheses that explain the numbers, all compared at once.
 
-        All of them must be about the same entries.
+        All hypotheses must be about the same entries.
         """
         tried = list(hypotheses)
         if not tried:
@@ -225,7 +225,7 @@ def differs(case: WrongValue, hint: str) -> Finding:
     """Return a finding with ``hint`` and a counterexample, for an unexplained value.
 
     The counterexample is computed from the printed numbers, so that a pocket calculator agrees. A
-    bare number has none: its value is known already.
+    bare number usually has no counterexample, because its value is known already.
     """
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None

@@ -83,9 +83,10 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """Return a name in the cell that the robot does not have, and the joint with its number.
+    """Return a name in the cell that the robot does not have, and the joint with this number.
 
-    The name is "" if the robot has all names; the joint is None if no joint has the number.
+    The name is "" if the robot has all names. The joint is None if no joint has the number of the
+    name.
     """
     absent = sorted(case.samples.absent_names([case.expression]))
     if not absent:

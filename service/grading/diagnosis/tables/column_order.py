@@ -1,6 +1,6 @@
 """Tables whose columns are in another order, such as θ, d, a, α or α, a, d, θ.
 
-They have no headers, or their cells were typed one by one under the headers a, α, d, θ.
+The columns have no headers, or the cells were typed one by one under the headers a, α, d, θ.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -113,7 +113,7 @@ def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    """Return the counts ``(written, columns)`` of cells that do not suit a column."""
+    """Return how many cells of each written column do not suit each column, ``(4, 4)``."""
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):

@@ -70,7 +70,7 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
     unlike="l, 0, 2*a, pi",
 )
 def other_convention(case: WrongRow) -> Hypotheses:
-    """The row is that of the other convention."""
+    """The row describes the transform in the other convention."""
     other = case.convention.other
     hint = say("This is the row of the modified convention; the standard one is asked for.")
     if other is Convention.STANDARD:
@@ -90,7 +90,7 @@ def other_convention(case: WrongRow) -> Hypotheses:
     unlike="0, 0, -a, phi",
 )
 def inverse_row(case: WrongRow) -> Hypotheses:
-    """The row is that of the inverse transform."""
+    """The row describes the inverse transform."""
     finding = says(
         say(
             "This is the row of the inverse: the transform describes the second frame in the first."
@@ -134,7 +134,7 @@ def axes_named(convention: Convention) -> tuple[str, str]:
 
 
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """Return the findings on the conditions that a transform violates; none if it has a row."""
+    """Return the findings on the conditions that a transform without a row violates."""
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = _NOT_PERPENDICULAR.finding(

@@ -20,7 +20,7 @@ _EXCHANGED = [D, 1, A, 3]
 
 
 class IntendedTable(NamedTuple):
-    """A table without a slip, the finding on the slip, and the cells that have it."""
+    """A table without a slip, the finding on the slip, and the cells that have the slip."""
 
     table: StudentTable
     finding: Finding

@@ -83,8 +83,8 @@ def _joint_variables(row: StudentRow, vocabulary: Vocabulary) -> set[str]:
 def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joint]) -> bool:
     """True if this numbering gives each row the variable of its own joint and no other.
 
-    If the numbering changes only one row, that row must contain a variable of no joint of the
-    robot.
+    If the numbering changes only one row, that row must contain a joint variable that the robot
+    does not have.
     """
     if len(used) < len(joints):
         return False

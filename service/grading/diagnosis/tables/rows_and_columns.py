@@ -1,6 +1,6 @@
 """Slips in whole rows or columns of the robot's table that lead to a wrong answer.
 
-They change the numbers of the table but no symbols, so they are the same in any frames.
+These slips change the numbers of the table but no symbols. So they are the same in any frames.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -67,9 +67,9 @@ def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
 def exchanged_in_row(
     row: int, label: str, constants: Sequence[float], *, slides: bool
 ) -> Iterator[Slip]:
-    """Yield the exchange of a and d in one row.
+    """Yield the slips: a and d are exchanged in one row.
 
-    If the joint of the row ``slides``, the variable moves to the other column in the last slip.
+    If the joint of the row ``slides``, the last slip also moves its variable to the other column.
     """
 
     def words(_: Names) -> SlipWords:
@@ -136,7 +136,7 @@ def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
 
 
 def other_table(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips of a table in the other convention, with a and α in the next row.
+    """Yield the slips of a table in the other convention: a and α are in a neighbouring row.
 
     A standard table begins on the axis of the first joint. The last row of a modified table, from
     the last joint to the end effector, may be missing.

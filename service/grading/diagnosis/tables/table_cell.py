@@ -350,9 +350,10 @@ def diagnose_cells(
 def _of_misplaced_variables(
     slips: dict[CellIndex, Finding], judgement: Judgement
 ) -> dict[CellIndex, Finding]:
-    """Return the findings, with the same one for both cells of a misplaced joint variable.
+    """Return the findings; both cells of a misplaced joint variable get the same finding.
 
-    For example, the variable of a sliding joint is in θ and missing in d.
+    For example, the variable of a sliding joint is in θ and missing in d. Each cell keeps its own
+    correction.
     """
     told = dict(slips)
     for (i, column), finding in slips.items():

@@ -1,7 +1,7 @@
 """Tables whose joints have fewer degrees of freedom than the robot.
 
 Two joints that turn about one line, or slide along one direction, move the arm like a single joint.
-More generally, a degree of freedom is lost if joint screws depend linearly on each other that are
+More generally, the arm loses a degree of freedom if joint screws are linearly dependent, but
 independent in the reference.
 """
 
@@ -75,9 +75,9 @@ def lost_freedom(
     """Return the findings on joints that share an axis or depend on each other.
 
     ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``. There is no finding
-    if it contains NaN (an unreadable cell) or an extremely large length. ``joint_rows`` gives the
-    row of each joint of the robot; joints with None are left out. A joint without its variable has
-    a finding in its cell.
+    if the table contains NaN (an unreadable cell) or an extremely large length, or if a joint's
+    variable is missing: its cell has the finding. ``joint_rows`` gives the row of each joint of the
+    robot; joints with None are left out.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
@@ -188,7 +188,7 @@ def _lost_degrees(joints: str, rows: str, *, slide: bool) -> Sentence:
 
 
 def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Sentence]:
-    """Return True if two axes ``(samples, 3)`` are parallel, and the sentence how they lie."""
+    """Return True if two axes ``(samples, 3)`` are parallel, and a sentence on their directions."""
     if np.abs(np.cross(one, other)).max() < SAME_SCREW:
         return True, say("The axes of these joints are parallel, but apart.")
     cosines = np.abs(np.sum(one * other, axis=-1))

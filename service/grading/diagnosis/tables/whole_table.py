@@ -41,8 +41,8 @@ _OF_LINK = slice(A, ALPHA + 1)
 class WrongTable:
     """A wrong table at all samples, and at a subset that is enough to compare it.
 
-    ``valid`` returns a mask of the tables ``(T, rows, 4, samples)``, at the subset, that describe
-    the robot.
+    ``valid`` returns a mask ``(T,)`` of tables ``(T, rows, 4, samples)`` at the subset: True for a
+    table that describes the robot.
     """
 
     written: WrittenTable
@@ -79,8 +79,8 @@ class WrongTable:
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     """The columns a and α, or one of them, are one row too early or too late.
 
-    The shift leaves the first or last row open. It gets the cells from the other end, or those of
-    the reference if the student's cells there are 0.
+    Undoing the shift leaves the cells of the first or last row open. They get the numbers from the
+    other end of the table. If those are 0, the numbers of the reference are tried, too.
     """
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
@@ -199,7 +199,7 @@ def exchanged_columns(one: int, other: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two rows, or all of them, are in the wrong order."""
+    """Two rows are exchanged, or all rows are in reverse order."""
     rows = range(len(table.constants))
     exchanges = [{i: j, j: i} for i, j in combinations(rows, 2)]
     orders = [[exchange.get(row, row) for row in rows] for exchange in exchanges]
@@ -260,7 +260,11 @@ def _both(first: Explained, second: Explained) -> tuple[Finding, ...]:
 
 
 def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
-    """Return all hypotheses that explain the whole table, or else one pair if ``combine``."""
+    """Return all hypotheses that explain the whole table.
+
+    If there are none, and ``combine`` is true, return the first pair of misconceptions that
+    explains the table together.
+    """
     records = records_of(WrittenTable)
     found = list(_explaining(case, [partial(each_hypothesis, (each,)) for each in records]))
     if found or not combine:
@@ -275,7 +279,10 @@ def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
 def _explaining(
     case: WrongTable, ways: Sequence[Callable[[WrittenTable], Iterator[Explained]]]
 ) -> Iterator[Explained]:
-    """Yield the hypotheses that explain the table at the subset, built again at all samples."""
+    """Yield the hypotheses that explain the table.
+
+    They are compared at the subset, and built again at all samples.
+    """
     tried = [(build, list(build(case.subset))) for build in ways]
     every = chain.from_iterable(hypotheses for _, hypotheses in tried)
     explains = set(map(id, case.explained_by(every)))

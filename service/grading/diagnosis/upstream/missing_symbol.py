@@ -1,4 +1,4 @@
-"""Symbols that an entry lacks or has too much: a joint variable, or a length."""
+"""Symbols that an entry lacks or should not contain: a joint variable, or a length."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ NOT_ZERO = say("This must not be 0: check which lengths have a part here.")
 class Required:
     """The symbols that the right entry depends on, and how it grows when all ``lengths`` double.
 
-    ``grows`` is 1 if the entry doubles like a length, 0 if it stays, None for anything else.
+    ``grows`` is 1 if the entry doubles, too, 0 if it stays the same, None for anything else.
     ``lengths`` includes the variables of sliding joints. ``joints`` are the variables of all
     joints.
     """
@@ -74,10 +74,10 @@ class Requirements:
 
     @cached_property
     def _dependences(self) -> tuple[Mask, Mask]:
-        """Masks of the entries that depend on each symbol, and of those that follow all lengths.
+        """Masks of the entries that depend on each symbol, and on all lengths.
 
-        The first is ``(symbols, ...)``. The second is ``(2, ...)``: if all lengths are doubled, an
-        entry stays, or it doubles.
+        The first mask is ``(symbols, ...)``. The second one is ``(2, ...)``: it marks the entries
+        that stay the same if all lengths are doubled, and the entries that double.
         """
         probes = [
             Change(symbols=(SymbolChange(name, name, 1.0, PROBE),)) for name in self.samples.values
@@ -251,7 +251,7 @@ def extra_joints(entry: Dependence) -> Finding | None:
     unlike={"3/1": "-pi/2"},
 )
 def missing_length(entry: Dependence) -> Finding | None:
-    """A length is missing in the entry. The hint does not name it: it may be the whole answer."""
+    """A length is missing in the entry. The hint does not name the length: it may be the answer."""
     required = entry.required
     assert required is not None
     if not required.symbols & required.lengths - entry.written - set(required.joints):

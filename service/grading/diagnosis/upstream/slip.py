@@ -1,8 +1,8 @@
 """A slip made before the answer is computed: in the robot's table, joints or lengths.
 
 Other misconceptions are formulas for the wrong answer. A slip changes the input of the right answer
-instead. So many slips can be tried at once: the right answer is computed from the changed numbers
-of all of them.
+instead. Many slips are tried at once: one computation of the right answer takes the changed numbers
+of all slips.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,8 +29,9 @@ class SymbolChange:
 
 @dataclass(frozen=True, slots=True)
 class CellChange:
-    """A cell whose constant part becomes ``factor`` times that of a source cell, plus ``offset``.
+    """A change of the constant part of a cell.
 
+    It becomes ``factor`` times the constant part of a source cell, plus ``offset``.
     ``source`` is the row and column of the source cell; without it, the cell is its own source.
     With ``moving``, the joint variables in the cells change along with their constants.
     """
@@ -95,7 +96,7 @@ class Slip(Change):
 
     @property
     def code(self) -> str:
-        """The code of its kind, or the name of a kind that is only listed with others."""
+        """The code of the slip's kind, or the name of a kind that is only listed with others."""
         return self.kind.name
 
 
@@ -130,7 +131,7 @@ def change_cells(
     """Apply K changes to ``tables`` ``(rows, 4, K, count)``, in place.
 
     ``right`` ``(rows, 4, count)`` is the right table, ``constants`` the same table with all joint
-    variables 0. All three begin with row ``first_row`` of the whole table.
+    variables 0. All three arrays begin with row ``first_row`` of the whole table.
     """
     cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]
     if not cells:

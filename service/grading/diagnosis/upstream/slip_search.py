@@ -94,7 +94,7 @@ class SlipSearch:
 
     @cached_property
     def _at_two_samples(self) -> tuple[Mask, Mask]:
-        """Masks of all slips at two samples, which few wrong slips pass."""
+        """Masks of all slips, compared at two samples only: a test that few wrong slips pass."""
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
@@ -109,10 +109,10 @@ class SlipSearch:
 
 
 def _certain(slips: list[Slip]) -> list[Slip]:
-    """Return the slips except those that include another one of them.
+    """Return the slips except each slip that includes another one of the slips.
 
-    A missing link is listed only together with exchanged rows. Otherwise ``link_products`` names
-    it.
+    A missing link is listed only together with exchanged rows. Otherwise ``link_products`` reports
+    the missing link.
     """
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}

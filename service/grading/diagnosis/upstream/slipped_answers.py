@@ -46,10 +46,11 @@ class SlippedAnswers:
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
-    """Return the answers to a part, or None if neither a robot nor formulas give it.
+    """Return the wrong answers to a part, or None if they cannot be computed.
 
-    They are poses ``(K, 4, 4, samples)``, or ``(K, rows, columns, samples)`` if the part has
-    formulas of its own.
+    They are poses ``(K, 4, 4, samples)`` of the robot, or ``(K, rows, columns, samples)`` if the
+    part has formulas of its own. Return None if the part has neither, or if it is judged by the
+    student's earlier answer.
     """
     exercise = grading.exercise
     if grading.following:

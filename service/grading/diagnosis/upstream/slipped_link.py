@@ -36,8 +36,8 @@ def slipped_link(
 ) -> SlippedAnswers | None:
     """Return the transforms ``(K, 4, 4, samples)`` that slips in one row lead to.
 
-    ``right`` is the right transform ``(SAMPLES, 4, 4)``. None if it follows from the student's own
-    answer.
+    ``right`` is the right transform ``(SAMPLES, 4, 4)``. Return None if ``right`` follows from the
+    student's own answer.
     """
     if grading.following:
         return None

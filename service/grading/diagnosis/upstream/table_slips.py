@@ -1,6 +1,6 @@
 """Slips in the cells of the robot's table that lead to a wrong pose.
 
-They have the codes of the same slips in a submitted table (``table_cell``).
+A slip has the same code here as in a submitted table (``table_cell``).
 """
 
 from collections.abc import Iterator, Sequence
@@ -56,7 +56,7 @@ class Cell:
 
     @property
     def label(self) -> str:
-        """The label of its row."""
+        """The label of the cell's row."""
         return self.table.labels[self.row]
 
     @property
@@ -115,7 +115,7 @@ def table_slips(
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """Return the lengths of the table in order, and those that are alone in their only cell."""
+    """Return the lengths of the table in order, and those that are in one cell only, alone."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
     once = [name for name in names if sum(name in cell for cell in cells) == 1]
