@@ -17,7 +17,7 @@ _FIRST_ABSENT_JOINT: Final = 1000
 
 @lru_cache(maxsize=256)
 def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
-    """Return the vocabulary plus the usual names of joint variables, from 0 on, that it lacks.
+    """Return the vocabulary with the usual joint variables that it lacks, counted from 0.
 
     Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
     """

@@ -45,7 +45,8 @@ BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
 class Entry:
     """One cell as read: an expression, or the reason why it cannot be read.
 
-    Without an expression, ``verdict`` is MISSING or UNREADABLE; with one it is not known yet.
+    Without an expression, ``verdict`` is MISSING or UNREADABLE. With an expression, the verdict is
+    not known yet.
     """
 
     expression: Expression | None
@@ -136,7 +137,7 @@ class Reader:
         return finding
 
     def _in_absent_variables(self, raw: str | int | float, quantity: Kind) -> Expression | None:
-        """Read a text that may contain absent joint variables; return None if that fails, too."""
+        """Read a text that may contain absent joint variables; return None if it is unreadable."""
         vocabulary = with_absent_variables(self.vocabulary)
         try:
             return read(

@@ -172,7 +172,7 @@ def _table(text: str, reader: Reader) -> PastedPreview:
 
 
 def _alone(cell: CellPreview, header: Header, reader: Reader) -> str:
-    """Return the text that is read alone as the cell is read below a header with a unit."""
+    """Return the text that alone has the meaning of the cell below a header with a unit."""
     if cell.problem and _DECIMAL_COMMA.fullmatch(cell.typed):
         # The repair of 135,0 would lose the unit.
         if header.angle_unit and header.angle_unit != reader.angle_unit:

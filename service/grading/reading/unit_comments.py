@@ -28,7 +28,7 @@ _NO_UNITS: Final = frozenset({"m", "in", "foot"})
 def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> None:
     """Raise GridError if a comment or a caption says that lengths have another unit.
 
-    ``kinds`` are those of the entries.
+    ``kinds`` are the quantities of the entries; without lengths, all comments are accepted.
     """
     if "length" not in kinds or CONVERTS_LENGTHS.search(text):
         return
@@ -43,7 +43,7 @@ def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> No
 
 
 def comments(text: str) -> Iterator[re.Match[str]]:
-    """Yield the comments; each match has what is written as its last group."""
+    """Yield the comments; the last group of each match is the text of the comment."""
     return islice(_COMMENT.finditer(text), _MOST_COMMENTS)
 
 

@@ -30,10 +30,10 @@ _NO_MARKS: Final = str.maketrans("", "", "{}$*^' ")
 
 @dataclass(frozen=True, slots=True)
 class ListNames:
-    """The names that the values of a list may have: ``labels`` are the expected ones, in order.
+    """The names that the values of a list may have.
 
-    ``quantities`` are those of the values. ``places`` maps keys of names to places, ``coordinates``
-    does so for x, y and z.
+    ``labels`` are the expected names and ``quantities`` the expected quantities, in order.
+    ``places`` maps keys of names to places; ``coordinates`` maps x, y and z to places.
     """
 
     labels: tuple[str, ...]
@@ -109,8 +109,8 @@ def names_of_components(
 def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
     """Return the names of three angles about the axes ``turns``, which are fixed or moving.
 
-    Textbooks order α, γ (about fixed axes), φ, ψ (about three different axes), and roll and yaw
-    differently. So these names may be first or last.
+    Textbooks differ in the order of α and γ (about fixed axes), of φ and ψ (about three different
+    axes), and of roll and yaw. So each of these names has two possible places.
     """
     is_euler = turns[0] == turns[2]
     inner, outer = (1,), (0, 2)
@@ -139,7 +139,7 @@ def _by_letter(letters: Iterable[str | None]) -> dict[str, tuple[int, ...]]:
 
 
 def _is_another(symbol: Symbol, quantity: Kind) -> bool:
-    """True if a declared symbol has another quantity, such as θ1 if a length is expected."""
+    """True if a declared symbol is an angle, but a length is expected, or vice versa."""
     return quantity != "number" and symbol.kind != "number" and symbol.kind != quantity
 
 

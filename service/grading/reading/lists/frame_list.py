@@ -36,9 +36,9 @@ _LONGEST_VECTOR: Final = 600
 
 @dataclass(frozen=True, slots=True)
 class Direction:
-    """A direction as read: the entries of a vector, or none of a name of a base direction.
+    """A direction as read: the entries of a vector, or the name of a base direction.
 
-    ``name`` is its axis and sense, such as (1, -1) for -y.
+    ``name`` is the axis and the sense of a base direction, such as (1, -1) for -y.
     """
 
     entries: tuple[Entry, ...] = ()
@@ -248,7 +248,10 @@ def _direction(raw: object, reader: Reader) -> Direction:
 
 
 def _without_span(entry: Entry) -> Entry:
-    """Return an entry of a vector; its spans count from the start of the component."""
+    """Return an entry of a vector without the spans and suggestions of its findings.
+
+    The spans count from the start of the component, not of the cell.
+    """
     findings = tuple(replace(each, span=None, suggestion=None) for each in entry.findings)
     return replace(entry, findings=findings)
 

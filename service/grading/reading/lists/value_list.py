@@ -66,7 +66,7 @@ def read_list(
 def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
     """Return the values of an object such as {"x": …, "y": …} in the expected order.
 
-    Raises UnreadableAnswerError unless each key has exactly one place, and no two the same.
+    Raises UnreadableAnswerError unless each key has exactly one place, all different.
     """
     count = len(names.quantities)
     if not 0 < len(answer) <= count:
@@ -130,7 +130,7 @@ def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Ta
 def _left_aside(
     values: Sequence[object], count: int, reader: Reader, tails: Sequence[Tail]
 ) -> Tail:
-    """Return the tail that follows ``count`` values; empty unless exactly one of ``tails`` does."""
+    """Return the one of ``tails`` that follows the first ``count`` values, or an empty tail."""
     following = values[count:]
     for tail in tails:
         if len(tail) == len(following) and all(map(partial(_is_figure, reader), following, tail)):
@@ -278,7 +278,10 @@ def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
 
 
 def _inside(text: str) -> tuple[int, int]:
-    """Return the [start, end) inside the brackets around a whole text, or of the trimmed text."""
+    """Return the [start, end) of the text inside the brackets around the whole text.
+
+    Without brackets, return the [start, end) of the trimmed text.
+    """
     start, end = len(text) - len(text.lstrip()), len(text.rstrip())
     depth = 0
     for at in range(start, end):

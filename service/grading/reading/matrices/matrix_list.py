@@ -44,7 +44,7 @@ def read_matrices(
 def grids_in_order(
     text: str, labels: Sequence[str], reader: Reader
 ) -> tuple[list[Grid | GridError | None], list[Finding]]:
-    """Return the grid for each label (an error if unreadable, None if absent), and notes on it.
+    """Return the grid for each label (an error if unreadable, None if absent), and notes.
 
     Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
     """
@@ -66,8 +66,9 @@ def grids_in_order(
 def places_in_list(
     answer: Sequence[object], labels: Sequence[str]
 ) -> tuple[list[int], list[Finding]]:
-    """Return the place of each matrix of a list, by the names in those that are texts; and notes.
+    """Return the place of each matrix of a list, and notes on the places.
 
+    Matrices that are texts may have names, which tell their places.
     Raises UnreadableAnswerError if the names contradict each other.
     """
     places = [*range(len(answer))]
@@ -132,7 +133,10 @@ def with_notes(matrix: StudentMatrix, notes: Sequence[Finding]) -> StudentMatrix
 def _places(
     grids: Sequence[NamedGrid], labels: Sequence[str]
 ) -> tuple[list[int | None], list[Finding]]:
-    """Return the place of each matrix, from 0, None for an ignored one; and notes on the places."""
+    """Return the place of each matrix, and notes on the places.
+
+    Places count from 0; the place of an ignored matrix is None.
+    """
     texts, count = [each.name.text for each in grids], len(labels)
     changed = [is_changed(text) for text in texts]
     products = [is_product(text) and not is_changed(text) for text in texts]

@@ -46,9 +46,9 @@ def is_product(name: str) -> bool:
 
 
 def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...], str]:
-    """Return the places 1 to ``count`` of the names (or None), and the note on unusual counting.
+    """Return the place of each name, 1 to ``count`` or None, and a note on unusual counting.
 
-    The note is a template with the names of the ``matrices``, or empty.
+    The note is a template for the names of the ``matrices``; it is empty for usual counting.
 
     A name has the number of the link, or the two frames that the link connects. There are several
     ways to count: A0 may be the first link, and 12 the twelfth or the one between frames 1 and 2.
@@ -70,7 +70,7 @@ def _number(index: str, count: int) -> int:
 
 
 def _by_number(name: Indices, count: int) -> _Place:
-    """Return the place of A_2, the number of the link, or T^1_2, the frames on either side."""
+    """Return the place of A_2, which has the link's number, or T^1_2, which has its two frames."""
     numbers = [_number(index, count) for index in name]
     if len(numbers) == 1 and (len(name[0]) == 1 or name[0][0] != "0"):
         return numbers[0]

@@ -43,11 +43,11 @@ def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
     mapping from headers to lists. A row is a mapping whose keys are headers in any spelling ("α",
     "alpha_i", "twist"), or a list in ``order``, with or without the row's number in front. A list
     of four headers may precede such rows; or each list has the values of one parameter, after its
-    header. If all rows have a number or "e", they are put in that order.
+    header. If all rows have a number or "e", they are put in the order of these labels.
 
-    Any other row is kept as it is; so is a row whose keys have a unit, or name one column twice.
-    The reader then refuses the row, or reads the cells that it knows. An answer without any row is
-    returned unchanged.
+    A row of any other form is unchanged. A row whose keys have a unit, or name one column twice, is
+    unchanged, too. The reader then refuses the row, or reads the cells that it knows. An answer
+    without any row is returned unchanged.
     """
     if isinstance(answer, Mapping):
         rows = answer.get("rows")

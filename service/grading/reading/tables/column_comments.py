@@ -50,9 +50,10 @@ def columns_in_comments(text: str) -> tuple[Header, ...] | None:
 
 
 def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption names a unit, but no header and no column does.
+    """Raise GridError if a comment or a caption names a unit, but does not say of which columns.
 
-    A unit in which the reader reads the table anyway, and a comment with numbers, are ignored.
+    Units of angles are ignored if a header has one, and so are units of lengths. The reader's own
+    units and comments with numbers are ignored, too.
     """
     has_angles = any(header.angle_unit for header in headers) or _CONVERTS_ANGLES.search(text)
     has_lengths = any(header.metres for header in headers) or CONVERTS_LENGTHS.search(text)
@@ -71,7 +72,7 @@ def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> 
 
 
 def _columns(comment: str) -> tuple[Header, ...] | None:
-    """Return the headers of a, α, d and θ in a comment, in its order."""
+    """Return the headers of a, α, d and θ in the order of a comment, or None."""
     words = _BETWEEN_NAMES.split(_BEFORE_UNIT.sub("", comment.strip(" \t[]()")))
     headers = [read_header(word) for word in words]
     for i in range(len(headers) - len(COLUMNS) + 1):

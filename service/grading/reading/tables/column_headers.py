@@ -81,7 +81,7 @@ class Header:
 
     @property
     def metres(self) -> float | None:
-        """The length unit in the header, in metres, if there is one."""
+        """The size of the length unit in the header, in metres, if there is one."""
         return METRES.get(self.unit)
 
 

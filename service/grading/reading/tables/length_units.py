@@ -19,8 +19,8 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
     """Convert an entry from the header's unit to the exercise's.
 
     Numbers are converted. Letters mean lengths in any unit, so formulas of letters alone stay
-    unchanged. If a formula mixes both, or the exercise's unit is unknown, the entry is unreadable,
-    because the number is ambiguous.
+    unchanged. A formula that also contains a length in numbers is unreadable, because the number is
+    ambiguous. A number is unreadable if the exercise's unit is unknown.
     """
     expression = entry.expression
     if expression is None:
@@ -62,7 +62,7 @@ def _times(tree: Node, factor: float) -> Node:
 
 
 def _checked_formula(entry: Entry, expression: Expression, header: Header, reader: Reader) -> Entry:
-    """Return the entry if it doubles with all its letters, else an unreadable one.
+    """Return the entry if its value doubles when all its lengths double, else an unreadable entry.
 
     An entry that does not double contains a length in numbers.
     """

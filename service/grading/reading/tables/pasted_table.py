@@ -40,7 +40,7 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    A row of the wrong length has a ``problem``, and all its cells are the same one. ``named`` is
+    A row of the wrong length has a ``problem``, and the same cell in all four places. ``named`` is
     the arrangement of the cells by their names, None if no name contradicts its column.
     """
 
@@ -59,7 +59,7 @@ class PastedTable:
     """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
 
     ``is_named`` is true if the columns have headers, or names in a script or a comment.
-    ``convention`` is the one in a script.
+    ``convention`` is the convention in a script, or None.
     """
 
     rows: tuple[PastedRow, ...]
@@ -147,7 +147,7 @@ def _has_parameters_in_rows(grid: Grid) -> bool:
 
 
 def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
-    """Return the transposed table, and the note on that."""
+    """Return the transposed table, and the note on the transposition."""
     message = say("The parameters stand in rows, so each column was read as the row of a joint.")
     note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
     first, *others = zip(*grid.rows, strict=True)

@@ -55,7 +55,7 @@ def is_label(text: str) -> bool:
 def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
     """Return the indices of the rows in the order of their labels, and the findings on the order.
 
-    Rows keep their order if one has no label. Raises GridError if two have the same label.
+    Rows keep their order if a row has no label. Raises GridError if two rows share a label.
     """
     typed = list(range(len(labels)))
     places = [label_place(label.text) for label in labels]

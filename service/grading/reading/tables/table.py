@@ -76,7 +76,7 @@ class StudentRow:
 
     @property
     def is_given_up(self) -> bool:
-        """True if the number of some cell is wrong in any frames (``GIVEN_UP``)."""
+        """True if some cell is ``GIVEN_UP``: its number is wrong in any frames."""
         return any(entry is GIVEN_UP for entry in self.entries)
 
     @property
@@ -106,8 +106,8 @@ class StudentRow:
 class StudentTable:
     """A table as read: its rows and their numbers ``(rows, 4, SAMPLES)``.
 
-    ``convention`` is the one that the answer names, if it names one. ``reread`` reads the table
-    with its columns in another order. It is None if the columns of a pasted table have headers.
+    ``convention`` is the convention that the answer names, or None. ``reread`` reads the table with
+    its columns in another order. ``reread`` is None if the columns of a pasted table have headers.
     ``named`` is true if the cells were typed one by one into the columns of a grid.
     """
 
@@ -126,9 +126,9 @@ Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTable:
     """Return the table without empty rows after the rows of all joints, as if they were absent.
 
-    So a table that is right in the other convention, with one row less than the form, is named. A
-    table with more rows than the ``asked`` ones stays as it is: an empty row too many costs as much
-    as a wrong one.
+    A table that is right in the other convention may have one row less than the form; without its
+    empty row it is recognized. A table with more rows than ``asked`` is unchanged: an extra empty
+    row costs as much as an extra wrong row.
     """
     if len(table.rows) > asked:
         return table
@@ -146,9 +146,9 @@ def read_table(
 ) -> StudentTable:
     """Read a table ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    The answer may have one of the other shapes in ``cells``, and it or its rows may be pasted
-    text. Columns without names are in ``order``. A cell that is empty or a dash is missing; with
-    ``empty_is_zero`` it is 0 if another cell of its row is not empty.
+    The answer may have one of the other shapes in ``cells``. The answer or its ``rows`` may also be
+    pasted text. Columns without names are in ``order``. A cell that is empty or a dash is missing.
+    With ``empty_is_zero`` the cell is 0 if another cell of its row is not empty.
 
     Raises UnreadableAnswerError if the answer has no rows at all. An unreadable row or cell affects
     only itself.
@@ -192,7 +192,7 @@ def _under_other_names(row: object, other: Sequence[str]) -> object:
 def _with_own_budget(reader: Reader) -> Reader:
     """Return the reader with a separate budget, for reading a table in another column order.
 
-    This work must not reduce the budget of the parts that follow. A table beyond the separate
+    Reading again must not reduce the budget of the later parts. A table that exceeds the separate
     budget has no rows in another order.
     """
     return replace(reader, budget=WorkBudget(MAX_SYMBOLS_AGAIN))
