@@ -26,12 +26,12 @@ EXPECTED = "expected"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A hint where to look, which never contains the right value, and the correction itself.
+    """A hint where to look, and the correction. The hint never contains the right value.
 
     ``code`` is stable, so that mistakes of a class can be counted. ``correction`` is a formula, an
     instruction in words, or empty. ``values`` is a counterexample. ``reading`` is true for a
     finding on how a text was read; it reveals nothing and is visible at every level. ``suggestion``
-    is the repaired text of an unreadable one. ``rule`` is the rule that a hint explains.
+    is the repaired form of an unreadable text. ``rule`` is the rule that a hint explains.
     """
 
     code: str
@@ -228,7 +228,7 @@ def _said(message: Feedback) -> _Said:
 
 
 def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
-    """Return the first of equal messages with the places of all."""
+    """Return the first of several equal messages, with the places of all these messages."""
     first = replace(told[0][1], span=None)
     if len({message.correction for _, message in told}) == 1:
         return replace(first, places=tuple(dict.fromkeys(place for place, _ in told)))

@@ -86,7 +86,7 @@ def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool
 
 
 def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> bool:
-    """True if the joints move no entry ``(rows, columns, SAMPLES)`` of an answer that was read.
+    """True if no joint moves any entry ``(rows, columns, SAMPLES)`` of an answer.
 
     ``quantities`` are those of the columns, or of all entries. An answer with an unreadable entry,
     which is NaN, may move. An empty entry cannot move: the caller writes 0 for it.

@@ -45,7 +45,10 @@ def sum_formula(
     samples: Samples,
     spelling: Spelling,
 ) -> Correction | None:
-    """Return ``value_formula`` for known multiples of joint variables; None if they are None."""
+    """Return ``values`` as a formula with ``counts``, the known multiples of joint variables.
+
+    Return None if ``counts`` is None, or if the values have another form (see ``value_formula``).
+    """
     if counts is None:
         return None
     moving = [joint.variable for joint in exercise.joints]
@@ -67,9 +70,9 @@ def sum_formula(
 def multiples(
     constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Return whole multiples of letters and a remainder with the sum ``constant`` ``(HALF,)``.
+    """Return whole multiples of letters and a remainder; their sum is ``constant`` ``(HALF,)``.
 
-    Return None if there are none. Letters with the multiple 0 are left out.
+    Return None if no multiples have this sum. Letters with the multiple 0 are left out.
     """
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:

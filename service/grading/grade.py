@@ -120,7 +120,7 @@ def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
 class _Graded:
     """A part that was graded; ``judged`` is None if there was no readable answer.
 
-    If it follows from the student's earlier answer, it was judged by that answer.
+    If the answer follows from the student's earlier answer, it was judged by that earlier answer.
     """
 
     part: PartSpec
@@ -135,8 +135,8 @@ class _Graded:
     def carries(self, share: float, grading: Grading) -> bool:
         """True if a later part may follow from the answer.
 
-        It must have earned ``share`` of the points by content, in any marking, and be an arm with
-        the robot's joints.
+        The answer must have earned ``share`` of the points by content, in any marking. It must be
+        an arm with the robot's joints.
         """
         if (
             self.judged is None
@@ -190,7 +190,7 @@ def _graded(
 def _followed(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded]
 ) -> _Graded | None:
-    """Return the part that this one follows; if that has no answer, the part that it follows."""
+    """Return the nearest part with an answer among the parts that this part follows."""
     while part.follows is not None:
         part = earlier[part.follows].part
         if answers.get(part.id) is not None:

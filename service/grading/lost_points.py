@@ -77,9 +77,9 @@ def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
 
 
 def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
-    """Return why rows that are right, but hold only zeros, are worth little; None if none is.
+    """Return why right rows of zeros are worth little, or None if there are no such rows.
 
-    ``rows`` are those without a content cell; ``most`` are the points of the part.
+    ``rows`` are the rows without a content cell; ``most`` is the number of points of the part.
     """
     found = [
         row

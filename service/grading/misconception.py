@@ -17,7 +17,7 @@ hypotheses: numbers to compare with the answer, each with the words of its messa
 
 A check is for a slip without numbers to compare, such as a formula without a value or a left-handed
 frame. It has a record, too, and returns a finding or None. If several records explain an answer,
-that of the lowest rank counts; the order of imports has no effect. The pages of docs that list
+the one of the lowest rank counts; the order of imports has no effect. The pages of docs that list
 codes are generated from the records. ``tests/grading/diagnosis/test_diagnosis.py`` hands in the
 examples.
 """
@@ -48,13 +48,13 @@ Example: TypeAlias = tuple[str, str, Any] | tuple[str, str, Any, str]
 class Record:
     """A misconception or a check.
 
-    The engine asks it about each answer that is an instance of ``of`` and meets ``when``, in the
-    order of ``rank``. Its findings have the first of ``codes`` unless they name another of them.
-    ``rule`` is the rule of DH or of kinematics that hints about its findings explain.
-    ``means`` is the text in docs: one for all codes, or one for each code. ``example`` is an answer
-    that the record explains, ``unlike`` an answer to the same part that it does not explain. Such
-    an answer is what a student sends, or the model answer with some cells changed:
-    ``{"2/alpha": "0"}``. A record without a code passes on the findings of other records.
+    The engine tries records in the order of ``rank``. It tries a record on each answer that is an
+    instance of ``of`` and meets ``when``. The findings of a record have the first of ``codes``,
+    unless they name another of the codes. ``rule`` is the rule of DH or of kinematics that the
+    hints explain. ``means`` is the text in docs: one text for all codes, or one for each code.
+    ``example`` is an answer that the record explains, ``unlike`` an answer to the same part that
+    the record does not explain. Either is what a student sends, or the changed cells of the model
+    answer: ``{"2/alpha": "0"}``. A record without a code passes on the findings of other records.
     """
 
     of: type
@@ -71,7 +71,7 @@ class Record:
 
     @property
     def code(self) -> str:
-        """The code of a finding that names no other."""
+        """The code of the findings that do not name another code."""
         return self.codes[0]
 
     def meaning(self, code: str) -> str:
@@ -92,7 +92,7 @@ class Record:
         return found
 
     def verdict(self, source: object) -> "Hypothesis[Any] | None":
-        """Return the finding of a check, or None if the answer passes it."""
+        """Return the finding of a check, or None if the answer passes the check."""
         found = None
         if self.function and (self.when is None or self.when(source)):
             found = self.function(source)
@@ -189,7 +189,7 @@ class Hypothesis(Generic[Answer]):
 
 @dataclass(slots=True)
 class Written(Hypothesis[Answer]):
-    """The answer of a student with the misconception: it explains an answer that is equal to it.
+    """The answer of a student with the misconception; it explains an answer that equals it.
 
     ``tolerance`` replaces the usual tolerance of that comparison.
     """
@@ -199,7 +199,10 @@ class Written(Hypothesis[Answer]):
 
 @dataclass(slots=True)
 class Repaired(Hypothesis[Answer]):
-    """The student's answer without the misconception: it explains the answer if it is right."""
+    """The student's answer without the misconception.
+
+    It explains the student's answer if the repaired answer is right.
+    """
 
 
 Explained: TypeAlias = Hypothesis[Any]
@@ -237,8 +240,8 @@ def explanation(
     """Return the hypothesis of the lowest rank that explains ``case``, or None.
 
     A misconception takes ``source``, for example the links whose product a matrix is; without a
-    ``source`` it takes ``case``. The records are those of the class ``of``, by default the class of
-    that argument. Each is tried only if those before it explain nothing.
+    ``source`` it takes ``case``. The records of the class ``of`` are tried until one of them
+    explains ``case``. By default, ``of`` is the class of what the misconception takes.
     """
     start = case if source is None else source
     for record in records_of(of or type(start)):

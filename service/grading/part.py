@@ -26,10 +26,10 @@ _CELL = 40
 class StudentChain:
     """An answer as a chain of links, which a later part may follow from.
 
-    ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are its frames in the base frame, from the base to the
-    tool. ``tool_at`` returns the tool's frame at other samples, NaN where it is undefined.
-    ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the valid table nearest to
-    the answer, None if it is not a table.
+    ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are the frames of the chain in the base frame, from the
+    base to the tool. ``tool_at`` returns the tool's frame at other samples, NaN where the frame is
+    undefined. ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the valid table
+    nearest to the answer, or None if the answer consists of matrices.
     """
 
     frames: Matrices
@@ -89,7 +89,8 @@ class Grading:
     def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
         """Return a function from symbols to their names in the entries of a part.
 
-        It reads the shortest entries, which show the names with the least work, on its first call.
+        On its first call, this function reads the shortest entries: they show the names with the
+        least work.
         """
 
         @cache
@@ -102,7 +103,7 @@ class Grading:
     def unwritten(self, entries: Iterable[Entry]) -> frozenset[str]:
         """Return the constants of the exercise that no entry contains.
 
-        A hint must not name them, because the missing one may be the whole answer.
+        A hint must not name these constants, because the missing one may be the whole answer.
         """
         read = (each.expression.symbols for each in entries if each.expression is not None)
         joints = (joint.variable for joint in self.exercise.joints)
@@ -134,14 +135,14 @@ def _no_chain() -> StudentChain | None:
 class Content:
     """The content cells of a right answer: those that need knowledge and therefore earn marks.
 
-    Both lists are ``(rows, cells)``, like the rows of the report. ``known`` marks the content
-    cells. ``groups`` has the number of each cell's group; a group cannot lose more than it is
-    worth. With ``besides``, each group has a small worth besides its content cells. With ``equal``,
-    all groups are worth the same. ``most`` is the largest number of cells that count, because a
-    student's own choices may add content cells. ``bottom`` are the rows that are the same in every
-    right answer, the last ones of homogeneous matrices. ``usual`` are the numbers of
-    rows and content cells of the reference, if those of an answer may differ. ``given`` marks the
-    rows that the exercise gives, which earn nothing; empty if there are none.
+    ``known`` and ``groups`` are ``(rows, cells)``, like the rows of the report. ``known`` marks the
+    content cells. ``groups`` has the number of each cell's group; a group cannot lose more than it
+    is worth. With ``besides``, each group has a small worth besides its content cells. With
+    ``equal``, all groups are worth the same. ``most`` is the largest number of cells that count,
+    because a student's own choices may add content cells. ``bottom`` are the rows that are the same
+    in every right answer: the last rows of homogeneous matrices. ``usual`` are the numbers of rows
+    and content cells of the reference, if an answer may have other numbers. ``given`` marks the
+    rows that the exercise gives, which earn nothing; it is empty if the exercise gives no rows.
     """
 
     known: tuple[tuple[bool, ...], ...]
@@ -170,14 +171,16 @@ class Judged:
 
     The rows have no points yet; ``content`` has the worth of their cells. ``slips`` is the number
     of slips that no cell shows, such as an extra row. ``whole_cost`` is the share of the points
-    that a slip of the whole answer costs, if one explains all wrong cells. Cells that are also
-    wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is true if no
-    joint moves an answer that must move. The points of ``at_most`` are an upper limit for this
-    judgement, those of ``at_least`` a lower one. With ``needs_all``, the answer needs more rows
-    than ``at_most`` has: because of the upper limit, its wrong cells lose at most a unit each.
-    ``lost`` is an upper limit of the lost units of content. A wrong answer earns at most a unit for
-    each of its ``written`` cells, which are not lazy; None if that is unknown. ``chain`` returns
-    the answer as a chain, or None; it is called only if another part follows this one.
+    that a slip of the whole answer costs, if such a slip explains all wrong cells. Cells that are
+    also wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is true if
+    no joint moves an answer that must move. The points of ``at_most`` are an upper limit for this
+    judgement, the points of ``at_least`` a lower limit. With ``needs_all``, the answer needs more
+    rows than ``at_most`` has: because of the upper limit, its wrong cells lose at most a unit each.
+    ``lost`` is an upper limit of the lost units of content. ``written`` is the number of cells that
+    the student wrote and that are not lazy, or None if unknown; a wrong answer earns at most a unit
+    for each of these cells.
+    ``chain`` returns the answer as a chain, or None; this function is called only if another part
+    follows this part.
     """
 
     rows: tuple[RowReport, ...]

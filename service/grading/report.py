@@ -218,10 +218,10 @@ def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...],
 
 
 def combined(verdicts: Iterable[Verdict]) -> Verdict:
-    """Return the verdict on a whole: that of its pieces, if they all have the same.
+    """Return the verdict on a whole: the verdict of its pieces if all have the same verdict.
 
-    Otherwise it is partial if some piece is right, else incorrect if some piece is wrong, else
-    unreadable.
+    Otherwise the whole is partial if some piece is right, else incorrect if some piece is wrong,
+    else unreadable.
     """
     found = set(verdicts)
     if not found:

@@ -77,7 +77,10 @@ class WorkBudget:
 
     @property
     def left(self) -> float:
-        """The total work minus searches and reading, including later parts of the submission."""
+        """The total work minus the work of searches and of reading.
+
+        Reading includes the later parts of the submission.
+        """
         if self._expected < 0:
             self._expected = _symbols_of(self.answers)
         read = (
@@ -88,7 +91,7 @@ class WorkBudget:
         return MAX_WORK - read - (MAX_SEARCHES - self.searches)
 
     def affords(self, work: float) -> bool:
-        """Take ``work`` for an explanation, in any case; return True if enough was left."""
+        """Take ``work`` for an explanation, even if not enough is left; return True if it was."""
         checkpoint()
         self.explanations -= work
         left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))

@@ -162,7 +162,8 @@ def _of_the_whole(
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
     """Explain a wrong table as a whole, or find the motion that its arm cannot make.
 
-    Return the judgement that fits the explanation, the explanation, and the lost motion.
+    Return the judgement, the findings that explain the table, and those on the lost motion. The
+    judgement fits the explanation.
     """
     if not judgement.wrong:
         return judgement, (), ()

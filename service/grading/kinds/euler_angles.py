@@ -83,7 +83,10 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
 
 
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
-    """Return the content: the angles that are not 0, in the simplest triple if it is singular."""
+    """Return the content: the angles that are not 0.
+
+    No more angles count than in the simplest triple of the rotation.
+    """
     fixed = part.axes == "fixed"
     simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)
     known, most = (known_cells(triple, 0.0, angle=True) for triple in (expected, simplest))
@@ -163,10 +166,10 @@ def nearest_triple(
 def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
     """Return which of the two triples of a rotation is intended at each sample, ``(SAMPLES,)``.
 
-    ``off`` is the distance of each angle from that of the triple, ``hit`` a mask of equal angles,
-    both ``(2, SAMPLES, 3)``. Samples may belong to different triples: an atan2 always gives the
-    same one, a robot's own angle does not. So the choice is the one with the most angles that are
-    right at all samples; a single sample decides nothing.
+    ``off`` is the distance of each angle from the angle of the triple, ``hit`` a mask of equal
+    angles, both ``(2, SAMPLES, 3)``. Samples may belong to different triples: atan2 always gives
+    the same triple, but an angle of the robot itself may be in either. The choice makes the most
+    angles right at all samples; a single sample decides nothing.
     """
     total, samples = off.sum(axis=-1), np.arange(off.shape[1])
     for count in (3, 2, 1):

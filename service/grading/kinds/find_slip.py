@@ -50,7 +50,8 @@ _MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.I
 class FoundSlip:
     """An answer: the marked cells and the mended table.
 
-    The table is None if it is missing, or if it cannot be read at all, as ``unread`` says.
+    ``table`` is None if the table is missing or cannot be read at all. ``unread`` is the reason why
+    it cannot be read.
     """
 
     marked: MarkedCells
@@ -180,8 +181,8 @@ def _covers(marked: frozenset[CellIndex], wrong: frozenset[CellIndex]) -> bool:
 def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
     """Return the content: the mark is one half, and the mended table the other.
 
-    A table that is not right earns nothing for mending, so all its cells that are not right share
-    its half. In a right one, these are the cells of the slip.
+    In a right table, the cells of the slip share the half of the table. In any other table, all
+    cells that are not right share it, so that such a table earns nothing for mending.
     """
     wrong = [[cell.verdict is not Verdict.CORRECT for cell in row.cells] for row in rows]
     if not any(map(any, wrong)):
@@ -201,7 +202,8 @@ def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
 def slip_of(part: FindSlipSpec, exercise: Exercise) -> DrawnSlip:
     """Return the given table and its slip.
 
-    If the wanted slip does not fit the robot, it is another one; ``exercises check`` says so.
+    If the wanted slip does not fit the robot, the table has another slip; ``exercises check``
+    reports that.
     """
     return _slip_of(_Asked(exercise.version, part.id, part, exercise))
 

@@ -174,7 +174,10 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
 
 
 def _completed(values: Matrices, part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """Return the matrices; compute one with unread entries from all others and the tool frame."""
+    """Return the matrices, with a single unread one computed from the others.
+
+    A matrix with unread entries is computed from all other matrices and the tool frame.
+    """
     unread = np.flatnonzero(np.isnan(values).any(axis=(1, 2, 3)))
     if len(unread) != 1:
         return values

@@ -190,7 +190,7 @@ def _shared_messages(
 def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
     """Return a mask ``(joints, 6)`` of the content cells.
 
-    These differ from 0 and from the lazy axis, which is the frame's z axis.
+    A content cell differs from 0 and from the cell of the lazy axis, the z axis of the frame.
     """
     turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
     lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])

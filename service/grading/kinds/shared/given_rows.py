@@ -36,7 +36,7 @@ _CHANGED = register(
 def with_given_rows(part: DhTableSpec, table: StudentTable, grading: Grading) -> StudentTable:
     """Return the table with the given rows as the exercise gives them.
 
-    The answer may have left them out, or empty. A table with too many rows stays as it is.
+    In the answer, the given rows may be missing or empty. A table with too many rows is unchanged.
     """
     if not part.given or not table.rows:
         return table

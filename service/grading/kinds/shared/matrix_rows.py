@@ -71,11 +71,12 @@ def matrix_rows(
 ) -> MatrixRows:
     """Return the report rows of a matrix, with explanations of its wrong entries.
 
-    These functions are called only if an entry is wrong. ``explanations`` is the first: it returns
-    explanations that only this kind of answer has. ``chains`` returns the links whose product is
-    the matrix, ``motion`` the motion in given formulas, both at given samples. ``slipped`` returns
-    the matrices that follow from slips in the table. ``work_budget`` limits the search in products.
-    If there are several matrices, ``name`` is that of this one, as in the row "A2.1".
+    The four functions are called only if an entry is wrong. ``explanations`` returns the
+    explanations that only this kind of answer has; the general explanations are tried only if there
+    are none of these. ``chains`` returns the links whose product is the matrix, ``motion`` the
+    motion in given formulas, both at given samples. ``slipped`` returns the matrices that follow
+    from slips in the table. ``work_budget`` limits the search in products. If the answer
+    has several matrices, ``name`` is the name of this matrix, as in the row "A2.1".
     """
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)

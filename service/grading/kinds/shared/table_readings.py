@@ -2,8 +2,8 @@
 
 The first reading is the table as written. The others are the table with other joint numbers, with
 its columns in another order, with its lengths in another unit, or with a and d of one row
-exchanged. Each is judged alike; one that explains enough wrong cells counts, with the finding on
-its slip.
+exchanged. Each reading is judged alike. A reading that explains enough wrong cells counts, with the
+finding on its slip.
 
 Three more readings only limit the points: the table without its extra rows, with lazy entries in
 its unread cells, and with one row given up (``fair_points``).
@@ -54,8 +54,9 @@ Judge: TypeAlias = Callable[[DhTableSpec, StudentTable, Grading], JudgedTable]
 class _Reading(NamedTuple):
     """Another reading of a table.
 
-    It counts if at most ``most_wrong`` of its cells are wrong, or in any case if that is None. A
-    later part follows from the table as written, or from this reading if it ``has_links``.
+    The reading counts if at most ``most_wrong`` of its cells are wrong; if ``most_wrong`` is None,
+    it always counts. With ``has_links``, a later part follows from this reading instead of the
+    table as written.
     """
 
     intended: IntendedTable
@@ -104,7 +105,7 @@ def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> flo
 
 @dataclass(frozen=True, slots=True)
 class _Readings:
-    """Judges the readings of tables; ``work`` is that of judging one."""
+    """Judges the readings of tables; ``work`` is the work of judging one table."""
 
     part: DhTableSpec
     judge: Judge
@@ -112,7 +113,7 @@ class _Readings:
     grading: Grading
 
     def in_silence(self) -> "_Readings":
-        """Return the same without explanations."""
+        """Return a copy that judges without explanations."""
         return replace(self, grading=replace(self.grading, explains=False))
 
     def as_written(self, table: StudentTable) -> Judged:
@@ -120,7 +121,7 @@ class _Readings:
         return self.limited(table, self.judge(self.part, table, self.grading))
 
     def best(self, table: StudentTable, judged: Judged) -> Judged:
-        """Judge the other readings of a wrong table; ``judged`` is it as written."""
+        """Return the judgement of the best reading; ``judged`` is that of the table as written."""
         for reading in self._others(table, judged):
             is_certain = reading.most_wrong is None
             if not is_certain and not self.grading.reader.budget.affords_search(self.work):
@@ -183,8 +184,8 @@ def _with_slip(
 ) -> Judged:
     """Return the judgement of a table with a systematic slip.
 
-    ``without`` judges the table without the slip, ``judged`` as written. The cells of the slip are
-    wrong, and together cost as much as a slip of the whole table.
+    ``without`` is the judgement of the table without the slip, ``judged`` of the table as written.
+    The cells of the slip are wrong; together they cost as much as a slip of the whole table.
     """
     rows = tuple(
         row_report(
@@ -220,7 +221,8 @@ def _with_extra_rows(
 ) -> Judged:
     """Return the judgement of a wrong table with extra rows.
 
-    ``kept`` are the indices of the mechanism's rows; ``without`` judges only these.
+    ``kept`` are the indices of the mechanism's rows; ``without`` is the judgement of only these
+    rows.
     """
     extra = [i for i, row in enumerate(table.rows) if i not in kept and not row.is_zero]
     is_told = any(message.code in EXTRA_ROW.codes for message in judged.feedback)
