@@ -92,7 +92,9 @@ def subject_of(exercise: Exercise) -> Subject:
 
 
 def reference_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
-    """Return the drawing with the frames of the reference table. It shows an answer: for tutors.
+    """Return the drawing with the frames of the reference table.
+
+    It is only for tutors, because the frames are an answer.
 
     Raises LookupError if the exercise has no robot with a table.
     """
@@ -179,7 +181,7 @@ def _dimensions(
 
 
 def _aside(step: Numbers, directions: Numbers) -> Numbers:
-    """Return the unit vectors perpendicular to ``step`` in the planes that it spans with others."""
+    """Return unit vectors perpendicular to ``step`` in its planes with the ``directions``."""
     along = step / np.linalg.norm(step)
     found: list[Numbers] = []
     for direction in directions:

@@ -66,7 +66,7 @@ class WrittenChain:
 
     @property
     def axes(self) -> Iterator[tuple[Joint, Numbers]]:
-        """The joints, each with the frame ``(4, 4)`` whose z axis is its axis."""
+        """The joints, each with the frame ``(4, 4)`` whose z axis is the joint axis."""
         for joint, frame in zip(
             self.row_joints, joint_frames(self.frames, self.convention), strict=True
         ):

@@ -1,4 +1,4 @@
-"""Dimension lines: the name of a length, on a line next to the piece that is so long."""
+"""Dimension lines: each is next to a piece, and has the name of the piece's length."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -17,9 +17,9 @@ _HEAD = 8.0
 
 @dataclass(frozen=True, slots=True)
 class DrawnFrames:
-    """Frames ``(frames, 4, 4)``, their indices, and the letters of the axes drawn of each.
+    """Frames ``(frames, 4, 4)``, their indices, and the letters of the axes to draw for each frame.
 
-    If ``braces`` is set, the name of the frame stands at its origin: {0}.
+    If ``braces`` is set, the name of each frame, such as {0}, is drawn at its origin.
     """
 
     poses: Matrices
@@ -88,7 +88,7 @@ def frame_names(camera: Camera, drawn: DrawnFrames, room: TakenRoom) -> list[str
 def named(
     label: Label, wanted: Sequence[Numbers], points: Numbers, kind: str, room: TakenRoom
 ) -> Iterator[str]:
-    """Yield the SVG of a label, and of a line from there to ``points`` if they are far from it."""
+    """Yield the SVG of a label, and of a line to ``points`` if the label is far from them."""
     place = room.place(label, wanted, points)
     leader = place.leader(points)
     if leader is not None:

@@ -53,7 +53,7 @@ def mechanism_solids(
 
 
 def joint_solid(sheet: Sheet, centre: Numbers, axis: Numbers, fill: str, *, slides: bool) -> Solid:
-    """Return the solid of a joint, and draw its axis below it."""
+    """Return the solid of a joint, and draw the joint axis below the solid."""
     camera, size = sheet.camera, sheet.size
     half, radius = JOINT_LENGTH / 2 * size, JOINT_RADIUS * size
     ends = centre + np.array([[-1.0], [1.0]]) * (half + _AXIS_BEYOND * size / 2) * axis
@@ -67,7 +67,7 @@ def joint_solid(sheet: Sheet, centre: Numbers, axis: Numbers, fill: str, *, slid
 
 
 def link_solid(sheet: Sheet, line: Numbers, drawn: Numbers) -> Solid:
-    """Return the solid of a link along the corners ``drawn``, and mark the room of ``line``."""
+    """Return the solid of a link with the corners ``drawn``; mark the room along ``line``."""
     sheet.take(sheet.camera.seen(line), _ROD * sheet.unit / 2)
     return rod(sheet.camera, drawn, _ROD * sheet.unit)
 
@@ -84,7 +84,7 @@ def ground_solid(sheet: Sheet, base: Numbers, normal: Numbers) -> Solid:
 
 
 def _shortened(corners: Numbers, by: float) -> Numbers:
-    """Return the line without its end, shortened by the length ``by``."""
+    """Return the line, shortened at its end by the length ``by``."""
     line = corners
     while len(line) > 1:
         last = line[-1] - line[-2]
@@ -110,7 +110,7 @@ def _clear_of_joints(
 def _surface(
     start: Numbers, towards: Numbers, shown: Configuration, joint: int, mechanism: MovableMechanism
 ) -> Numbers:
-    """Return the point, slightly inside the joint, where a line from its middle leaves it."""
+    """Return where a line from the middle of a joint leaves the joint (slightly inside)."""
     step = towards - start
     length = float(np.linalg.norm(step))
     if length == 0:  # two joints in one place, where a short wrist has no room for both

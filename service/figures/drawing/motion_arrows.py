@@ -76,7 +76,8 @@ def sliding_arrow(
 ) -> MotionArrow:  # fmt: skip
     """Return a straight arrow next to the joint, on its less crowded side in the picture.
 
-    If the arrow would cross an axis, a part or a name there, it is moved along or away.
+    If the arrow would cross an axis, a part or a name there, it is moved along the joint axis or
+    away from the joint.
     """
     aside = np.cross(perpendicular(axis, camera.towards), axis)
     steps = np.linspace(-half, half, 9)[:, None] * axis

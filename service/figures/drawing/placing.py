@@ -49,7 +49,7 @@ class Rectangle:
     def leader(self, points: Numbers) -> Numbers | None:
         """Return the line ``(2, 2)`` from the nearest of ``points`` to the label.
 
-        None if the label is next to it.
+        Return None if the label is next to that point.
         """
         half, centre = (self.half_width, self.half_height), np.array([self.x, self.y])
         near = np.clip(points, centre - half, centre + half)
@@ -133,7 +133,7 @@ class TakenRoom:
         return [np.array([start, end]) for start, end in zip(self._starts, self._ends, strict=True)]
 
     def crowding(self, points: Numbers, clearance: float) -> float:
-        """Return how crowded the points ``(points, 2)`` are: 0 if no stroke is in ``clearance``."""
+        """Return how crowded the points ``(points, 2)`` are; 0 if no stroke is near."""
         if not self._starts:
             return 0.0
         near = self._strokes().near(points, clearance)
@@ -174,8 +174,9 @@ class TakenRoom:
         """Return the best free place for a label, and mark it as taken.
 
         Earlier points in ``wanted`` are better. The place never overlaps another label: if all
-        wanted places do, the label is placed farther away. If ``named``, the points that the label
-        names, are far from it, a leader connects them, and does not cover other labels.
+        wanted places overlap labels, the label is placed farther away. ``named`` are the points
+        that the label names. Places far from these points need a leader, so they are worse,
+        especially if the leader covers other labels.
         """
         best: tuple[float, Rectangle] | None = None
         size = Rectangle.of(label, 0.0, 0.0)

@@ -48,7 +48,7 @@ class Sheet:
         return self.size * self.camera.scale
 
     def take(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
-        """Mark the room along a line as taken; the sheet will contain it."""
+        """Mark the room along a line as taken; the figure will be large enough for the line."""
         self.room.take_line(points, radius, weight)
         self.points += [points - radius, points + radius]
 

@@ -41,7 +41,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """The SVG of a part and its place, by which nearer parts are drawn later.
+    """The SVG of a part, and its place; parts nearer to the viewer are drawn later.
 
     The part is within ``radius`` pixels of the points ``spine`` ``(points, 3)``.
     """
@@ -113,7 +113,10 @@ def cylinder(
 
 
 def box(camera: Camera, centre: Numbers, axis: Numbers, half: float, width: float) -> Solid:
-    """Return a prismatic joint: a box along its axis. ``half`` and ``width`` are half its sizes."""
+    """Return a prismatic joint: a box along its axis.
+
+    ``half`` is half the length of the box, and ``width`` is half its width.
+    """
     one = perpendicular(axis, np.array([0.0, 0.0, 1.0]))
     edges = [axis * half, one * width, np.cross(axis, one) * width]
     faces = []
@@ -244,7 +247,7 @@ class _Shape:
         return cls(spine, left, top, right, bottom, nearness, solid.radius)
 
     def nearer_than(self, other: "_Shape") -> float:
-        """Return by how much ``self`` is nearer where both overlap in the picture, else 0."""
+        """Return by how much ``self`` is nearer than ``other`` where they overlap; else 0."""
         reach = self.radius + other.radius
         # A fast path: most solids are far from each other.
         across = max(self.left - other.right, other.left - self.right)

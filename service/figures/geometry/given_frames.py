@@ -63,13 +63,16 @@ def given_frames(exercise: Exercise) -> GivenFrames:
 
 
 def table_frames_of(robot: Robot, convention: Convention | None = None) -> GivenFrames:
-    """Return all frames of a robot's table, by default the author's."""
+    """Return all frames of a robot's table in a convention, by default the author's."""
     table = robot.tables[convention or robot.convention]
     return _chosen(table, frame_labels(table), set())
 
 
 def frame_labels(table: ReferenceTable) -> tuple[str, ...]:
-    """Return the labels of a table's frames: the number before the first joint's, and its rows."""
+    """Return the labels of a table's frames.
+
+    The base frame has the first joint's number minus 1; the other frames have the row labels.
+    """
     return (str(table.joints[0].index - 1), *table.labels)
 
 

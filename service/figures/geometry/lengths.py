@@ -1,4 +1,4 @@
-"""The named lengths in a figure: pieces of the path that are as long as the statement says."""
+"""The named lengths in a figure: lengths of pieces of the path, in symbols or numbers."""
 
 import re
 from collections.abc import Mapping
@@ -62,7 +62,7 @@ def _decimals(statement: str) -> dict[str, float]:
 
 
 def _stated(step: Numbers, numbers: Mapping[str, float]) -> str | None:
-    """Return the number as long as a piece ``(samples, 3)`` of constant length, or None."""
+    """Return the number that is the constant length of a piece ``(samples, 3)``, or None."""
     length = np.linalg.norm(step, axis=1)
     return next((text for text, n in numbers.items() if np.abs(length - n).max() < _EXACT), None)
 

@@ -169,7 +169,8 @@ class _Track:
     """The path, extended to the ground, and the stretch of it on which each joint may be drawn.
 
     ``reached`` is the length of the path up to each corner. ``first`` and ``last`` are the ends of
-    each joint's stretch, ``own`` the ends of the piece along its axis, as such lengths.
+    each joint's stretch, and ``own`` has the ends of the piece along the joint's axis. All these
+    ends are given as lengths of the path up to them.
     """
 
     corners: Numbers
@@ -252,7 +253,7 @@ class _Track:
 
     @property
     def bent(self) -> NDArray[np.bool_]:
-        """True for corners where the path begins or bends; for coincident corners, once."""
+        """True for corners where the path begins or bends; of coincident corners, for one."""
         kept = np.flatnonzero(np.concatenate([[True], np.diff(self.reached) > _SAME]))
         steps = np.diff(self.corners[kept], axis=0)
         steps /= np.linalg.norm(steps, axis=1, keepdims=True)
@@ -301,7 +302,7 @@ class _Track:
         return bool((np.diff(at) > self._apart - _SAME).all() and to_tool > -_SAME)
 
     def placed(self) -> list[float]:
-        """Return the place of each joint on the path, near its preferred one, clear of others."""
+        """Return each joint's place on the path, near the preferred one, clear of other joints."""
         apart = self._apart
         low, high = self.first.copy(), self.last.copy()
         low[0] = max(low[0], min(JOINT_LENGTH / 2 * self.size, high[0]))

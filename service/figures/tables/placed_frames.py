@@ -25,7 +25,7 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 class PlacedFrames:
     """The frames that can be drawn, ``(configurations, frames, 4, 4)``, and their labels.
 
-    ``left_out`` has the first cell without a number of each other frame that was begun.
+    If a frame was begun but cannot be drawn, ``left_out`` has the cell that prevents drawing it.
     """
 
     labels: tuple[str, ...]
@@ -73,7 +73,7 @@ def _is_begun(frame: StudentFrame) -> bool:
 
 
 def _entries(frame: StudentFrame) -> Iterator[tuple[str, Entry]]:
-    """Yield the entries of a frame with their cells; a direction by its name has none."""
+    """Yield the entries of a frame with their cells; a direction such as +y has no entries."""
     yield FRAME_CELLS[0], frame.axis.entry
     yield from (("z", entry) for entry in frame.z.entries)
     yield from zip(FRAME_CELLS[2:5], frame.origin, strict=True)

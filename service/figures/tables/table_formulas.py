@@ -27,7 +27,8 @@ class RowInFormulas:
 class TableFormulas:
     """The formulas of a table.
 
-    A cell that is unreadable or too long to print is None in ``cells``; then the rest is empty.
+    A cell that is unreadable or too long to print is None in ``cells``; then the other fields are
+    empty.
     ``converted`` is an equivalent table in the other convention. ``pose`` has the entries
     ``(4, 4)`` of the pose of the last frame in the base frame; it is empty if it is too long.
     """

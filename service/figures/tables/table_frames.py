@@ -48,9 +48,9 @@ class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
     The frames end before the first row that has a cell without a number; ``unread`` lists these
-    cells. ``values`` has the numbers of the rows up to there, ``(configurations, rows, 4)``, and
-    ``row_joints`` their joints, by the variable in the row. ``symbols`` are the symbols in the
-    table. ``freedoms`` is the number of degrees of freedom of a complete table, else None.
+    cells. For the rows before that row, ``values`` has the numbers ``(configurations, rows, 4)``,
+    and ``row_joints`` has the joint whose variable is in the row. ``symbols`` are the symbols in
+    the table. ``freedoms`` is the number of degrees of freedom of a complete table, else None.
     """
 
     frames: Matrices

@@ -57,7 +57,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _with_units(words: list[SourceText]) -> list[SourceText]:
-    """Return the words of a first line; a unit in brackets stays in the word before it: a (m)."""
+    """Return the words of the first line; a unit in brackets joins the word before: ``a (m)``."""
     found: list[SourceText] = []
     for word in words:
         if found and _UNIT.fullmatch(word.text):

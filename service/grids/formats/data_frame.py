@@ -56,9 +56,10 @@ def _joined_lines(lines: list[SourceText], source: SourceText) -> SourceText:
 
 
 def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Return the rows with a header above row numbers, which pandas and R print without one.
+    """Return the rows with a header above the row numbers.
 
-    The header is empty, or the name of the index on the second line.
+    Pandas and R print row numbers without a header. The new header is empty, or the name of the
+    index if the second line has one.
     """
     rows = _with_whole_labels(rows)
     head, *body = rows
@@ -79,9 +80,10 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
 
 
 def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Return the rows with labels such as Link 1 in one piece, if all below the headers have one.
+    """Return the rows with each label such as Link 1 in one cell.
 
-    The name of the index may follow the headers.
+    All rows below the headers must have a label, otherwise the rows do not change. The name of the
+    index may follow the headers.
     """
     for start in range(min(3, len(rows))):
         body = rows[start:]

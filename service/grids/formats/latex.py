@@ -188,7 +188,7 @@ def after_wrappers(text: str) -> int:
 
 
 def _after_arguments(source: SourceText, begin: re.Match[str]) -> int:
-    """Return the place after an environment's arguments; ``[t]`` and the like may precede each."""
+    """Return the place after an environment's arguments; ``[t]`` may precede each argument."""
     at = begin.end()
     arguments = ARGUMENTS[begin[2]]
     if not arguments and begin[2].endswith("*"):

@@ -100,7 +100,7 @@ def _plain(source: SourceText) -> Iterator[tuple[int, int]]:
 
 
 def _check_after(rest: SourceText) -> None:
-    """Raise GridError if ``rest``, the text after a matrix, begins with an operator on it."""
+    """Raise GridError if ``rest``, the text after a matrix, begins with an operator."""
     closers = _CLOSERS.match(rest.text)
     at = closers.end() if closers else 0
     if _CHANGES.match(rest.text, at):

@@ -11,7 +11,7 @@ from service.translations import say
 def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
     """Return the values of each row, and notes if two readings are possible.
 
-    Raises GridError if splitting at commas only and splitting at blanks, too, both give a matrix.
+    Raises GridError if there is a matrix both with and without splitting at blanks.
     """
     lines = split(content, ";\r\n")
     lines = [line.strip() for line in lines if line.text.strip(" \t,")]

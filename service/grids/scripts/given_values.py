@@ -1,7 +1,7 @@
 """Assignments above the matrix of a MATLAB script, such as ``a1 = 0.4``.
 
-The letters of a matrix are the exercise's symbols, so a number assigned to one is ignored, with a
-note. Any other value may be needed to read the matrix, so the text is refused.
+The letters of a matrix are the exercise's symbols, so a number assigned to a letter is ignored,
+with a note. Any other value may be needed to read the matrix, so the text is refused.
 """
 
 import re
@@ -103,8 +103,8 @@ def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
     """Return the note on numbers that a script assigns to letters.
 
-    ``read`` are the letters in the cells. Raises GridError if one of them has another value than a
-    plain number.
+    ``read`` are the letters in the cells. Raises GridError if such a letter has a value that is not
+    a plain number.
     """
     for each in given:
         if each.name in read and not each.is_number:
@@ -133,7 +133,7 @@ def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Not
 
 
 def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
-    """Return the values assigned by the statements at the top, and the place after these."""
+    """Return the values that the first statements assign, and the place after the statements."""
     found: list[GivenValue] = []
     text, at = source.text, 0
     while at < len(text):

@@ -68,7 +68,7 @@ def describes_columns(text: str) -> bool:
 
 
 def read_columns(source: SourceText) -> RobotTable | None:
-    """Return the table in the first dictionary that holds one, or None.
+    """Return the first table that is written as dictionaries or named lists, or None.
 
     Raises GridError if the text cannot be read.
     """
@@ -93,7 +93,7 @@ def read_columns(source: SourceText) -> RobotTable | None:
 
 
 def _items(statement: SourceText) -> list[_Item]:
-    """Return the items of a statement that is a dictionary, or assigns one to a name."""
+    """Return the items of the dictionary that a statement contains or assigns, or []."""
     value = _value(statement)
     call = split_call(value)
     if call and call[0] == "dict":
@@ -133,7 +133,7 @@ def _keywords(inside: SourceText) -> list[_Item]:
 
 
 def _row_items(statement: SourceText) -> list[list[_Item]]:
-    """Return the items of each dictionary in a list of them, or []."""
+    """Return the items of each dictionary in a list of dictionaries; [] for any other text."""
     value = _value(statement)
     if value.text.startswith("{"):
         # JSON may name the list: {"table": [{…}, {…}]}.
@@ -163,7 +163,7 @@ def _dashed_rows(found: list[SourceText]) -> list[list[_Item]]:
 
 
 def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
-    """Return the table of dictionaries with the same keys. Raises GridError for other keys."""
+    """Return the table of dictionaries. Raises GridError if their keys differ."""
     first = [item.key.text for item in rows[0]]
     cells = [[item.key for item in rows[0]]]
     for row in rows:

@@ -68,8 +68,8 @@ class WrittenMatrix:
     """A matrix in program text.
 
     ``groups`` are the contents of the outermost brackets: usually one, or one for each row.
-    ``maker`` is the name of the function around them, and ``shape`` its arguments for the numbers
-    of rows and columns.
+    ``maker`` is the name of the function around the brackets, and ``shape`` has the numbers of rows
+    and columns among its arguments.
     """
 
     groups: tuple[SourceText, ...]
@@ -168,7 +168,10 @@ def _remark_end(text: str, start: int, last: int) -> int:
 
 
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
-    """Return the place where a matrix begins and the call around it, if any; None without one."""
+    """Return the place where a matrix begins, and the call around it, if any.
+
+    Return None if the text has no matrix.
+    """
     at = after_names(text)
     at += len(text[at:]) - len(text[at:].lstrip())
     if form := _FORM.match(text, at):

@@ -30,7 +30,7 @@ class JointType(StrEnum):
 
 @dataclass(slots=True)
 class RobotLink:
-    """A link as the script writes it. ``cells`` are the parameters that it gives, by their names.
+    """A link as the script writes it. ``cells`` has the parameters in the script by their names.
 
     If ``joint`` is None, one of the cells contains the joint variable.
     """
@@ -238,8 +238,8 @@ def transform_link(
 ) -> RobotLink:
     """Return the link of ``setFixedTransform(joint, [a alpha d theta], 'dh')``.
 
-    Raises GridError unless there are four values, one of which contains the joint variable if the
-    type of the joint is not known.
+    Raises GridError unless there are four values. If the type of the joint is not known, one value
+    must contain the joint variable.
     """
     if len(values) != len(_OF_TRANSFORM):
         raise unread_script(
@@ -274,7 +274,7 @@ class LinkRow:
 
 
 def row_of(link: RobotLink, number: int) -> LinkRow:
-    """Return the row of a link whose joint has this number.
+    """Return the row of a link; ``number`` is the number of the link's joint.
 
     A joint variable that the script only implies is named ``q`` with the number. Raises GridError
     if the cell of the variable contains a value that the toolbox ignores.

@@ -194,7 +194,7 @@ class _Script:
                 self.given.append(GivenValue(name, value.text, statement))
 
     def _alters(self, text: str) -> bool:
-        """True if a statement changes known links in a way that is not followed here."""
+        """True if a statement changes known links in a way that this class does not process."""
         found = _ALTERED.match(text)
         return found is not None and (found["name"] or found["deleted"]) in self.names.links
 

@@ -158,7 +158,7 @@ class ScriptNames:
         return [vector_link(row, _line_of(row), modified=modified) for row in rows]
 
     def _lists_links(self, row: list[SourceText]) -> bool:
-        """True if the cells of a row are links: L1 L2 L3 L4 are not θ, d, a and α."""
+        """True if the cells of a row are links (L1 L2 L3 L4), and not θ, d, a and α."""
         named = [NAMED.fullmatch(cell.text) for cell in row]
         if any(each["name"] in self.links for each in named if each):
             return True
@@ -169,7 +169,7 @@ class ScriptNames:
 
 
 def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:
-    """Return the links L1, L2, … in order. Raises GridError if they have other names."""
+    """Return the links L1, L2, … in order. Raises GridError if a name has another form."""
     found: Links = {}
     stems = set()
     for name, links in named.items():

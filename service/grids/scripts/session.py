@@ -60,7 +60,7 @@ def without_prompts(source: SourceText) -> SourceText:
 
 
 def _statement_end(text: str) -> int:
-    """Return the end of the first line, or of the line that closes its open brackets."""
+    """Return the end of the first line, or of the line that closes the first line's brackets."""
     depth = 0
     for i, letter in enumerate(text):
         if letter in CLOSES:

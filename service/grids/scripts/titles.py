@@ -1,7 +1,7 @@
 """Remove sentences and code fences around a pasted table or matrix.
 
-A line is removed only if it is certain that it is no row: it has words, and lacks the separator of
-all rows. A line that names a unit is refused, because the unit may apply to the table.
+A line is removed only if it cannot be a row: it has words, but not the separator of the rows. If
+the line names a unit, the text is refused, because the unit may apply to the table.
 """
 
 import re
@@ -70,7 +70,7 @@ def without_fence(source: SourceText) -> SourceText:
 def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     """Return the text without sentences before and after the table, and a note on them.
 
-    Raises GridError if such a sentence names a unit.
+    Raises GridError if one of the sentences names a unit.
     """
     lines = [line for line in source.lines() if line.text.strip()]
     is_row = _row_test(source.text, lines)
@@ -109,7 +109,10 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
 
 
 def _has_heading(lines: list[SourceText]) -> bool:
-    """True if the first line is a word above rows of several values, or two above brackets."""
+    """True if the first line is a heading.
+
+    A heading is one word above rows of several values, or one or two words above a bracket.
+    """
     first, *others = (line.text.strip() for line in lines)
     # A comment of a program is removed with the other comments.
     if first[0] in "%#" or not _is_few_words(first) or not _WORD.search(first):
