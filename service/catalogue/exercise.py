@@ -28,13 +28,15 @@ _UNTRANSLATED_PART: Final = PartTextsSpec()
 class Exercise:
     """One exercise of the catalogue.
 
-    ``version`` changes with every field that affects grading: not with ``checks``, ``view``,
-    ``attempts``, ``translations``, the fields of the catalogue (``level``, ``order``, ``minutes``,
-    ``summary`` and ``keywords``) and ``feedback_by_attempt``, the highest feedback level of each
-    attempt (the last one is for all later attempts). ``reference`` is the robot, if any;
-    ``formulas`` has the answers in the file by part id. ``length_scale`` is the longest length, to
-    which small differences are compared. ``view`` is the viewpoint of the figure. ``vary`` has the
-    values of the variants, if the exercise has some; ``seed`` is that of a variant, whose ``id`` is
+    ``version`` changes with every field that affects grading. It does not depend on ``checks``,
+    ``view``, ``attempts``, ``translations``, ``feedback_by_attempt`` and the fields of the
+    catalogue (``level``, ``order``, ``minutes``, ``summary`` and ``keywords``).
+
+    ``feedback_by_attempt`` has the highest feedback level of each attempt; the last level is for
+    all later attempts. ``reference`` is the robot, if any; ``formulas`` has the answers in the file
+    by part id. ``length_scale`` is the longest length, to which small differences are compared.
+    ``view`` is the viewpoint of the figure. ``vary`` has the values of the variants, if the
+    exercise has variants. ``seed`` is the seed of a variant; the variant's ``id`` is
     ``<exercise>~<seed>`` unless the seed is hidden. ``told`` has the exercise in the languages in
     which it was shown.
     """
@@ -127,7 +129,7 @@ class Exercise:
 def in_language(exercise: Exercise, language: Language) -> Exercise:
     """Return the exercise with its texts in a language; texts without a translation stay.
 
-    The file has the translations of its texts, or the texts are sentences of the catalogues.
+    Translations come from the exercise file, or from the catalogues for texts of type ``Sentence``.
     """
     if language == ENGLISH:
         return exercise

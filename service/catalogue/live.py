@@ -95,7 +95,7 @@ class LiveCatalogue(Mapping[str, Exercise]):
 
 
 def _stamps(files: Sequence[Path]) -> dict[Path, Stamp]:
-    """A stamp for each file that changes with its content; missing files are left out."""
+    """For each file a stamp that changes with the content; missing files are left out."""
     stamps = {}
     for file in files:
         try:

@@ -11,7 +11,7 @@ ChangedText = Callable[[str], str]
 
 
 def report_in(report: Report, language: Language) -> Report:
-    """Return the report with its sentences told in a language; in English, the same object."""
+    """Return the report with its sentences in a language; for English, the same object."""
     translation = language.translation
     if translation is None:
         return report
@@ -21,8 +21,8 @@ def report_in(report: Report, language: Language) -> Report:
 def with_texts(report: Report, changed: ChangedText) -> Report:
     """Return the report with all its texts for people changed.
 
-    These are messages, corrections in words, and the reasons of lost points; formulas and labels
-    stay.
+    These texts are messages, corrections in words, and the reasons of lost points. Formulas and
+    labels do not change.
     """
     return replace(report, parts=tuple(_part(part, changed) for part in report.parts))
 

@@ -39,7 +39,7 @@ class FrameChoice:
 def other_choices(
     exercise: Exercise, part: DhTableSpec, rows: Sequence[Cells], submission: Submission
 ) -> list[FrameChoice]:
-    """Return up to three other tables that are as right as this one; none if it is not right."""
+    """Return up to three other right tables; none if the table ``rows`` is not right."""
     convention = part.convention
     if not isinstance(convention, Convention) or part.frames != "free":
         return []

@@ -55,7 +55,7 @@ class Topic:
 class HintStep:
     """A step of a hint. ``rule`` is the name of the rule if the step has its picture.
 
-    ``screen`` is that of *DH in ten minutes* which explains the rule, or "" if there is none.
+    ``screen`` is the screen of *DH in ten minutes* that explains the rule, or "" without one.
     """
 
     title: str
@@ -66,7 +66,7 @@ class HintStep:
 
 
 def has_hints(message: Feedback, verdict: Verdict) -> bool:
-    """True if a message is on a mistake: not on reading, and not on an empty cell."""
+    """True if a message is about a mistake, and not about an unreadable or empty cell."""
     unread = (Verdict.UNREADABLE, Verdict.MISSING)
     return message.severity is Severity.ERROR and verdict not in unread
 
@@ -95,7 +95,7 @@ def hint_step(
 
 
 def _message(report: PartReport, topic: Topic) -> Feedback | None:
-    """Return the message of the report that the topic names; None if it has none with hints."""
+    """Return the report's message that the topic names; None if it is missing or has no hints."""
     for message, places, verdict in messages_of(report):
         at = {(place.row, place.cell) for place in places}
         is_there = (topic.row, topic.cell) in at if at else topic.row is None

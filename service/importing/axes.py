@@ -65,7 +65,10 @@ def home_axes(arm: Arm) -> tuple[list[HomeAxis], Matrices]:
 
 
 def _sliding_axes_moved(axes: list[HomeAxis], tip: Numbers) -> list[HomeAxis]:
-    """Move each sliding axis to the next axis, which saves lengths: only its direction matters."""
+    """Move each sliding axis to the next axis, which saves lengths in the table.
+
+    Of a sliding axis, only the direction matters.
+    """
     moved = list(axes)
     for i in reversed(range(len(axes))):
         if not axes[i].prismatic:

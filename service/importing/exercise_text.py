@@ -107,7 +107,7 @@ def _answer(rows: Sequence[Row[str]]) -> str:
 
 
 def _equivalent_check(robot: HomeRobot, convention: Convention) -> str:
-    """Return a check with x1 turned over: a valid table in other frames."""
+    """Return a check whose answer is the table with x1 reversed, which is valid, too."""
     if len(robot.table) < _ROWS_TO_TURN:
         return ""
     table = robot.table.copy()

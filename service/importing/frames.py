@@ -1,7 +1,7 @@
 """Joint axes -> a standard DH table, by the rules that are taught.
 
 z_{i-1} is along the axis of joint i, in its positive direction. x_i is along the common normal; if
-its sign is free, it is the one with fewer offsets. On parallel axes d_i = 0.
+its sign is free, the sign with fewer offsets is chosen. On parallel axes d_i = 0.
 """
 
 from collections.abc import Callable
@@ -46,7 +46,7 @@ def placed(axes: list[HomeAxis], tip: Matrices) -> Placed:
 
 
 def _snapped(table: Table) -> Table:
-    """Return the table with clean angles: axes that a file places crookedly leave 90.005°."""
+    """Return the table with clean angles: inexact axes in a file give 90.005° instead of 90°."""
     multiples = np.round(table / STEP) * STEP
     is_near = (np.abs(table - multiples) <= NEAR) & _IS_ANGLE
     return np.asarray(np.where(is_near, multiples, table))
@@ -133,7 +133,10 @@ def greatest_difference(
     exact_pose: Callable[[Numbers], Matrices],
     samples: int = 100,
 ) -> tuple[float, float]:
-    """Return the greatest difference of position and of angle to the robot at random joints."""
+    """Return the greatest difference in position and in angle between the arm and the robot.
+
+    The two are compared at random values of the joint variables.
+    """
     values = np.random.default_rng(1).uniform(-np.pi, np.pi, (samples, len(structure)))
     lengths, angles = [], []
     for each in values:

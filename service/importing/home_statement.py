@@ -76,7 +76,7 @@ class HomeRobot:
         return {name: abs(float(self.table[cell])) for cell, name in self.letters.items()}
 
     def frames(self, **lengths: float) -> Matrices:
-        """Return the frames {0} to {n} at home, with lengths for letters; the others are 0."""
+        """Return the frames {0} to {n} at home; letters without a value in ``lengths`` are 0."""
         table = self.table.copy()
         for cell, name in self.letters.items():
             table[cell] = np.sign(table[cell]) * lengths.get(name, 0.0)

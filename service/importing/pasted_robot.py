@@ -24,7 +24,8 @@ class UnusableTableError(ValueError):
 def robot_of_table(text: str, convention: Convention) -> HomeRobot:
     """Return the robot of a table in any format that students may paste.
 
-    A length is a number, or a letter of its own with a sign. Raises UnusableTableError.
+    A length is a number, or a letter with an optional sign; no two lengths have the same letter.
+    Raises UnusableTableError.
     """
     rows = len(_read(text, free_scope("R")).rows)
     joints = min(rows, _MOST_JOINTS)
@@ -95,7 +96,7 @@ def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple
 
 
 def _values(formula: Expression, names: list[str]) -> tuple[float, float]:
-    """Return the value with all symbols 0, and with the symbols ``names`` 1 and the others 0."""
+    """Return two values: one with all symbols 0, and one with only the symbols ``names`` 1."""
     values = {name: np.array([0.0, float(name in names)]) for name in formula.symbols}
     [found] = evaluate_all([formula], values, {})
     at_zero, at_one = np.broadcast_to(np.asarray(found, dtype=np.float64), 2)

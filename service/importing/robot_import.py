@@ -105,7 +105,7 @@ def _written(robot: HomeRobot, options: ImportOptions, remarks: Sequence[str]) -
 
 
 def _ends(frames: Placed, base: str, tip: str, last: int) -> list[str]:
-    """Return where the exercise's first and last frame lie if they are not those of the file."""
+    """Return a remark for the first and for the last frame if it differs from its link's frame."""
     remarks: list[str] = []
     for pose, frame, link in ((frames.base, "{0}", base), (frames.tool, f"{{{last}}}", tip)):
         if np.abs(pose - np.eye(4)).max() > _SAME:

@@ -19,8 +19,8 @@ _LENGTH_DECIMALS: Final = 5
 def snapped_angle(text: str) -> float:
     """Return an angle in radians as the multiple of 15° that it was rounded from, if any.
 
-    A number is a rounded multiple if it is within 1e-4 of it, or equals it with the decimals that
-    are written, at least two.
+    A number is a rounded multiple if it is within 1e-4 of the multiple. It is also a rounded
+    multiple if it has at least two decimals and is the multiple, rounded to as many decimals.
 
     >>> snapped_angle("1.57") == math.pi / 2, snapped_angle("1.6")
     (True, 1.6)

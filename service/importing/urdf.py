@@ -31,7 +31,7 @@ class UnusableUrdfError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class UrdfJoint:
-    """A joint of the arm: its name, its type, and its axis in the coordinates before it."""
+    """A joint of the arm: its name, its type, and its axis in the joint's own frame."""
 
     name: str
     prismatic: bool
@@ -90,7 +90,7 @@ class _Joint:
 
 @dataclass(slots=True)
 class _Collector:
-    """Collects links and joints while the XML parser reads; stops at the first excess."""
+    """Collects links and joints while the XML parser reads; refuses too large files early."""
 
     links: list[str] = field(default_factory=list)
     joints: list[_Joint] = field(default_factory=list)
@@ -180,7 +180,7 @@ def _ends(collected: _Collector) -> list[str]:
 
 
 def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]:
-    """Return the arm from ``base`` to ``tip``: with snapped numbers, and exactly as written.
+    """Return the arm from ``base`` to ``tip`` twice: with snapped numbers, and as written.
 
     Without ``base``, the arm begins at the root of the tree. Raises UnusableUrdfError.
     """

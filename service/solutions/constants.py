@@ -21,7 +21,7 @@ _ROUNDED = Context(prec=_DIGITS, rounding=ROUND_HALF_EVEN)
 
 
 def folded(expression: sympy.Expr) -> sympy.Expr:
-    """Evaluate a constant sine or cosine without a closed form; return others unchanged."""
+    """Evaluate a constant with a sine or cosine; return any other expression unchanged."""
     has_none = expression.is_number and expression.has(sympy.sin, sympy.cos)
     return expression.evalf(_WORKING_DIGITS) if has_none else expression
 

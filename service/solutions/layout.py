@@ -97,7 +97,7 @@ def row(nodes: Sequence[Node], convention: Convention) -> PrintedAnswer:
 
 
 def marked(marks: Sequence[str], printed: PrintedAnswer) -> PrintedAnswer:
-    """Return a table and the cells that are marked in another one."""
+    """Return the cells that are marked in one table, together with another table."""
     line = f"marked: {', '.join(marks)}"
     latex = rf"\text{{{line}}}" + "\n" + printed.latex
     answer = {"marked": list(marks), "table": printed.answer}

@@ -133,7 +133,7 @@ def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Mat
 
 
 def _upright(turn: Turn) -> Turn:
-    """Return an equal turn about the axis or its opposite, so that its first number is positive."""
+    """Return an equal turn; the first nonzero number of its axis has no minus sign."""
     first = next(number for number in turn.axis if number != 0)
     return Turn(-turn.axis, -turn.angle) if first.could_extract_minus_sign() else turn
 

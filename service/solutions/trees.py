@@ -135,7 +135,7 @@ class Writer:
         return function[0] + "".join(map(str, sorted(joints)))
 
     def _term_order(self, term: sympy.Expr) -> tuple[bool, list[FactorOrder], list[int], str]:
-        """Return a term's sort key: added terms first, then lengths alone, then by joints."""
+        """Return a term's sort key: plus before minus, then lengths alone first, then by joints."""
         factors = sorted(map(self._factor_order, sympy.Mul.make_args(term)))
         joints = sorted(self._order[symbol.name] for symbol in term.free_symbols)
         return _negative(term), [each for each in factors if each[0] > 1], joints, str(term)

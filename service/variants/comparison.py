@@ -21,8 +21,8 @@ Form: TypeAlias = tuple[str, tuple[float, ...]]
 class VariantDifficulty:
     """What makes a robot hard: counts, each of which is a column of a table of variants.
 
-    ``turns`` are twists that are not 0, ``odd_twists`` those that are no multiples of 90°, and
-    ``free`` are neighbouring axes that are parallel, so that a frame may be chosen.
+    ``turns`` counts the twists that are not 0, and ``odd_twists`` the twists that are not multiples
+    of 90°. ``free`` counts the pairs of parallel neighbouring axes, where a frame may be chosen.
     """
 
     joints: int = 0
@@ -34,13 +34,13 @@ class VariantDifficulty:
 
     @property
     def score(self) -> int:
-        """The sum of the counts, in which an odd twist counts twice more."""
+        """The sum of the counts; ``odd_twists`` has three times the weight."""
         counts: tuple[int, ...] = astuple(self)
         return sum(counts) + 2 * self.odd_twists
 
 
 def form_of(exercise: Exercise) -> Form:
-    """Return the canonical form of an exercise, which no choice of frames and no text changes.
+    """Return the canonical form of an exercise; it does not depend on frames chosen or on texts.
 
     Two variants with the same form have the same answers.
     """

@@ -65,9 +65,9 @@ def deploy(
     without: Iterable[str] = (),
     seeds: Iterator[str] | None = None,
 ) -> list[str]:
-    """Return ``count`` seeds of different variants with the same difficulty, except ``without``.
+    """Return ``count`` seeds of different variants with the same difficulty, none in ``without``.
 
-    The usable deployed seeds of the file stay. Raises TooFewVariantsError,
+    Deployed seeds of the file are kept if they are usable. Raises TooFewVariantsError,
     NoVariantError.
     """
     struck = set(without)

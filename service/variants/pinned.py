@@ -23,9 +23,10 @@ def choices_of(exercises: Mapping[str, Exercise]) -> Mapping[str, Any]:
 
 
 def pinned(exercise: Exercise, choices: str | None) -> Exercise:
-    """Return the exercise with the choices of an assignment, which are JSON by exercise.
+    """Return the exercise with the choices of an assignment; ``choices`` is JSON by exercise.
 
-    Without any, or if they no longer fit the texts of the file, those of the file apply.
+    The choices of the file apply if the assignment has no choices for the exercise, or if its
+    choices no longer fit the texts of the file.
     """
     if exercise.vary is None or choices is None:
         return exercise

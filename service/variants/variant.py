@@ -86,7 +86,7 @@ def values_of(version: str) -> str:
 
 
 def hidden_variant(exercise: Exercise, seed: str) -> Exercise:
-    """Return the variant of a seed under the id of the plain exercise, so that replies hide it.
+    """Return the variant of a seed with the id of the plain exercise, which hides the seed.
 
     Raises NoVariantError.
     """

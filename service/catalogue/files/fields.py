@@ -50,7 +50,7 @@ def _showable(text: str) -> str:
 
 
 def _as_sentence(value: object, checked: ValidatorFunctionWrapHandler) -> object:
-    """Return a valid text; a sentence stays one, so that it can be told in other languages."""
+    """Return a valid text. A ``Sentence`` stays a ``Sentence``, so it can still be translated."""
     text = checked(value)
     return value if isinstance(value, Sentence) and value == text else text
 

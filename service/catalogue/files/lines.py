@@ -1,7 +1,7 @@
 """The line of each value of a TOML text.
 
-tomllib names the line of a syntax error, but not the line of a value that fails validation. It has
-read the text before, so this module need not check the syntax again.
+tomllib names the line of a syntax error, but not the line of a value that fails validation. tomllib
+has already read the text, so this module need not check the syntax again.
 """
 
 import re
@@ -86,7 +86,10 @@ class _LineFinder:
         self._value(path)
 
     def _keys(self, prefix: str, *, tables: bool = False) -> str:
-        """Read a dotted key; return its path. An array of tables means its last table so far."""
+        """Read a dotted key; return its path.
+
+        With ``tables``, the key of an array of tables means the array's last table so far.
+        """
         path = prefix
         while match := _KEY.match(self._text, self._at):
             if tables and path in self._counts:

@@ -181,7 +181,7 @@ def _message(detail: _Detail) -> str:
 
 
 def _out_of_range(detail: _Detail, is_share: bool) -> str:
-    """The reason for a number out of range; for a share, it suggests the value of a percentage."""
+    """The reason for a number out of range; it suggests 0.5 for a share that is written as 50."""
     value = detail["input"]
     shown = reprlib.repr(value)
     if not is_share:

@@ -120,7 +120,7 @@ class DhTableSpec(TablePartSpec):
         )
 
     def asked_table(self, robot: Robot) -> ReferenceTable:
-        """Return the robot's table in the part's convention, or the longer one of both."""
+        """Return the robot's table in the part's convention, or the longer one if both fit."""
         if isinstance(self.convention, Convention):
             return robot.tables[self.convention]
         return max(robot.tables.values(), key=lambda table: len(table.rows))

@@ -47,8 +47,8 @@ class WrittenFormulas:
     """The formulas of an answer in the file, row by row, and the quantity of each.
 
     ``path`` is the field of row i and column j, such as ``expected[{i}][{j}]``. ``check`` takes the
-    field of the answer and its numbers ``(rows, columns, TRIALS)``, and raises FieldError if they
-    cannot be right.
+    field of the answer and its numbers ``(rows, columns, TRIALS)``, and raises FieldError if the
+    numbers cannot be right.
     """
 
     path: str
@@ -140,7 +140,7 @@ class FormulaReader:
     def trial_numbers(self, grid: FormulaGrid, field: Callable[[int, int], str]) -> Numbers:
         """Return the trial numbers ``(rows, columns, TRIALS)``.
 
-        Raises FieldError if one is undefined.
+        Raises FieldError if a number is undefined.
         """
         numbers = grid_values(grid, self._values, TRIALS)
         for i, j in np.argwhere(~np.isfinite(numbers).all(axis=-1)).tolist():
@@ -156,7 +156,10 @@ class FormulaReader:
 
 
 def check_rotation(field: str, numbers: Numbers) -> None:
-    """Raise FieldError unless numbers ``(3 or 4, 3 or 4, samples)`` begin with 3×3 rotations."""
+    """Raise FieldError unless the upper left 3×3 blocks of the numbers are rotations.
+
+    The shape of ``numbers`` is ``(3 or 4, 3 or 4, samples)``.
+    """
     rotation = np.moveaxis(numbers[:3, :3], -1, 0)
     if np.abs(np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)).max() > EXACT:
         raise FieldError(

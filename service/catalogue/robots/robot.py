@@ -134,8 +134,8 @@ class Robot:
     def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
         """Return the pose of a frame in the base frame, ``(samples, 4, 4)``.
 
-        Besides ``frames``, it accepts the number before the first joint's for the base frame, and,
-        without a fixed row, the last joint's number for the tool frame.
+        ``name`` is one of ``frames``. The first joint's number minus 1 also means the base frame.
+        Without a fixed row, the last joint's number also means the tool frame.
         """
         return np.asarray(self.all_frames(values, samples)[self.frame_number(name)])
 
@@ -169,9 +169,9 @@ class Robot:
 def tables_in_both_conventions(
     joints: tuple[Joint, ...], rows: Sequence[FormulaRow], convention: Convention, zero: Expression
 ) -> dict[Convention, ReferenceTable]:
-    """Return the author's table, and that of the other convention if it can express the robot.
+    """Return the author's table, and one in the other convention if it can express the robot.
 
-    A fixed last row of zeros is dropped, because it moves nothing.
+    In the other table, a fixed last row of zeros is dropped, because it moves nothing.
     """
     if convention is Convention.STANDARD:
         other, regrouped = Convention.MODIFIED, modified_rows(rows, zero)

@@ -29,6 +29,6 @@ class Variable:
 
 
 def trial_values(variables: tuple[Variable, ...]) -> SymbolValues:
-    """Return values of every variable, ``(TRIALS,)`` each, the same in every call."""
+    """Return ``TRIALS`` values of each variable; every call returns the same values."""
     rng = np.random.default_rng(0)
     return {v.name: rng.uniform(v.low, v.high, TRIALS) for v in variables}

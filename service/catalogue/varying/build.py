@@ -11,7 +11,7 @@ from service.catalogue.varying.vary import Vary
 
 
 def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
-    """Return the exercise of a file's content; with ``[vary]``, that of the first choices.
+    """Return the exercise of a file's content; with ``[vary]``, the exercise without a seed.
 
     Raises ValidationError or FieldError.
     """

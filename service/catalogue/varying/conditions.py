@@ -21,7 +21,7 @@ _EQUAL: Final = 1e-9
 
 
 def numeric_values(values: Sequence[VaryValue]) -> Sequence[float] | None:
-    """Return the numbers of a name's choices, texts such as "90deg" included; None for others."""
+    """Return a name's choices as numbers ("90deg" is one), or None if one is not a number."""
     found = []
     for each in values:
         if isinstance(each, Mapping):

@@ -46,9 +46,9 @@ _NOT_GRADING: Final = frozenset({
 class Vary:
     """The varied content of an exercise file.
 
-    ``table`` is ``[vary]`` as it is written. ``deployed`` are the seeds that assignments use; if
-    there are none, they use any seed. ``base_version`` changes with every field that affects
-    grading, in any variant.
+    ``table`` is ``[vary]`` as it is written. ``deployed`` are the seeds that assignments use;
+    without deployed seeds, assignments use any seed. ``base_version`` changes with every field that
+    affects grading, in any variant.
     """
 
     def __init__(self, exercise_id: str, content: Mapping[str, Any]) -> None:
@@ -82,10 +82,10 @@ class Vary:
         self.base_version = _digest({**graded, "vary": kept}, 6)
 
     def with_choices(self, table: Mapping[str, Any]) -> "Vary":
-        """Return this content with an earlier table of choices, and the version of this file.
+        """Return this content with an earlier table of choices, but with the current version.
 
-        If the texts need names that the table lacks, these have the choices of the file. Raises
-        FieldError if the texts do not fit even so.
+        If the texts need names that the table lacks, these names get the choices of the file.
+        Raises FieldError if the texts do not fit even then.
         """
         try:
             earlier = Vary(self._id, {**self._content, "vary": table})
@@ -107,15 +107,15 @@ class Vary:
         return count
 
     def values(self, seed: str) -> Mapping[str, VaryValue]:
-        """Return the value of each name for a seed; for "", those of the exercise itself.
+        """Return the value of each name for a seed; for "", the values of the exercise itself.
 
-        If no draw meets the conditions, the result is that of "".
+        If no draw meets the conditions, the values of the exercise itself are returned, too.
         """
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}
 
     def written(self, seed: str) -> Mapping[str, str]:
-        """Return the values of a seed as text; that of a group's field is under ``name.field``."""
+        """Return the values of a seed as text; the key of a group's field is ``name.field``."""
         written: dict[str, str] = {}
         for name, value in self.values(seed).items():
             if isinstance(value, Mapping):
@@ -125,7 +125,7 @@ class Vary:
         return written
 
     def version(self, values: Mapping[str, VaryValue]) -> str:
-        """Return the version of the variant with these values: that of the file, and theirs."""
+        """Return a variant's version: the version of the file, and a digest of the values."""
         return f"{self.base_version}-{values_digest(values)}"
 
     def content(self, values: Mapping[str, VaryValue]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Dimension lines: each is next to a piece, and has the name of the piece's length."""
+"""Dimension lines: a line next to a piece of the mechanism, with the name of its length."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -19,7 +19,8 @@ Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]
 def class_folder(page: Pages) -> Folder:
     """Return a function that yields the files of a class; ``page`` writes one submission.
 
-    It takes submissions one by one, and keeps only a line and the counts for the index.
+    The function takes submissions one by one. It keeps only a line for each submission and the
+    counts for the index.
     """
 
     def documents(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[Document]:

@@ -69,7 +69,7 @@ class Overview:
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Return the learner, or the name of the submission if the learner has several."""
+        """Return the learner, or the submission's name if the learner has several submissions."""
         return line.learner if self._learners[line.learner] == 1 else line.name
 
     @property

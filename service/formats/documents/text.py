@@ -1,6 +1,6 @@
 """A report for the terminal: each part as a table with its messages, and a total.
 
-Marks carry the meaning, not colours, so it can also be read without colours.
+Signs carry the meaning, not colours, so the report can also be read without colours.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -112,7 +112,7 @@ def _print_indented(line: Text, console: Console) -> None:
 
 
 def write(report: Report, console: Console, translation: Translation | None = None) -> None:
-    """Print the report. If the console's encoding lacks the marks, they are plain ASCII."""
+    """Print the report. If the console's encoding lacks the signs, they are plain ASCII."""
     _Page(console, translation).report(report)
 
 
@@ -173,7 +173,7 @@ class _Page:
         self._console.print(_as_they_are(lines, self._console))
 
     def _table(self, part: PartReport) -> AlignedTable:
-        """Return a table with the marks of the cells and the points of each row."""
+        """Return a table with the signs of the cells and the points of each row."""
         widest = max((row.cells for row in part.rows), key=len)
         columns = [AlignedColumn(cell.label, "center") for cell in widest]
         rows = [
@@ -212,7 +212,7 @@ class _Page:
         return AlignedTable(columns, rows, "bold")
 
     def _message(self, message: Message) -> Iterator[Text]:
-        """Yield the lines of a message, indented to the right of its mark."""
+        """Yield the lines of a message, indented to the right of its sign."""
         costs = message.severity is Severity.ERROR
         mark = self._mark(message.verdict) if costs else (message.label, "cyan")
         places = f"{message.places}: " if message.places else ""
@@ -229,7 +229,7 @@ class _Page:
             yield Text.assemble(" " * first.cell_len, line)
 
     def _marks(self, text: str) -> Iterator[Text]:
-        """Yield the lines of a text on marks, indented like the messages."""
+        """Yield the lines of a text on lost points, indented like the messages."""
         shown = Text(text.translate(_ASCII_MARKS) if self._ascii else text)
         for line in shown.wrap(self._console, self._width - 2 * _INDENT):
             yield Text.assemble(" " * 2 * _INDENT, line)
@@ -249,7 +249,10 @@ class _Page:
 
 
 def _as_they_are(lines: Iterable[Text], console: Console) -> Segments:
-    """Return lines and an empty one as one renderable; separate prints take five times as long."""
+    """Return the lines and an empty line as one renderable.
+
+    Printing each line separately takes five times as long.
+    """
     return Segments(segment for line in [*lines, Text()] for segment in line.render(console, "\n"))
 
 

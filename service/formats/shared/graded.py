@@ -27,7 +27,7 @@ class AnsweredExercise:
 
     ``worth`` is its points in a submission: the points of its parts, unless an assignment gives it
     another weight. ``symbols`` are the names that it declares, if they are known. ``task`` has the
-    paragraphs of its texts if it is a variant, which the student may have nowhere else.
+    paragraphs of a variant's texts, because the student may have these texts nowhere else.
     """
 
     id: str
@@ -45,7 +45,7 @@ class AnsweredExercise:
 
 
 def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
-    """Return an exercise for results. It is worth its own points, unless ``worth`` is given."""
+    """Return an exercise for results. ``worth`` is by default the points of its parts."""
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
     symbols = exercise.symbols if isinstance(exercise, Exercise) else frozenset()
@@ -69,11 +69,11 @@ def is_answered(report: Report) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class GradedFile:
-    """A file with its report, or with the problem that prevents one.
+    """A file with its report, or with the problem that prevents a report.
 
-    With both, only a part of the submission could be used. ``file`` is the path of the file, and
-    ``names`` are the files as the student named them, without a path or name of a platform. Both
-    are empty if there is no file for the exercise.
+    If both exist, only a part of the submission could be used. ``file`` is the path of the file,
+    and ``names`` are the files as the student named them, without a path or name of a platform.
+    ``file`` and ``names`` are empty if there is no file for the exercise.
     """
 
     file: str

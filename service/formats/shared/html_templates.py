@@ -3,8 +3,8 @@
 A template is named by its path below ``service/``. Every value that a template prints becomes one
 visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
 
-Each language has an environment of its own. There, ``{% trans %}`` prints HTML of the catalogue,
-``_("…")`` prints its text, and a printed ``Sentence`` is told in the language.
+Each language has its own Jinja2 environment. In its templates, ``{% trans %}`` prints HTML of the
+language's catalogue, ``_("…")`` prints a text of it, and a ``Sentence`` is printed in the language.
 """
 
 import base64
@@ -51,7 +51,7 @@ def html(template: str, /, *, language: Language = ENGLISH, **values: object) ->
 def html_pieces(
     template: str, /, *, language: Language = ENGLISH, **values: object
 ) -> Iterator[bytes]:
-    """Yield the document that a template makes, piece by piece. It may iterate lazily."""
+    """Yield the document that a template makes, piece by piece. Values may be iterators."""
     for piece in environment(language).get_template(template).generate(values):
         yield piece.encode()
 
@@ -74,7 +74,7 @@ def style_sheet(file: Path) -> StyleSheet:
 
 
 def lines(text: str) -> Markup:
-    """Return the text as HTML with its line breaks; each line of it is visible."""
+    """Return the text as HTML with its line breaks, without invisible characters."""
     return escape("\n".join(map(visible, text.split("\n"))))
 
 
@@ -150,7 +150,7 @@ def _told(value: object, language: Language) -> str:
 
 
 def _telling(shown: Callable[..., str], language: Language) -> Callable[..., str]:
-    """Return the filter ``shown`` for sentences in a language."""
+    """Return a filter that puts a sentence into the language, then applies ``shown``."""
 
     def filtered(text: object, symbols: Container[str] = ()) -> str:
         return shown(_told(text, language), symbols)
@@ -171,7 +171,7 @@ def _markup(language: Language, text: str, /, **values: object) -> Markup:
 def _counted_markup(
     language: Language, one: str, many: str, count: int, /, **values: object
 ) -> Markup:
-    """Return HTML of a template that the language has for a count, with its values."""
+    """Return HTML of a template in the language's plural form for ``count``, with its values."""
     translation = language.translation
     if translation is None:
         chosen = one if count == 1 else many

@@ -102,8 +102,8 @@ def marks(
 ) -> list[str]:
     """Return a line with the lost points and their places, such as ``−0.5: α in row 2``.
 
-    A second line says why a row of zeros earned little. A message already says that an answer is
-    missing or cannot be read.
+    A second line says why a row of zeros earned little. Missing and unreadable answers are left
+    out, because a message already reports them.
     """
     lost = [
         f"−{number(each.points * weight)}: {told(each.message, translation)}"

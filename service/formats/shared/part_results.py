@@ -25,7 +25,7 @@ LONGEST: Final = 600
 
 @dataclass(frozen=True, slots=True)
 class PartResult:
-    """An assigned part with its report; without one, its file has a problem.
+    """An assigned part with its report; without a report, its file has a problem.
 
     ``name`` is one line, and unique in the submission. Points are weighted as in the submission.
     Texts are in ``language``.

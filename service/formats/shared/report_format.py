@@ -18,7 +18,7 @@ class Setting:
 
     ``exercises`` are the assigned exercises in order. ``console`` has the width, colours and
     encoding of the output. ``now`` is the time in UTC. ``environment`` has the environment
-    variables, in which platforms describe the submission. ``language`` is that of the reports.
+    variables, in which platforms describe the submission. ``language`` is the reports' language.
     """
 
     exercises: tuple[AnsweredExercise, ...]

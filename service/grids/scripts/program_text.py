@@ -68,8 +68,8 @@ class WrittenMatrix:
     """A matrix in program text.
 
     ``groups`` are the contents of the outermost brackets: usually one, or one for each row.
-    ``maker`` is the name of the function around the brackets, and ``shape`` has the numbers of rows
-    and columns among its arguments.
+    ``maker`` is the name of the function around the brackets. ``shape`` has the numbers of rows and
+    columns from the function's arguments.
     """
 
     groups: tuple[SourceText, ...]

@@ -12,7 +12,7 @@ _AXES = {"x": X, "y": Y, "z": Z}
 
 
 def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
-    """Return the rotation: from the exercise file, as the product of its turns, or of the robot."""
+    """Return the entries in the exercise file, the product of its steps, or a robot's rotation."""
     given = work.as_written(part) if part.steps is None else None
     return layout.matrix(given) if given else work.matrix(multiplied(_turns(part, work)).rotation)
 
@@ -29,5 +29,5 @@ def _turns(part: RotationSpec, work: Work) -> list[Motion]:
 
 
 def lazy(_part: RotationSpec, exercise: Exercise) -> list[object]:
-    """Return the identity, and the rotation if all joints had the same axis."""
+    """Return the identity, and the rotation of an arm whose joints all have the same axis."""
     return [*poses(exercise, 3)]

@@ -18,5 +18,5 @@ def answer(part: TransformSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(_part: TransformSpec, exercise: Exercise) -> list[object]:
-    """Return the identity, and the transform if all joints had the same axis."""
+    """Return the identity, and the transform of an arm whose joints all have the same axis."""
     return [*poses(exercise, 4)]

@@ -27,7 +27,7 @@ def first_robot(level: int, convention: Convention) -> PracticeId:
 def candidates(
     level: int, convention: Convention, after: PracticeId | None
 ) -> Iterator[PracticeId]:
-    """Yield robots. The next one is the first that suits, else the last.
+    """Yield robots in order. The caller takes the first robot that suits, or else the last.
 
     Consecutive robots are all different for a long time.
     """
@@ -45,9 +45,9 @@ def has_situation(name: PracticeId, favour: Situation) -> bool:
 def asks_enough(robot: Exercise) -> bool:
     """True if only zeros and joint variables earn little in a generated robot.
 
-    In a few robots of a hundred they earn more, because the marks give one wrong row up. How many
-    depends on the marks, and a link to a robot must not: so all robots exist, and these are not
-    dealt.
+    For a few robots of a hundred, such an answer earns more, and students do not get these robots
+    as the next one. Which robots these are depends on the marking. A link to a robot must not
+    depend on the marking, so these robots exist nevertheless.
     """
     [part] = robot.parts
     [table] = [robot.robot.tables[convention] for convention in robot.conventions]

@@ -17,7 +17,7 @@ class Draws:
         self._words = _words(text)
 
     def below(self, limit: int) -> int:
-        """Return an integer from 0 to ``limit - 1``, each as likely but for one in a million."""
+        """Return an integer from 0 to ``limit - 1``; all are equally likely to one in a million."""
         return next(self._words) * limit >> _BITS
 
     def chance(self, percent: int) -> bool:
@@ -25,11 +25,11 @@ class Draws:
         return self.below(100) < percent
 
     def one_of(self, choices: Sequence[T]) -> T:
-        """Return one of the choices, each as likely."""
+        """Return one of the choices; all are equally likely."""
         return choices[self.below(len(choices))]
 
     def weighted(self, choices: Sequence[tuple[T, int]]) -> T:
-        """Return a choice by the weights, of which one at least is positive."""
+        """Return a choice drawn by weight; at least one weight must be positive."""
         left = self.below(sum(weight for _, weight in choices))
         for choice, weight in choices:
             left -= weight

@@ -25,12 +25,13 @@ class Relation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """The weights by which a robot is drawn; those with ``percent`` are out of 100.
+    """The weights and percentages by which a robot is drawn.
 
     ``joints`` and ``relations`` have the weight of each choice. ``sliding`` is the percentage of
-    sliding joints and ``most_sliding`` their greatest number; ``turned`` is the percentage of rows
-    with a constant angle, ``offset`` of those with a length along the axis, ``numbers`` of robots
-    with numbers for lengths, and ``bent_tool`` of tool frames that are turned about x.
+    sliding joints, and ``most_sliding`` is the greatest number of sliding joints. The other
+    percentages are ``turned`` for rows with a constant angle, ``offset`` for rows with a length
+    along the axis, ``numbers`` for robots with numbers as lengths, and ``bent_tool`` for tool
+    frames that are turned about x.
     ``oblique`` is the least number of pairs of odd twists.
     """
 

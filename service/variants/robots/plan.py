@@ -29,8 +29,8 @@ _ODD: Final = (
 class PlannedRow:
     """A row of the standard table: lengths in centimetres, angles in degrees.
 
-    ``relation`` is that of the joint's axis to the next one; None in the last row. A sliding joint
-    moves by its variable besides ``d``.
+    ``relation`` is the relation of the joint's axis to the next axis; None in the last row. A
+    sliding joint moves by its variable in addition to ``d``.
     """
 
     sliding: bool
@@ -139,7 +139,7 @@ def _has_offset(level: Grammar, draws: Draws, *, sliding: bool) -> bool:
 
 
 def _row_back(owed: int, draws: Draws, lengths: "_Lengths", *, sliding: bool) -> PlannedRow:
-    """Return the row of an oblique axis: no length is along it, and x keeps its line."""
+    """Return the row that leads back from an oblique axis: d is 0, and θ is 0° or 180°."""
     theta = draws.one_of((0, 0, 180))
     alpha = owed if theta == 0 else -owed
     a = lengths.next() if draws.chance(30) else 0
@@ -147,9 +147,9 @@ def _row_back(owed: int, draws: Draws, lengths: "_Lengths", *, sliding: bool) ->
 
 
 def _relations(level: Grammar, kinds: Sequence[bool], draws: Draws) -> list[Relation] | None:
-    """Return the relation of each axis to the next one, or None.
+    """Return the relation of each axis to the next one, or None if the draws do not fit.
 
-    An oblique axis is followed by the axis that leads back.
+    Oblique relations come in pairs: the second one leads back.
     """
     relations: list[Relation] = []
     pairs = 0

@@ -42,7 +42,7 @@ class PracticeId:
         return f"{self.exercise}~{self.seed}"
 
     def following(self, steps: int = 1) -> "PracticeId":
-        """Return the id some robots later; after the last one comes the first."""
+        """Return the id ``steps`` robots later; after the last robot comes the first."""
         return replace(self, number=(self.number + steps) % ALL_NUMBERS)
 
 

@@ -50,7 +50,7 @@ def home_path(rows: Sequence[PlannedRow]) -> HomePath:
 
 
 def cosine_sine(degrees: int) -> tuple[float, float]:
-    """Return the cosine and sine of a multiple of 15° that robots have, as 9 decimals."""
+    """Return the cosine and sine of an angle that robots have, with 9 decimals."""
     return _sine(degrees + 90), _sine(degrees)
 
 

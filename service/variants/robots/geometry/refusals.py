@@ -79,7 +79,7 @@ def _turns_back(path: HomePath) -> bool:
 
 
 def _touches(path: HomePath) -> bool:
-    """True if two pieces that are not neighbours come near each other, or the ground below."""
+    """True if two pieces of the path that are not neighbours come near each other."""
     pieces = path.pieces
     for i, j in combinations(range(len(pieces)), 2):
         if j > i + 1 and gap(pieces[i], pieces[j]) < _CLEARANCE:

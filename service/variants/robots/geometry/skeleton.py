@@ -25,7 +25,7 @@ DIFFERENT: Final = 711
 
 @dataclass(frozen=True, slots=True)
 class Skeleton:
-    """The joints, the directions of the axes 2 to n at home, and that of the tool's x axis.
+    """The joints, and the directions of the axes 2 to n and of the tool's x axis at home.
 
     ``beside`` is True if the tool is not on the last axis.
     """
@@ -37,9 +37,9 @@ class Skeleton:
 
 
 def skeleton(level: Grammar, number: int) -> Skeleton | None:
-    """Return the skeleton with a number, which may be greater than their count.
+    """Return the skeleton with a number; greater numbers than there are skeletons repeat them.
 
-    None if two sliding joints in a row would be parallel.
+    Return None if two sliding joints in a row would be parallel.
     """
     sizes = _sizes(level)
     total = sum(size for _, size in sizes)
@@ -98,7 +98,7 @@ def cross(first: AxisDirection, second: AxisDirection) -> AxisDirection:
 def turn(start: AxisDirection, end: AxisDirection, about: AxisDirection) -> int:
     """Return the angle in degrees from one direction to another about a third one.
 
-    Both are at a right angle to it.
+    Both directions are at a right angle to ``about``.
     """
     if start == end:
         return 0
