@@ -72,9 +72,9 @@ Layer = Callable[[ASGIApp], ASGIApp]
 def _freeze_gc() -> None:
     """Exempt all objects that exist now from garbage collection.
 
-    A body of many small lists triggers full collections. If these also visit the objects of the
-    program, they take twice as long as reading the body. If the process started with the
-    collector off, it is turned on here, without a first collection.
+    A body of many small lists triggers full collections. If full collections also visit the objects
+    of the program, they take twice as long as reading the body. If the process started with the
+    collector off, the collector is turned on without a first collection.
     """
     if gc.isenabled():
         gc.collect()
@@ -85,7 +85,7 @@ def _freeze_gc() -> None:
 def _sending(
     store: "AttemptStore", access: Access, catalogue: Catalogue
 ) -> "Iterable[BackgroundSending]":
-    """Yield the threads that send scores and reports to platforms, if there is a secret."""
+    """Yield the threads that send scores and reports to platforms; none without a secret."""
     secret = None if access.keys is None else access.keys.secret
     if secret is None:
         return
@@ -102,7 +102,7 @@ def _sending(
 
 
 class _Api(FastAPI):
-    """FastAPI with layers around its own error pages and its own limit of bodies."""
+    """FastAPI with further layers around its error pages and its size limit of bodies."""
 
     def __init__(
         self,
@@ -206,11 +206,11 @@ def application(
 ) -> FastAPI:
     """Return the HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    ``access`` checks callers; without it everybody may grade and record, and nobody sees what
-    tutors see. ``rates`` limits the number of requests. Reports have at most the level
-    ``feedback``, and at most that of their exercise. ``turns`` is a layer that orders requests,
-    and ``pages`` are the service's web pages. Attempts are recorded in ``store``, if there is
-    one. ``monitor`` counts requests and reports.
+    ``access`` checks callers. Without ``access``, everybody may grade and record, and nobody sees
+    the data that are for tutors. ``rates`` limits the number of requests. A report has at most the
+    level ``feedback``, and at most the level of its exercise. ``turns`` is a layer that orders
+    requests, and ``pages`` are the service's web pages. Attempts are recorded in ``store``, if
+    there is one. ``monitor`` counts requests and reports.
     """
     access = access or Access()
     app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)

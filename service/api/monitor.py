@@ -17,4 +17,4 @@ class Monitor(Protocol):
         """Count a report, and the seconds that its grading took."""
 
     def refused(self, answer: str) -> None:
-        """Count a refusal before the application saw the request: its status, or "none"."""
+        """Count a refused request or connection; ``answer`` is the status code, or "none"."""

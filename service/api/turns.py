@@ -24,9 +24,9 @@ CLIENT: Final = "dh_grader.client"
 class Client(NamedTuple):
     """The client that a request belongs to.
 
-    It gets a share of the processor for each of its requests that are here, but at most
-    ``most_shares``: a course's server, or the address of a university, sends the requests of
-    many students.
+    A client gets a share of the processor for each of its present requests, but at most
+    ``most_shares``. A course's server or a university's address may have several shares, because it
+    sends the requests of many students.
     """
 
     name: str

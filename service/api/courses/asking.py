@@ -1,4 +1,4 @@
-"""What the routes of courses share: questions to the store, and parameters."""
+"""Code that the routes of courses share: parameters, options, and access to the store."""
 
 from collections.abc import Callable
 from http import HTTPStatus
@@ -36,7 +36,7 @@ _REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVIC
 
 
 def reading(model: type) -> dict[str, Any]:
-    """Return the options of a route that reads something of a course."""
+    """Return the options of a route that reads data of a course."""
     refused = refusals(*_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)
     return {"response_model": model, "responses": refused, "openapi_extra": MAY_NEED_KEY}
 
@@ -44,7 +44,7 @@ def reading(model: type) -> dict[str, Any]:
 def changing(
     body: type, model: type, *further: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
 ) -> dict[str, Any]:
-    """Return the options of a route that changes something of a course."""
+    """Return the options of a route that changes data of a course."""
     options = posting(body, model, None, *_REFUSED, *further, success=success)
     return {"status_code": success, **options}
 

@@ -181,10 +181,10 @@ def _begun(
     idempotency_key: str,
     connection: "Connection",
 ) -> "tuple[LearnerTerms, Exercise, str | None, Standing] | CourseError":
-    """Return the terms of a hand-in, the exercise, the learner's seed, and what counts so far.
+    """Return the terms of a hand-in, the exercise, the learner's seed, and the learner's standing.
 
-    ``place`` is a course, an assignment and an exercise. An error is returned: if it were raised,
-    other jobs of the transaction would run again.
+    ``place`` is a course, an assignment and an exercise. A CourseError is returned, because raising
+    the error would run the other jobs of the transaction again.
     """
     from service.attempts.recording import standing
     from service.courses.dealing import assigned_seed, needs_choices, pin_choices

@@ -1,7 +1,7 @@
 """The variant of an exercise that a learner has in an assignment, for the routes of exercises.
 
-With ``?course=…&assignment=…``, these routes are about the variant of the learner with the token of
-the request. Their answers name the exercise by its plain id.
+With ``?course=…&assignment=…``, a route of exercises uses the learner's own variant. The token of
+the request names the learner. The answer names the exercise by its plain id.
 """
 
 from typing import TYPE_CHECKING, Any, Final
@@ -28,7 +28,7 @@ _TEXT: Final = {
 
 
 def of_assignment(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options of a route with the two parameters in its documentation."""
+    """Return the options of a route with the parameters ``course`` and ``assignment`` added."""
     extra = options.get("openapi_extra", {})
     own = [
         {"name": name, "in": "query", "required": False, "description": text, "schema": _SCHEMA}

@@ -41,7 +41,7 @@ def routes(
     access: Access,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the route; hints are for messages of reports with at most the level ``feedback``."""
+    """Return the route; it gives hints only for messages that the level ``feedback`` allows."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 class PracticeGate:
-    """Refuses to grade answers that are not recorded, if an assignment of the learner says so."""
+    """Refuses practice, free hints and solutions that a learner may not have now."""
 
     def __init__(self, store: "AttemptStore | None", catalogue: Catalogue) -> None:
         self._store = store
@@ -114,7 +114,7 @@ class PracticeGate:
         return ProblemError(HTTPStatus.FORBIDDEN, detail, "no-practice", title)
 
     def _alike(self, exercise: str) -> set[str]:
-        """Return the exercises with the same robot, such as a copy: their answers are the same."""
+        """Return the ids of the exercises with the same robot, and so with the same answers."""
         reference = getattr(self._catalogue.get(exercise), "reference", None)
         return {
             name

@@ -1,4 +1,4 @@
-"""The routes with which tutors see what platforms got, and send it again."""
+"""The routes with which tutors see the scores that platforms got, and send scores again."""
 
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Annotated

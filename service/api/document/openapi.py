@@ -119,8 +119,8 @@ def posting(
 ) -> dict[str, Any]:
     """Return the options of a route that reads a body with ``read_body``.
 
-    ``name`` is the start of the names of its two example files, if there are any. ``further`` are
-    statuses of refusals other than those of a body.
+    ``name`` is the prefix of the names of the two example files; None if there are no examples.
+    ``further`` are the statuses of refusals that are not about the body.
     """
     schema = _BODY_SCHEMAS.setdefault(body, {})
     content: dict[str, Any] = {"schema": schema}

@@ -1,7 +1,7 @@
 """The schemas of the OpenAPI document in a form that suits generators of clients.
 
 Pydantic's schemas say how a value is validated. A client needs a name for each model and each
-choice. It also needs to know that a field may be left out, and is then not sent as null.
+choice. It must also know which fields may be left out; a field without a value is not sent as null.
 """
 
 import json
@@ -68,7 +68,7 @@ def tidy_schemas(document: Schema) -> None:
 
 
 class _Tidying:
-    """One tidying of a document; ``named`` holds the schemas that have a name."""
+    """Tidies one document; ``named`` holds the schemas that have a name."""
 
     def __init__(self) -> None:
         self.named: Schema = {}
@@ -83,7 +83,7 @@ class _Tidying:
                 content["schema"] = self.tidied(content["schema"], is_sent=message is not asked)
 
     def name(self, name: str, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """Give the schema its public name, if that is free, and return a reference to this name."""
+        """Store the schema under its public name unless the name is taken; return a reference."""
         name = public_name(name)
         if name not in self.named:
             self.named[name] = {}
@@ -152,7 +152,7 @@ class _Tidying:
 
 
 def _without_null(field: Schema) -> Schema:
-    """Return an optional field that may be left out instead of being null."""
+    """Return the schema of an optional field without null: the field is left out instead."""
     forms = [form for form in field.get("anyOf", ()) if form != _NULL]
     rest = {key: value for key, value in field.items() if key != "anyOf"}
     if rest.get("default", ()) is None:
@@ -163,7 +163,7 @@ def _without_null(field: Schema) -> Schema:
 
 
 def _texts(schema: Schema) -> Schema:
-    """Return the description, if there is one, with code marked as in Markdown."""
+    """Return the description of a schema, if any, with code in backticks as in Markdown."""
     if "description" not in schema:
         return {}
     return {"description": schema["description"].replace("``", "`")}

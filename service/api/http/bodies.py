@@ -19,9 +19,10 @@ M = TypeVar("M", bound=BaseModel)
 async def read_body(model: type[M], request: Request) -> M:
     """Return the body as this model. Any Content-Type is accepted if the body is JSON.
 
-    Forms and scripts often forget the header. Accepting them is safe, because a cookie gives
+    Forms and scripts often forget the header. Accepting such bodies is safe, because a cookie gives
     rights only to requests of the service's own pages. Raises ProblemError: 400 if the body is not
-    JSON, 415 if moreover the header names another type, 422 if the body does not match the model.
+    JSON, or 415 if the header also names a type other than JSON; 422 if the body does not match the
+    model.
     """
     try:
         value = read_json(await request.body())
@@ -33,7 +34,7 @@ async def read_body(model: type[M], request: Request) -> M:
 def validated(model: type[M], value: object, at: Location = ()) -> M:
     """Return part of a body as this model; ``at`` is its place in the body.
 
-    Raises ProblemError: 422 if it does not match the model.
+    Raises ProblemError: 422 if the value does not match the model.
     """
     try:
         return model.model_validate(_with_few_unknown(model, value))
@@ -44,7 +45,7 @@ def validated(model: type[M], value: object, at: Location = ()) -> M:
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    """Return the value with at most as many unknown fields as a problem lists; they are refused."""
+    """Return the value with at most ``MAX_ERRORS`` unknown fields: a problem lists no more."""
     known = model.model_fields
     if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
         return value

@@ -83,8 +83,8 @@ class RefusedRouteMiddleware:
 class BoundaryMiddleware:
     """Add security headers, answer HEAD like GET, and refuse bodies that are declared too large.
 
-    The framework's own limit counts the bytes as they arrive. If the length is declared,
-    nothing has to be read, and routes that take no body refuse it as well.
+    The framework's own limit counts the bytes as they arrive. A body that is declared too large is
+    refused without reading it, also on routes that take no body.
     """
 
     def __init__(self, app: ASGIApp) -> None:

@@ -16,8 +16,9 @@ _A_YEAR: Final = 365 * 24 * 3600
 def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
     """Return the language of the query (``?lang=de``), the cookie or ``Accept-Language``.
 
-    The first of them that names a language of the service decides. Otherwise it is English.
-    ``usual`` is the reader's language elsewhere, such as on a platform; it comes after the cookie.
+    The first of these three that names a language of the service decides. If none does, the
+    language is English. ``usual`` is the reader's language elsewhere, such as on a platform;
+    ``usual`` comes after the cookie.
     """
     return (
         language_named(request.query_params.get(LANGUAGE_FIELD))
@@ -28,7 +29,7 @@ def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
 
 
 def keep_language(request: HTTPConnection, response: Response) -> None:
-    """Set the cookie with the language that the query of the request chooses, if it does."""
+    """If the query of the request chooses a language, set the cookie with this language."""
     if chosen := language_named(request.query_params.get(LANGUAGE_FIELD)):
         response.set_cookie(
             LANGUAGE_COOKIE,

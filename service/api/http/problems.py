@@ -30,11 +30,11 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request that cannot be answered. ``name`` is the end of its type.
+    """A request that cannot be answered. The type of the problem ends with ``name``.
 
-    A problem without a name has the type ``about:blank``. Each of ``challenges`` is sent as a
-    header ``WWW-Authenticate`` of its own. ``title`` and ``detail`` are told in the language of the
-    reader if they are sentences.
+    A problem without a name has the type ``about:blank``. Each of ``challenges`` is sent in a
+    separate header ``WWW-Authenticate``. A ``title`` or ``detail`` of the class ``Sentence`` is
+    translated into the language of the reader.
     """
 
     status: HTTPStatus
@@ -86,7 +86,7 @@ class ProblemError(Exception):
 
 
 def message_of(error: Exception) -> str:
-    """Return the message of an error. Its ``str`` would forget the template of a sentence."""
+    """Return the message of an error; ``str(error)`` would lose the template of a sentence."""
     message = error.args[0] if error.args else ""
     return message if isinstance(message, str) else str(error)
 
@@ -96,7 +96,7 @@ ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
-    """Return the problem of a body over the limit. The connection ends, so the rest is not read."""
+    """Return the problem of a too large body. The connection closes without reading the rest."""
     return ProblemError(
         HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
         say("A request may hold {most} KiB; this one is larger.", most=MAX_BODY_SIZE // 1024),
@@ -107,7 +107,7 @@ def too_large() -> ProblemError:
 
 
 def store_down(detail: str) -> ProblemError:
-    """Return the problem that the database does not answer. Grading does not need it."""
+    """Return the problem that the database does not answer. Grading works without a database."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         detail,
@@ -135,7 +135,7 @@ def invalid(
 ) -> ProblemError:
     """Return the problem of a body with errors that pydantic found.
 
-    The object at the place ``at`` of the body may have ``fields``.
+    ``fields`` are the names of all known fields of the object at the place ``at`` in the body.
     """
     errors = [
         {
@@ -165,7 +165,7 @@ def _pointer(location: Sequence[str | int]) -> str:
 
 
 def install(app: FastAPI, page: ProblemPage | None = None) -> None:
-    """Let the app answer every failure with a problem, including those of its framework.
+    """Let the app answer every failure, including failures of the framework, with a problem.
 
     A browser gets the ``page`` of the problem instead.
     """

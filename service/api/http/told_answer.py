@@ -1,4 +1,4 @@
-"""Answers whose sentences are in the language of the reader: their documentation and headers."""
+"""The documentation and headers of answers whose sentences are in the language of the reader."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -30,7 +30,7 @@ def in_languages(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def language_headers(language: Language) -> dict[str, str]:
-    """Return the headers that name the language of an answer, and what it depends on."""
+    """Return ``Content-Language``, and ``Vary`` with the headers that decide the language."""
     return {"Content-Language": language.tag, **_VARY}
 
 

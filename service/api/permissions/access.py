@@ -1,8 +1,8 @@
 """Who may do what: the caller of each request is checked against the table of rights.
 
 As long as there are no keys, grading and recording are open. Tutors are then the users of the
-machine that the service runs on. A request from a proxy is no tutor's, because the proxy also
-forwards requests of students.
+machine that the service runs on. A request that a proxy has forwarded does not count as a tutor's,
+because the proxy also forwards requests of students.
 """
 
 import base64
@@ -59,8 +59,8 @@ _NOT_SHOWN: Final = {
 class Identity:
     """The caller of a request; ``by_key`` is True if the service has keys.
 
-    ``refusal`` is the problem of a key that is not valid. ``in_browser`` is True if a browser has
-    added the key by itself; it may do so for pages of other origins, too.
+    ``refusal`` is the problem to answer with if the key is not valid. ``in_browser`` is True if a
+    browser has added the key by itself, perhaps for a page of another origin.
     """
 
     caller: Caller
@@ -75,8 +75,8 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 class Access:
     """The checks of callers.
 
-    ``solutions`` and ``read_attempts`` say who sees these: nobody (False), tutors (None), or, while
-    there are no keys, everybody (True).
+    ``solutions`` and ``read_attempts`` say who may see solutions and attempts: nobody (False),
+    tutors (None), or, while there are no keys, everybody (True).
     """
 
     def __init__(
@@ -141,9 +141,9 @@ class Access:
     def require_allowed_origin(self, request: Request, origins: Collection[str]) -> None:
         """Check that the request comes from a page that may record attempts. Raises ProblemError.
 
-        These are the pages of the service and of ``origins``. A browser sends the POST of any page
-        without asking first, and only withholds the answer. Requests that carry a key in a header
-        of their own skip this check.
+        The pages of the service and of ``origins`` may do so. A browser sends the POST of any page
+        without asking the service first, and only hides the answer from the page. Requests with a
+        key that the browser has not added by itself skip this check.
         """
         identity = self._identity(request)
         shows_key = bool(identity.caller.key_id) and not identity.in_browser
@@ -160,12 +160,12 @@ class Access:
         return True
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token with the rights of ``caller``: of the holder of a key, for a learner."""
+        """Return a token with the rights of ``caller``, a key holder restricted to a learner."""
         assert self.keys is not None, "only keys make tokens"
         return self.keys.token(caller, expires_at)
 
     def close(self) -> None:
-        """Write what is pending about the use of keys, and stop their threads."""
+        """Write pending notes of the use of keys, and stop the threads of the keys."""
         if self.keys is not None:
             self.keys.close()
 
@@ -233,7 +233,7 @@ def require_reach(caller: Caller, exercise: str | None) -> None:
 
 
 def is_at_the_machine(request: Request) -> bool:
-    """Return whether a program or browser on this machine made the request, for itself.
+    """True if a program or browser on this machine made the request, and no proxy forwarded it.
 
     Both ends of the connection are on this machine, no proxy is between them, and the header Host
     has a local name. The last condition refuses pages whose own name resolves to this machine.
@@ -250,7 +250,7 @@ def is_at_the_machine(request: Request) -> bool:
 
 
 def _is_of_proxy(request: Request) -> bool:
-    """Return whether a proxy has forwarded the request, as far as it shows.
+    """True if the request shows that a proxy has forwarded it.
 
     An unconfigured nginx adds no header and names this machine as host, but it speaks HTTP/1.0
     (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), which no browser does.
@@ -289,10 +289,10 @@ def _host_name(netloc: str) -> str:
 def is_same_origin(request: Request) -> bool:
     """True unless a page of another origin made the request; programs name no origin.
 
-    A browser says in Sec-Fetch-Site where a request comes from (Fetch Metadata), also for pictures
-    and scripts, for which it sends no Origin. It sends this header over HTTPS and to this machine,
-    and it knows the scheme better than a service behind a proxy. A user may follow a link from any
-    page: that page sees nothing of the answer.
+    The header Sec-Fetch-Site (Fetch Metadata) says where a request comes from. Browsers send the
+    header over HTTPS and to this machine, also in requests for pictures and scripts, which have no
+    Origin. A browser knows the scheme better than a service behind a proxy. A user may follow a
+    link from any page, because that page cannot read the answer.
     """
     headers = request.headers
     site = headers.get("sec-fetch-site")
@@ -310,8 +310,8 @@ def session_in(scope: AsgiScope) -> str:
     """Return the session in the cookies of a request, or "".
 
     Over HTTPS only the secure cookie counts: another host of the same site, or anybody who changes
-    an answer over HTTP, can set the plain one. Browsers send cookies also for pages of other
-    origins, whose requests have no session here. A user may follow a link from any page.
+    an answer over HTTP, can set the plain cookie. Browsers also send cookies with the requests of
+    pages of other origins. The session of such a request is ignored, unless a user follows a link.
     """
     request = Request(scope)
     origin = request.headers.get("origin", "")
@@ -335,8 +335,8 @@ def _follows_link(request: Request) -> bool:
 def _credential(header: str) -> tuple[str, bool]:
     """Return the key or token in a header Authorization, and whether it is sent as a password.
 
-    A browser sends it as a password. Any other password is ignored: it may be for a proxy, which
-    has already checked it.
+    Browsers send a key as a password. A password that is not a key is ignored: it may be meant for
+    a proxy, which has already checked it.
     """
     scheme, _, value = header.partition(" ")
     match scheme.lower():

@@ -22,7 +22,7 @@ class RequestRates(Protocol):
     """Counts of requests."""
 
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
-        """Count a request. Return 0 if it is allowed, else the seconds until one is."""
+        """Count a request; return 0 if it is allowed, otherwise the seconds to wait."""
 
     def close(self) -> None:
         """Stop the threads of the counts."""
@@ -58,9 +58,9 @@ class AuthenticationMiddleware:
 
 
 def _most_shares(caller: Caller) -> float:
-    """Return how many shares of the processor the holder of a key or token has at most.
+    """Return the largest number of processor shares that the caller may have.
 
-    A key that may record is taken for that of a course site, which acts for all its students.
+    A key that may record is treated as the key of a course site, which acts for all its students.
     """
     if caller.learner is not None:
         return ONE_STUDENT

@@ -45,9 +45,10 @@ class WithoutKeys(Enum):
 class Right:
     """What a caller needs for a route.
 
-    ``scope`` is the scope of the key; None if everybody may use the route, with or without keys.
-    ``tokens`` is True if learners may use it with a token, for what is their own. ``in_course`` is
-    True if the route answers a key of a course for this course only; other routes refuse it.
+    ``scope`` is the scope that a key needs; None if everybody may use the route, with or without
+    keys. ``tokens`` is True if a learner with a token may use the route for the learner's own data.
+    ``in_course`` is True if the route accepts a key of a course, for this course only; other routes
+    refuse such a key.
     """
 
     scope: Scope | None

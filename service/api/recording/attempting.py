@@ -65,7 +65,7 @@ class Recorder:
     ) -> Response:
         """Grade answers, record them, and answer with the attempt and its report.
 
-        Without ``arrived``, the request arrives now. Raises ProblemError.
+        Without ``arrived``, the time of arrival is now. Raises ProblemError.
         """
         now, before = arrived or (arrived_at(request), None)
         attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
@@ -115,7 +115,10 @@ class _Attempting:
         self._request_digest = _digest(content)
 
     async def recorded(self, request: Request, before: Standing | None) -> RecordedAttempt:
-        """Grade and record it. Raises StoreDownError, AttemptRefusedError, ProblemError."""
+        """Grade the attempt and record it.
+
+        Raises StoreDownError, AttemptRefusedError, ProblemError.
+        """
         store, assignment = self._recorder.store, self._terms.assignment
         standing = before or await store.standing(
             self._exercise.plain_id, self._body.learner, self._owner, self._key, assignment
@@ -198,7 +201,7 @@ class _Attempting:
 
 
 def _answer(recorded: RecordedAttempt, language: Language) -> bytes:
-    """Return the attempt and its report as JSON. In English, it is the report byte by byte."""
+    """Return the attempt and its report as JSON; an English one is exactly as it was sent."""
     attempt = Attempt.model_validate(recorded, from_attributes=True)
     told = attempt.model_dump_json(exclude_none=True)
     report = shown_report(recorded.report, language)

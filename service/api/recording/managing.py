@@ -64,7 +64,7 @@ _EXPORTED: Final[dict[int | str, dict[str, Any]]] = {
 def routes(
     catalogue: Catalogue, feedback: FeedbackLevel, store: "AttemptStore | None", access: Access
 ) -> APIRouter:
-    """Return the routes that export and change attempts; new reports have at most this level."""
+    """Return the routes that export and change attempts; ``feedback`` limits new reports."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
     regrades = _Regrades(feedback)
 
@@ -210,7 +210,7 @@ def routes(
 
 
 class _Regrades:
-    """Steps of regrades, one at a time, so that the service can record and grade meanwhile."""
+    """Runs steps of regrades, one at a time, so that the service can record and grade meanwhile."""
 
     def __init__(self, ceiling: FeedbackLevel) -> None:
         self._ceiling = ceiling
@@ -228,7 +228,7 @@ class _Regrades:
         language: Language,
         store: "AttemptStore",
     ) -> RegradeAnswer:
-        """Do one step in a course, or in all. Raises ProblemError, StoreDownError."""
+        """Do one step of a regrade, in a course or in all. Raises ProblemError, StoreDownError."""
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 
@@ -291,7 +291,7 @@ async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:
 
 
 def _stem(form: GradesFormat, exercise: str | None) -> str:
-    """Return the name of the exported file without its ending. It has no unknown exercise in it."""
+    """Return the name, without ending, of an exported file; omit an invalid exercise id."""
     kind = form.value if form.is_gradebook else "attempts"
     return f"{kind}-{exercise}" if exercise and is_exercise_id(exercise) else kind
 

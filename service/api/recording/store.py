@@ -34,7 +34,7 @@ async def ask(
 
 
 def unknown_attempt() -> ProblemError:
-    """Return the problem of an id that no attempt has, or none that the caller may see."""
+    """Return the problem of an attempt that does not exist or that the caller may not see."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         say("No attempt with this id is recorded here."),

@@ -62,13 +62,13 @@ _MOST_MECHANISMS: Final = 64
 
 
 class _Mechanisms:
-    """The mechanisms that were used last, at their lengths; dragging a slider reuses one."""
+    """The most recently used mechanisms and their lengths; dragging a slider reuses a mechanism."""
 
     def __init__(self) -> None:
         self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
 
     def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
-        """Return the mechanism of an exercise that has one, with these numbers, and its view."""
+        """Return the mechanism of an exercise with these numbers, and the view of the mechanism."""
         key = (exercise.id, exercise.version, exercise.view, *numbers.values())
         if key not in self._mechanisms:
             subject = subject_of(exercise)
@@ -217,7 +217,7 @@ def _table(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
-    """Return the frames for the answer and those for the drawing; None if nothing is read."""
+    """Return the frames for the answer, and for the drawing (None if the table is unreadable)."""
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
         written = table_to_draw(table.rows, scope, budget, body.angle_unit)
@@ -354,5 +354,5 @@ def _configuration(shown: Configuration, frames: Matrices) -> DrawnConfiguration
 
 
 def _plain(numbers: Numbers) -> Any:
-    """Return numbers as lists, rounded far below what can be seen, and without a negative 0."""
+    """Return numbers as lists, rounded to 12 decimals and without a negative 0."""
     return (np.round(numbers, 12) + 0.0).tolist()

@@ -123,7 +123,7 @@ def routes(
 
 
 def _named(submission: object) -> str:
-    """Return the plain exercise that a submission names, which may be malformed."""
+    """Return the plain id of a submission's exercise; "" if the submission is malformed."""
     exercise = submission.get("exercise") if isinstance(submission, dict) else None
     return exercise.partition("~")[0] if isinstance(exercise, str) else ""
 

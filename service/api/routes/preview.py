@@ -57,7 +57,7 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
 
 
 def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
-    """Return the readings of the entries as a grading reads them; they share its work budget."""
+    """Return how a grading reads the entries, within the work budget of one submission."""
     entries = [(entry.text, entry.quantity) for entry in body.entries]
     cells = preview_entries(entries, exercise, body.part, body.angle_unit)
     return PreviewManyResponse(results=[_answer(cell) for cell in cells])
@@ -90,7 +90,7 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
 
 
 def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) -> str:
-    """Return the reading of the text as JSON: of one entry, or of a grid if it is not one entry."""
+    """Return the reading of the text as JSON: as one entry, or else as a pasted grid."""
     shown = preview(body, exercise.vocabulary if exercise else GENERIC)
     if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
         grid = preview_grid(body, exercise, body.part)
