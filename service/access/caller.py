@@ -28,7 +28,7 @@ class Caller:
     course: str | None = None
 
     def reaches(self, exercise: str) -> bool:
-        """True if the caller may use this exercise, or the exercise of this variant."""
+        """True if the caller may use this exercise; ``exercise`` may be the id of a variant."""
         return self.exercises is None or exercise.partition("~")[0] in self.exercises
 
     @property

@@ -21,7 +21,7 @@ def any_key(connection: Connection) -> bool:
 
 
 def fits(connection: Connection, secret: Secret) -> bool:
-    """True if the keys were created with this secret, or the database has no record of it."""
+    """True if the database has recorded this secret for its keys, or no secret at all."""
     return connection.scalar(select(key_secrets.c.digest)) in (None, secret.check)
 
 

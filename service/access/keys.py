@@ -27,7 +27,7 @@ class CredentialError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key. ``exercises`` are those that it may use, None for all; times are in UTC.
+    """A key. ``exercises`` are the exercises that it may use, None for all; times are in UTC.
 
     A key with a ``course`` is for this course only; one with a ``learner`` is a personal link.
     """
@@ -96,7 +96,7 @@ class Keys(Protocol):
 
 
 class Secret:
-    """The secret of an installation, from which those of its keys and tokens are derived."""
+    """The secret of an installation, from which all its other secrets are derived."""
 
     def __init__(self, text: str) -> None:
         self._text = text.encode()

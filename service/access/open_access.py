@@ -12,7 +12,7 @@ NOTHING: Final = "none"
 
 @dataclass(frozen=True, slots=True)
 class OpenAccess:
-    """The scopes that never need a key. With ``until_keys``, none does until a key exists.
+    """The scopes that never need a key; with ``until_keys``, all scopes until a key exists.
 
     ``until_keys`` applies only to requests to the loopback address, unless ``anywhere`` is set.
     """

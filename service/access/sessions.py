@@ -1,4 +1,4 @@
-"""Sessions of tutors in a browser: signed like tokens, with a secret of their own.
+"""Sessions of tutors in a browser: signed like tokens, but with a different secret.
 
 Sessions are not stored. A session names a key, and ends with it.
 """

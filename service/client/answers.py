@@ -37,8 +37,8 @@ class HttpAnswer:
 class AnswerPieces:
     """Collects the pieces of an answer; ``seconds`` is the time limit for all of them.
 
-    The time limits of httpx apply to each piece, so that a server that sends a byte now and then
-    would never reach them.
+    The time limits of httpx apply to each piece separately. A server that sends a byte now and then
+    would never exceed these limits.
     """
 
     response: httpx.Response
@@ -73,7 +73,7 @@ def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableEr
 
 
 def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
-    """Return the exception for an answer with another status than 200."""
+    """Return the exception for an answer whose status is not 200."""
     if location := answer.headers.get("location"):
         return UnexpectedAnswerError(
             say(

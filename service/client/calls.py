@@ -90,7 +90,7 @@ def exercise(exercise: str) -> HttpCall[ExerciseView]:
 def next_robot(
     level: int = 1, convention: Convention = Convention.STANDARD, after: str | None = None
 ) -> HttpCall[PracticeRobot]:
-    """Return a generated robot to practise with; ``after`` is the id of the last one."""
+    """Return a generated robot to practise with; ``after`` is the id of the previous robot."""
     given = {"level": level, "convention": convention.value, "after": after}
     query = urlencode({name: value for name, value in given.items() if value is not None})
     return HttpCall(f"v1/practice/next?{query}", PracticeRobot.model_validate_json)
@@ -107,8 +107,9 @@ def grade(
 ) -> HttpCall[Report]:
     """Grade answers to the parts of an exercise, given by part id; return the report.
 
-    Calls with the same ``idempotency_key`` are one submission for the service. By default, each
-    call is a new submission; its retries are not. Raises pydantic.ValidationError, a ValueError.
+    For the service, calls with the same ``idempotency_key`` are one submission. By default, each
+    call is a new submission, to which its retries belong. Raises pydantic.ValidationError, a
+    ValueError.
     """
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
     body = encoded(GradeRequest.model_validate(fields | {"echo": echo}))

@@ -1,4 +1,4 @@
-"""The clients, with and without ``await``. Their methods are those of ``calls``."""
+"""The clients, with and without ``await``. Their methods send the calls of ``calls``."""
 
 import asyncio
 import threading
@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 class _Method(Generic[P, T]):
-    """A method of both clients: it sends the call that a function makes of its arguments."""
+    """A method of both clients: a function builds the call, and the client sends the call."""
 
     def __init__(self, call: Callable[P, HttpCall[T]]) -> None:
         self._call = call
@@ -85,10 +85,10 @@ class _Methods:
 class GraderClient(_Methods):
     """Calls a DH Grader; several threads may share it. Every method raises GraderClientError.
 
-    ``server`` is its address, including a path before ``/v1``. ``key`` is sent only to this server.
-    ``timeout`` is the limit for one answer in seconds. ``transport`` is that of httpx, for your own
-    certificates or proxies. ``language`` is that of messages, such as "de"; without it, they are in
-    English. Raises ValueError for an invalid address or key.
+    ``server`` is the address of the service, including a path before ``/v1``. ``key`` is sent only
+    to this server. ``timeout`` is the limit for one answer in seconds. ``transport`` is a transport
+    of httpx, for your own certificates or proxies. ``language`` is the language of messages, such
+    as "de"; the default is English. Raises ValueError for an invalid address or key.
     """
 
     def __init__(

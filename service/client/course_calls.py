@@ -92,7 +92,7 @@ def add_learners(course: str, new: LearnersRequest) -> HttpCall[AddedLearners]:
 
 
 def links(course: str, wanted: LinksRequest) -> HttpCall[LinkList]:
-    """Return the personal links of learners; make those that are absent or to be renewed."""
+    """Return the personal links of learners; make links that are absent or to be renewed."""
     return _sending(_path(course, "links"), wanted, LinkList)
 
 
@@ -166,7 +166,7 @@ def send_scores(course: str, wanted: SendAgainRequest) -> HttpCall[SentAgain]:
 
 
 def gradebook(course: str, assignment: str | None = None) -> HttpCall[Gradebook]:
-    """Return the points that count, of each learner at each exercise, or in one assignment."""
+    """Return the points that count for each learner and exercise; ``assignment`` selects one."""
     path = _path(course, "gradebook") + _query(assignment=assignment)
     return HttpCall(path, Gradebook.model_validate_json)
 
@@ -198,7 +198,10 @@ def regrade(
     force: bool = False,
     cursor: str | None = None,
 ) -> HttpCall[RegradeAnswer]:
-    """Regrade some attempts at an exercise, or in one course; repeat it with ``next`` as cursor."""
+    """Regrade some attempts at an exercise; with ``course``, only attempts in this course.
+
+    Repeat the call with ``next`` of the answer as ``cursor``, until the answer has no ``next``.
+    """
     body = RegradeRequest(apply=apply, force=force, cursor=cursor)
     path = f"v1/exercises/{quote(exercise, safe='')}/regrade{_query(course=course)}"
     return _sending(path, body, RegradeAnswer)
@@ -215,7 +218,7 @@ def hand_in(
 ) -> HttpCall[AttemptResponse]:
     """Hand in answers; return the attempt and its report. Retries are recorded once.
 
-    Calls with the same ``idempotency_key`` are one attempt. By default, each call is a new one.
+    Calls with the same ``idempotency_key`` are one attempt. By default, each call is a new attempt.
     """
     given = {"exercise": exercise, "answers": dict(answers), "learner": learner}
     body = HandInRequest.model_validate(
@@ -239,7 +242,7 @@ def _path(course: str, *rest: str) -> str:
 
 
 def _query(**given: str | None) -> str:
-    """Return the query of the parameters that are given, with its question mark."""
+    """Return the query string of the given parameters, with its question mark; "" without any."""
     query = urlencode({name: value for name, value in given.items() if value is not None})
     return f"?{query}" if query else ""
 

@@ -1,7 +1,7 @@
 """Find the answers to each exercise of an assignment in the files of a student.
 
-The name of a file says which exercise and part it answers. Otherwise its key ``exercise`` says so,
-or the assignment has only one exercise.
+The name of a file says which exercise and part the file answers. If the name does not, the key
+``exercise`` in the file names the exercise, unless the assignment has only one exercise.
 """
 
 import json
@@ -284,7 +284,7 @@ def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
 def read_body(
     content: FileContent, assigned: AssignedExercise, part: str | None = None
 ) -> GradeRequest:
-    """Read the answers to the assigned parts. With ``part``, the content may be just its answer.
+    """Read the answers to the assigned parts; with ``part``, perhaps only the answer to this part.
 
     Raises UnusableFileError.
     """

@@ -113,10 +113,10 @@ class AssignedExercise:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """Assigned exercises in order; it may be a single one.
+    """Assigned exercises in order, or a single exercise.
 
-    ``feedback`` is the highest feedback level for students; None means that of each exercise. With
-    ``variants``, each learner gets variants of their own.
+    ``feedback`` is the highest feedback level for students; None means the level of each exercise.
+    With ``variants``, each learner gets personal variants of the exercises.
     """
 
     exercises: tuple[AssignedExercise, ...]
@@ -131,7 +131,7 @@ class Assignment:
 
     @property
     def part_names(self) -> frozenset[str]:
-        """The ids of the parts if there is one exercise; otherwise empty, as they are ambiguous."""
+        """The part ids of a single exercise; empty for several, whose part ids are ambiguous."""
         if len(self.exercises) > 1:
             return frozenset()
         return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
@@ -149,7 +149,9 @@ def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
 def assigned(
     exercise: SetExercise, parts: list[str] | None = None, worth: float | None = None
 ) -> AssignedExercise:
-    """Return the exercise with these parts, or all, for ``worth`` points, or those of the parts.
+    """Return the exercise with the given parts, or with all its parts.
+
+    The exercise is worth ``worth`` points; without ``worth``, the sum of the points of its parts.
 
     Raises UnknownPartNameError.
     """
@@ -216,7 +218,7 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
 
 
 def with_seeds(assignment: Assignment, seeds: Mapping[str, str]) -> Assignment:
-    """Return the assignment with the variants of these seeds, by the id of the exercise.
+    """Return the assignment with variants of exercises; ``seeds`` are by the id of the exercise.
 
     The variants have the ids of the plain exercises. Raises NoVariantError.
     """

@@ -1,7 +1,7 @@
 """Find the table or matrix in a LaTeX, Markdown or MATLAB document.
 
-Such a document has words or statements around the answer, which a pasted text may not have. Unless
-there is exactly one table, the text stays as it is, and its reader explains what is wrong.
+Such a document may have words or statements around the answer; a pasted text may not. Unless there
+is exactly one table, the text stays as it is, and its reader explains what is wrong.
 """
 
 import re
@@ -66,7 +66,8 @@ def _markdown(text: str) -> Iterator[str]:
 def _matlab(text: str) -> Iterator[str]:
     """Yield assigned matrices, preceded by the assignments to their variables.
 
-    Yield nothing if the script changes a matrix or a variable in a way that this cannot follow.
+    Yield nothing if the script changes a matrix or a variable in a way that this function cannot
+    follow.
     """
     matrices: list[str] = []
     at = 0
@@ -98,7 +99,7 @@ def _values_given(text: str, letters: set[str]) -> list[str] | None:
 
 
 def _closing(text: str, start: int) -> int:
-    """The position after the bracket that closes the one before ``start``, or 0."""
+    """The position after the bracket that closes the bracket before ``start``; 0 if none does."""
     depth = 1
     for bracket in re.finditer(r"[\[\]]", text[start:]):
         depth += 1 if bracket[0] == "[" else -1

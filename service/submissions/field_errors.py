@@ -49,10 +49,10 @@ _LIMITS: Final[Mapping[str, str]] = {
 
 
 def field_error(detail: Mapping[str, Any], fields: Sequence[str] = ()) -> Sentence:
-    """Return the message of an error that pydantic found; the object may have ``fields``.
+    """Return the message of an error that pydantic found; ``fields`` are all known fields.
 
-    An error of our own has a sentence as its message. For an unknown type, the message quotes that
-    of pydantic.
+    A message that is a ``Sentence`` is returned as it is. For an unknown type of error, the result
+    quotes the message of pydantic.
     """
     message, kind, context = detail["msg"], detail["type"], detail.get("ctx", {})
     if kind == "value_error" and context["error"].args:

@@ -26,7 +26,7 @@ _JUNK: Final = frozenset({"__macosx", "thumbs.db", "desktop.ini", "__pycache__",
 
 @dataclass(frozen=True, slots=True)
 class HandedFile:
-    """One file of a submission; ``name`` is the student's path of it within the submission.
+    """One file of a submission; ``name`` is its path in the submission, as the student named it.
 
     ``problem`` says why the file must not be read; ``content`` is set if it has been read already.
     """
@@ -40,7 +40,7 @@ class HandedFile:
     def own_name(self) -> str:
         """The name that the student gave the file.
 
-        It has neither a path of this machine nor the student's name from a platform.
+        The name contains neither a path on this machine nor the student's name from a platform.
         """
         if self.name != self.path.as_posix():
             return self.name
@@ -59,8 +59,8 @@ class HandedIn:
     """The files and folders that one student handed in.
 
     ``name`` is unique; ``learner`` is the student's name in a gradebook. ``folder`` is the class
-    folder, or None if the caller named the files. Symbolic links must not lead out of it, nor out
-    of a student's own folder. ``problem`` says why nothing can be graded.
+    folder, or None if the caller named the files. Symbolic links must not lead out of the class
+    folder, nor out of a student's own folder. ``problem`` says why nothing can be graded.
     """
 
     name: str
@@ -95,7 +95,7 @@ def all_handed_in(
 
     ``-`` is standard input, which is read immediately. With ``folder_is_one``, a folder is the
     submission of one student. ``left_out``, the output file, is not a submission. Files named
-    ``STUDENT.PART.csv``, with one of ``parts``, belong together for each student.
+    ``STUDENT.PART.csv``, where PART is one of ``parts``, are grouped by student.
     """
     for path in paths:
         if str(path) == STANDARD_INPUT:
@@ -141,7 +141,10 @@ def _student(folder: Path, name: str, parts: Collection[str]) -> str:
 
 
 def _entry(folder: Path, name: str) -> HandedFile:
-    """A file or folder of a class. A folder has the name "", so that names of its files omit it."""
+    """A file or folder in a class folder.
+
+    A folder gets the name "", so that the names of its files do not begin with its own name.
+    """
     path = folder / name
     found = platform_name(name)
     own = found.file if found else name

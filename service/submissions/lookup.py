@@ -28,7 +28,7 @@ class UnknownExerciseError(LookupError):
 
 
 def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
-    """Return the value for an exercise's id, or the variant ``<exercise>~<seed>``.
+    """Return the catalogue's value for an exercise id, or the variant ``<exercise>~<seed>``.
 
     Raises UnknownExerciseError.
     """

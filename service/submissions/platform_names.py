@@ -1,11 +1,11 @@
 """The names of files that learning platforms export, and the students in these names.
 
 Moodle (``mod/assign/classes/downloader.php``, earlier ``mod/assign/locallib.php``) names a folder
-``Ada Byron_1234_assignsubmission_file``, with another ``_`` at the end in older versions, or puts
-this before the name of a file. Canvas (``lib/content_zipper.rb``) puts
-``byronada_LATE_1234_56789_`` before the name of a file. Typed text is ``byronada_1234_text.html``,
-an address ``byronada_1234_link.html``. For anonymous students, ``anon_x7Gh2`` replaces the name and
-the number.
+``Ada Byron_1234_assignsubmission_file``, in older versions with another ``_`` at the end, or puts
+the same text before the name of a file. Canvas (``lib/content_zipper.rb``) puts
+``byronada_LATE_1234_56789_`` before the name of a file. A typed text has the name
+``byronada_1234_text.html``, and an address ``byronada_1234_link.html``. For anonymous students,
+``anon_x7Gh2`` replaces the name and the number.
 """
 
 import re
@@ -60,7 +60,7 @@ def without_copy_number(stem: str) -> str:
 def student_and_part(name: str, parts: Collection[str]) -> tuple[str, str] | None:
     """Split ``STUDENT.PART.csv`` into student and part; return None unless PART is in ``parts``.
 
-    The name of a student may have dots; that of a part has none.
+    The name of a student may contain dots; the name of a part does not.
     """
     student, _, part = PurePosixPath(name).stem.rpartition(".")
     part = without_copy_number(part).lower()

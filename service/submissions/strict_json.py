@@ -1,7 +1,7 @@
 """Read untrusted JSON with limits, with the place of an error, and without dropping anything.
 
-A number that JSON or a float cannot represent (NaN, 1e999, a thousand digits) becomes text: it is
-the entry of some cell, and the grader explains it there and grades every other cell.
+A number that JSON or a float cannot represent (NaN, 1e999, a thousand digits) becomes text. The
+grader explains this text in its cell, and grades every other cell.
 """
 
 import json
