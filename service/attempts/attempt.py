@@ -12,7 +12,7 @@ MOST_ON_A_PAGE: Final = 100
 
 
 def hint_points(price: float, max_points: float) -> float:
-    """Return the points that hints cost, at most all of them; ``price`` is their share."""
+    """Return the cost of hints in points: the share ``price`` of ``max_points``, at most all."""
     return round(min(price, 1.0) * max_points, 6)
 
 
@@ -80,8 +80,8 @@ class Standing:
 
     ``counted`` is the number of counted attempts in the assignment, or outside of assignments;
     ``earlier`` is the attempt that was already recorded under the same idempotency key, if any.
-    ``last`` is the ordinal of the last attempt in all assignments and none. ``hint_price`` is what
-    the hints cost that were taken so far, as a share of the points.
+    ``last`` is the highest ordinal of the attempts inside and outside of assignments.
+    ``hint_price`` is the price of all hints taken so far, as a share of the points.
     """
 
     counted: int
@@ -94,8 +94,8 @@ class Standing:
 class AttemptFilter:
     """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not.
 
-    ``assignment`` is the id of an assignment of ``course``. ``exercise`` may be that of a variant;
-    without a seed, it means all variants.
+    ``assignment`` is the id of an assignment of ``course``. ``exercise`` may be the id of a
+    variant; an id without a seed selects all variants.
     """
 
     exercise: str | None = None

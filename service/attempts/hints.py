@@ -1,7 +1,7 @@
 """The hints that learners take at recorded attempts: functions on a connection.
 
 A hint belongs to the attempt whose report has its message. Its price reduces the points of the
-learner's later attempts at the exercise, in the same assignment or outside of all.
+learner's later attempts at the exercise, in the same assignment or outside of all assignments.
 """
 
 from collections import Counter
@@ -43,7 +43,7 @@ class HintRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class HintStepOf:
-    """A step of the hint for a message: its part, its code and its place, empty if it has none."""
+    """A step of the hint for a message; ``row`` and ``cell`` are "" if the message has none."""
 
     part: str
     code: str
@@ -78,9 +78,9 @@ def take(
 ) -> HintRefusedError | None:
     """Record that the learner took a step of a hint. A step that was taken before costs nothing.
 
-    The steps belong to a place: another message at the same place does not start them again. Return
-    the reason if the step is refused, else None. It is not raised, because that would repeat the
-    other jobs of the transaction.
+    Steps are counted for each place in the answers: another message at the same place does not
+    start the steps again. Return the error if the step is refused, else None. The error is not
+    raised, because raising it would run the other jobs of the transaction again.
     """
     # Two requests for the same step wait for each other.
     attempt = connection.execute(
@@ -154,7 +154,7 @@ def hint_figures(connection: Connection, chosen: ColumnElement[bool]) -> list[Hi
 
 
 def _same_place(attempt: Row[Any]) -> ColumnElement[bool]:
-    """Return the condition of this learner's attempts at the exercise in the same assignment."""
+    """Return the condition that an attempt has the same learner, exercise and assignment."""
     return and_(
         attempts.c.exercise == attempt.exercise,
         attempts.c.learner == attempt.learner,

@@ -103,10 +103,10 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
 
 
 def is_older(before: datetime) -> ColumnElement[bool]:
-    """Return the condition of attempts whose time to be kept began before a moment.
+    """Return the condition for attempts whose retention time began before a moment.
 
-    The time begins with the attempt. In an assignment it begins when the last learner can no longer
-    hand in; without a due date it never begins.
+    The retention time begins with the attempt. For an attempt in an assignment, the time begins
+    when the last learner can no longer hand in; without a due date, the time never begins.
     """
     later = and_(
         extensions.c.assignment == assignments.c.number,
@@ -124,7 +124,7 @@ def delete_older(connection: Connection, before: datetime) -> int:
 
 
 def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
-    """Delete attempts with all that is recorded about them; return their number."""
+    """Delete attempts and all records about them; return the number of attempts."""
     numbers = select(attempts.c.number).where(chosen)
     for table in (regrade_queue, earlier_reports, overrides, hints):
         connection.execute(delete(table).where(table.c.attempt.in_(numbers)))
@@ -132,7 +132,7 @@ def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
 
 
 def months_before(now: datetime, months: int) -> datetime:
-    """Return the moment that many months earlier, at the latest on the 28th of its month."""
+    """Return ``now`` minus ``months`` months; a day after the 28th becomes the 28th."""
     total = 12 * now.year + now.month - 1 - months
     return now.replace(year=total // 12, month=total % 12 + 1, day=min(now.day, 28))
 

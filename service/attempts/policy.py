@@ -53,7 +53,7 @@ def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
 
 
 def points_after(points: float, max_points: float, hint_price: float, worth: float) -> float:
-    """Return the points minus the price of hints, times ``worth``: below 1 for a late attempt."""
+    """Return the points minus the price of hints, times ``worth`` (below 1 if late)."""
     return round(max(0.0, points - hint_points(hint_price, max_points)) * worth, 6)
 
 

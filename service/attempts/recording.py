@@ -37,7 +37,7 @@ _ALL: Final = func.count(attempts.c.ordinal)
 
 
 def _standing(counted: ColumnElement[int]) -> Select[Any]:
-    """Return the statement that reads a standing at once: each statement costs more than a row."""
+    """Return one statement that reads a whole standing: several statements would be slower."""
     earlier = select(attempts.c.number).where(
         attempts.c.owner == bindparam("owner"),
         attempts.c.idempotency_key == bindparam("idempotency_key"),
@@ -143,9 +143,10 @@ AttemptAfter = Callable[[Standing], tuple[NewAttempt, Outcome] | None]
 def record_next(
     connection: Connection, before: Standing, attempt_after: AttemptAfter
 ) -> RecordedAttempt | Standing:
-    """Write the attempt that ``attempt_after`` returns; if another came first, ask it again.
+    """Write the attempt that ``attempt_after`` returns for the current standing.
 
-    Return the current standing instead if ``attempt_after`` returns None.
+    If another attempt was written first, call ``attempt_after`` again with the new standing. If
+    ``attempt_after`` returns None, return the standing instead.
     """
     now = before
     while (attempt := attempt_after(now)) is not None:

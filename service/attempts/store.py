@@ -185,8 +185,8 @@ class AttemptStore:
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
         """Delete all records of a learner; return their counts and the state of erasure.
 
-        The state is that of ``overwrite_deleted``. If it is False, the writer thread tries again
-        every minute.
+        The state of erasure is the result of ``overwrite_deleted``. If the state is False, the
+        writer thread tries again every minute.
         """
         with self.measure("forget"):
             deleted = await self._running.run(lambda connection: forget(connection, learner))

@@ -67,7 +67,8 @@ class RegradedAttempt:
     """The points of an attempt before and after a regrade, as the exercise file gives them.
 
     ``reasons`` names the parts whose result has changed. Points that a tutor has ``awarded`` stay
-    and count. ``counted`` has the points in the assignment, if one sets the exercise.
+    and count. ``counted`` has the points in the assignment, or is None if no assignment sets the
+    exercise.
     """
 
     id: str
@@ -150,8 +151,8 @@ class Regrading:
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
         """Regrade some attempts of the queue that no other worker has taken, in a transaction.
 
-        The result is empty if there are none, if none of the batch needs a regrade, or, in SQLite,
-        if another worker was faster.
+        The result is empty if no such attempts are left, if no attempt of the batch needs a
+        regrade, or, in SQLite, if another worker was faster.
         """
         prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
         return in_transaction(engine, partial(self.work, among=prepared))
@@ -187,7 +188,7 @@ class Regrading:
         return mine & regrade_queue.c.attempt.in_(select(attempts.c.number).where(self._condition))
 
     def _prepared(self, engine: Engine) -> list[int]:
-        """Grade the first batch of the queue, so that its reports are memoized; return it."""
+        """Grade the first batch of the queue and memoize its reports; return the batch."""
         with engine.connect() as connection:
             rows = self._rows(connection, connection.scalars(self._waiting()).all())
         return [row.number for row, _ in self._graded_in_time(rows)]
@@ -195,9 +196,10 @@ class Regrading:
     def _graded_in_time(
         self, rows: Sequence[Row[Any]]
     ) -> list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]]:
-        """Regrade rows until the time of a batch is over, but at least one.
+        """Regrade rows until the time of a batch is over, but at least one row.
 
-        The result beside a row is None if another worker has regraded it in the meantime.
+        The result of a row is None if the row needs no regrade, for example because another worker
+        has regraded it in the meantime.
         """
         graded: list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]] = []
         end = time.monotonic() + _BATCH_SECONDS
@@ -312,7 +314,7 @@ class Regrading:
 def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
     """Return the exercise or variant of an attempt; None if its variant has other values now.
 
-    Learners who have answered a question are not graded by another one.
+    Learners who answered a question with old values are not graded by the new values.
     """
     if row.variant is None:
         return exercise

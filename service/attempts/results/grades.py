@@ -97,7 +97,7 @@ _Value = str | float | bool | None
 
 
 def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
-    """The values of ``_FIELDS``; ``points`` are those of a tutor if one has given some."""
+    """The values of ``_FIELDS``; ``points`` are the tutor's points if there are any."""
     each = graded.attempt
     return (
         each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,

@@ -58,7 +58,7 @@ def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
 class AttemptHistory:
     """All records of an attempt; ``submission`` and ``report`` are JSON.
 
-    ``course`` is that of the attempt's assignment, or None.
+    ``course`` is the course of the attempt's assignment, or None.
     """
 
     attempt: ListedAttempt

@@ -1,8 +1,8 @@
-"""Recorded reports: JSON in English, with the sentences that are told in other languages.
+"""Recorded reports: JSON in English, with the sentences that can be translated.
 
 A recorded report begins with ``sentences``, a list of templates with their values; the rest is the
-report as it was sent. A text that is not in the list is its own template. Reports of versions
-without sentences have no list, and stay in English.
+report as it was sent. A text that is not in the list is its own template. Reports that older
+versions recorded without such a list stay in English.
 """
 
 import json

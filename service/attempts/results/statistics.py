@@ -92,7 +92,7 @@ def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Co
 
 
 def _by_attempt(connection: Connection, chosen: ColumnElement[bool]) -> list[Counter[int]]:
-    """The number of learners by outcome, of their first attempts, their second ones, and so on.
+    """The number of learners by outcome: for first attempts, for second attempts, and so on.
 
     An attempt in which nothing could be read is not counted.
     """
@@ -120,7 +120,7 @@ def _curve(
     contents: Mapping[int, Mapping[str, Any]],
     slip: MisconceptionFigures,
 ) -> list[int]:
-    """The number of learners with a misconception in their first attempt, and so on."""
+    """The numbers of learners with a misconception in their first attempt, second attempt, etc."""
     having = {
         number
         for number, content in contents.items()
@@ -174,9 +174,9 @@ class _PartCount:
             self.rows[row].add(cells, times)
 
     def figures(self, name: str) -> PartFigures:
-        """Return the figures; leave out rows that fewer than half of the attempts have.
+        """Return the figures of the rows that more than half of the detailed reports have.
 
-        Such a row is one that a few students added to the table.
+        The other rows were added to the table by a few students.
         """
         rows = [
             RowFigures(
@@ -219,7 +219,7 @@ def _commonest(
 def _newest_reports(
     connection: Connection, chosen: ColumnElement[bool], among: Set[int]
 ) -> dict[int, Any]:
-    """The report of the newest attempt with each outcome: later attempts get more feedback."""
+    """The newest report with each outcome: the reports on later attempts may say more."""
     newest = (
         select(func.max(attempts.c.number))
         .where(chosen, attempts.c.outcome.in_(among))

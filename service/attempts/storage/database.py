@@ -140,10 +140,10 @@ def _set_up_sqlite(connection: Any, _: object) -> None:
 
 
 def _use_write_ahead_log(cursor: sqlite3.Cursor) -> None:
-    """Let readers go on beside a writer.
+    """Use a write-ahead log, so that readers need not wait for a writer.
 
-    SQLite does not wait for its lock here: of two processes that both open a new file, one is
-    refused at once. So try again.
+    SQLite does not wait for its lock here. If two processes open a new file at the same time,
+    SQLite refuses one of them at once, and this function tries again.
     """
     until = time.monotonic() + _LOCK_WAIT
     while True:

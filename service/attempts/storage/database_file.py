@@ -50,8 +50,8 @@ class DatabaseFile:
 def make_private(path: str) -> None:
     """Create an empty file that only its owner can read, unless the file exists.
 
-    An empty file is an empty database, and SQLite gives the files beside it the same mode. Errors
-    are ignored: SQLite reports them when it opens the file.
+    An empty file is an empty database. SQLite gives the files beside a database the same mode.
+    Errors are ignored: SQLite reports them when it opens the file.
     """
     with suppress(OSError):
         os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, _OWN))
@@ -69,7 +69,7 @@ def copy_into(source: Path, target: Path) -> None:
 
 
 def is_in_use(path: Path) -> bool:
-    """True if another program has the SQLite database open; else its log is emptied."""
+    """True if another program has the SQLite database open; if not, empty the database's log."""
     with closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as connection:
         try:
             # In WAL mode every open connection holds a lock that excludes this one.

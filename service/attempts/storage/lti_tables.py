@@ -1,4 +1,4 @@
-"""The tables of LTI: platforms, launches, what they are linked with, and scores to send."""
+"""The tables of LTI: platforms, launches, linked courses, assignments and learners, and scores."""
 
 from sqlalchemy import Boolean, Column, Float, ForeignKey, Index, Integer, String, Table, Text
 from sqlalchemy import UniqueConstraint as Unique

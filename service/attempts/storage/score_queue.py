@@ -1,7 +1,7 @@
-"""Note whose score a platform must get: one row for each line item and learner.
+"""Queue the scores that platforms must get: one row for each line item and learner.
 
-A row is written in the transaction that changes the score. It has no points: who sends it reads
-them, so that of several changes at once the last one counts.
+A row is written in the transaction that changes the score. The sender reads the points only when it
+sends them, so that the last of several changes counts.
 """
 
 import secrets
@@ -22,7 +22,7 @@ FORGOTTEN: Final = "forgotten-"
 
 
 class Priority(IntEnum):
-    """What is sent first: the lowest number."""
+    """The priority of a queued score; the lowest number is sent first."""
 
     HAND_IN = 0
     CHANGE = 1
@@ -98,7 +98,7 @@ def queue_score(
 def queue_scores(
     connection: Connection, chosen: ColumnElement[bool], priority: Priority = Priority.CHANGE
 ) -> None:
-    """Queue the scores to which these attempts belong. ``chosen`` is a condition on attempts."""
+    """Queue the scores to which the attempts that meet the condition ``chosen`` belong."""
     having = select(attempts.c.assignment, attempts.c.learner).where(
         chosen, attempts.c.assignment.is_not(None)
     )
@@ -114,9 +114,9 @@ def queue_scores(
 
 
 def forget_scores(connection: Connection, learner: str) -> None:
-    """Have the scores of a learner cleared at the platforms, under a name that says nothing.
+    """Queue the clearing of a learner's scores at the platforms, under a random name.
 
-    Rows of which nothing was sent are deleted. The platform's id of the learner stays in the row
+    Rows whose score was never sent are deleted. The platform's id of the learner stays in the row
     until the platform has cleared the score.
     """
     mine = scores.c.learner == learner

@@ -50,8 +50,9 @@ _Finished = tuple[_Job, Any, Exception | None]
 class AttemptWriter:
     """Runs jobs on a connection, in the order of their arrival, many in one transaction.
 
-    A job gets its result only after the commit, so that it is durable. If a transaction of several
-    jobs fails, each job is run again in its own transaction: a failing job does not affect others.
+    A job gets its result only after the commit, when its changes are durable. If a transaction of
+    several jobs fails, each job is run again in its own transaction: a failing job does not affect
+    others.
     """
 
     def __init__(self, engine: Engine, tidy: Callable[[], None] = lambda: None) -> None:
@@ -68,7 +69,7 @@ class AttemptWriter:
     async def run(self, work: Callable[[Connection], R]) -> R:
         """Return the result of ``work`` after its commit. Raises StoreDownError.
 
-        After an error usually nothing was written, unless only the answer to the commit was lost.
+        After an error nothing was written, unless only the answer to the commit was lost.
         """
         begun_at = self._begun_at
         if begun_at is not None and monotonic() - begun_at > _TIMEOUT:

@@ -10,7 +10,7 @@ down_revision = "0008"
 
 
 def upgrade() -> None:
-    """Add the columns and the table. No hints were taken before recorded attempts."""
+    """Add the columns and the table. Recorded attempts get the hint price 0."""
     op.add_column("attempts", sa.Column("hint_price", sa.Float, nullable=False, server_default="0"))
     op.add_column("assignments", sa.Column("hint_prices", sa.Text))
     op.create_table(
