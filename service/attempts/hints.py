@@ -154,7 +154,7 @@ def hint_figures(connection: Connection, chosen: ColumnElement[bool]) -> list[Hi
 
 
 def _same_place(attempt: Row[Any]) -> ColumnElement[bool]:
-    """Return the condition that an attempt has the same learner, exercise and assignment."""
+    """Return the condition that another attempt has this learner, exercise and assignment."""
     return and_(
         attempts.c.exercise == attempt.exercise,
         attempts.c.learner == attempt.learner,

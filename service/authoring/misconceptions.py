@@ -24,7 +24,7 @@ _FAMILIES: Final = (
 
 @dataclass(frozen=True, slots=True)
 class NamedMisconception:
-    """A mistake: ``name`` is its code; ``sentences`` are those of the examples of the grader."""
+    """A mistake: ``name`` is its code; ``sentences`` come from the examples of the grader."""
 
     name: str
     meaning: str
@@ -36,8 +36,7 @@ def misconceptions_of(
 ) -> list[NamedMisconception]:
     """Return the misconceptions that the grader may name in answers of the exercise's kinds.
 
-    They are sorted by code. The examples are about exercises of the ``catalogue``; without its
-    exercise, an example has no sentence.
+    They are sorted by code. An example whose exercise is not in the ``catalogue`` is skipped.
     """
     own = {part.kind for part in exercise.parts}
     kinds = frozenset().union(*(family for family in _FAMILIES if family & own))

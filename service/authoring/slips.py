@@ -10,7 +10,7 @@ from service.translations import say
 
 
 def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a failure for each part whose slip the robot cannot show."""
+    """Yield a failure for each part whose slip fits no table of the robot."""
     for i, part in enumerate(exercise.parts):
         if not isinstance(part, FindSlipSpec) or part.slip is None:
             continue

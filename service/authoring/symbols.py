@@ -150,7 +150,7 @@ def _range(variable: Variable) -> Iterator[Remark]:
 
 
 def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
-    """Yield angles without a unit of more than a full turn, which are probably degrees."""
+    """Yield angles without a unit that exceed a full turn, and so are probably in degrees."""
     for field, formula, quantity in exercise.fields():
         for term in _bare_terms(formula.tree, is_angle=quantity == "angle"):
             constant = Expression(formula.source, term, (), frozenset())

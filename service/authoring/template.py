@@ -24,7 +24,7 @@ class UnusableIdError(ValueError):
 
 
 def template(exercise_id: str, like: Path | None = None) -> str:
-    """Return the text of a new exercise file, with comments, or that of the file ``like``.
+    """Return the text of a new exercise file, with comments, or the text of the file ``like``.
 
     The text passes every check. Raises UnusableIdError, because the id becomes the file's name and
     a part of web addresses.

@@ -208,7 +208,7 @@ def _check_exercises(chosen: list[str], known: Collection[str]) -> None:
 
 
 def _checked(connection: Connection, course: str, assignment: str) -> CourseAssignment:
-    """Return an assignment after a change. Raises CourseError if its dates have no order."""
+    """Return an assignment after a change. Raises CourseError if its dates are not in order."""
     found = assignment_of(connection, course, assignment)
     if found.closes is not None and found.due is None:
         raise _closes_needs_due()

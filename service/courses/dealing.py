@@ -1,7 +1,7 @@
 """The variant of an exercise that a learner has in an assignment. Learners never see the seed.
 
-The service computes the seed from a secret of the assignment: a learner has the same variant each
-time, and cannot find out which.
+The service computes the seed from a secret of the assignment: a learner gets the same variant each
+time, and cannot find out its seed.
 """
 
 import json
@@ -79,7 +79,7 @@ def own_variant(
 ) -> Exercise:
     """Return the learner's variant of an exercise under its plain id, or the exercise itself.
 
-    It is the exercise, too, if the variant cannot be made.
+    The exercise itself is returned if there are no variants, or if the variant cannot be made.
     """
     own = pinned(exercise, terms.choices)
     seed = _dealt_seed(connection, terms, learner, own)
@@ -92,8 +92,8 @@ def own_variant(
 def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
     """True if an assignment has variants of the exercise, but its choices are not stored yet.
 
-    That is so if an earlier version of the program made the assignment, or if the exercise got
-    variants later.
+    Choices are missing if an earlier version of the program made the assignment, or if the exercise
+    got variants later.
     """
     if terms.variants is None or exercise.vary is None:
         return False

@@ -130,7 +130,7 @@ def _assignments(
 ) -> Select[tuple[int]]:
     """Return the query for the numbers of some assignments, after locking them.
 
-    Nobody can hand in there until the transaction ends.
+    Nobody can hand in at these assignments until the transaction ends.
     """
     mine = select(assignments.c.number).where(assignments.c.course == course, chosen)
     connection.execute(mine.with_for_update()).all()

@@ -16,7 +16,7 @@ CourseFault = Literal[
 
 
 class CourseError(Exception):
-    """What is asked for a course cannot be done. The message says why; ``name`` is for programs."""
+    """A request about a course is refused. The message says why; ``name`` is for programs."""
 
     def __init__(self, name: CourseFault, message: str) -> None:
         self.name = name
@@ -24,18 +24,18 @@ class CourseError(Exception):
 
 
 def unknown_course(course: str) -> CourseError:
-    """Return the error that there is no such course."""
+    """Return the error for an unknown course id."""
     return CourseError("unknown-course", say("There is no course {course}.", course=course))
 
 
 def unknown_learner(learner: str) -> CourseError:
-    """Return the error that a course has no such learner."""
+    """Return the error for a learner who is not in the course."""
     message = say("The course has no learner {learner}.", learner=learner)
     return CourseError("unknown-learner", message)
 
 
 def unknown_assignment(assignment: str) -> CourseError:
-    """Return the error that a course has no such assignment."""
+    """Return the error for an assignment that the course does not have."""
     message = say("The course has no assignment {assignment}.", assignment=assignment)
     return CourseError("unknown-assignment", message)
 

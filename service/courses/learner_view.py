@@ -76,7 +76,7 @@ def own_view(
     now: datetime,
     language: Language = ENGLISH,
 ) -> OwnCourses:
-    """Return the courses of a learner; with ``only``, this course.
+    """Return the courses of a learner; ``only`` restricts the result to one course.
 
     The titles of exercises are in ``language``.
     """
@@ -143,9 +143,10 @@ def closed_practice(
     alike: Collection[str],
     now: datetime,
 ) -> tuple[LearnerTerms, str] | None:
-    """Return an assignment that does not let the learner practise, and its exercise; else None.
+    """Return an assignment that forbids practice now, and its exercise; None if none does.
 
-    If no assignment has the exercise itself, those with one of ``alike`` decide.
+    If no assignment has the exercise itself, assignments with one of the exercises ``alike``
+    decide.
     """
     for terms, name in _assigned(connection, learner, only, exercise, alike):
         full = terms.practice == "after" and has_full_marks(connection, learner, terms.number, name)
@@ -164,7 +165,8 @@ def hides_solution(
 ) -> bool:
     """True if an assignment of the learner does not show the solution of the exercise now.
 
-    If no assignment has the exercise itself, those with one of ``alike`` decide.
+    If no assignment has the exercise itself, assignments with one of the exercises ``alike``
+    decide.
     """
     return any(
         not terms.shows_solution(
@@ -177,7 +179,7 @@ def hides_solution(
 def _assigned(
     connection: Connection, learner: str, only: str | None, exercise: str, alike: Collection[str]
 ) -> list[tuple[LearnerTerms, str]]:
-    """Return the terms of the assignments of an exercise; if there are none, of those like it."""
+    """Return the assignments of an exercise, or if there are none, of the exercises ``alike``."""
     found = [terms for _, terms in learner_terms(connection, learner, only)]
     own = [(terms, exercise) for terms in found if exercise in terms.exercises]
     return own or [(terms, name) for terms in found for name in terms.exercises if name in alike]
@@ -191,9 +193,10 @@ def has_priced_hints(
     alike: Collection[str],
     now: datetime,
 ) -> bool:
-    """True if the learner can hand the exercise in, and hints have a price then.
+    """True if the learner can hand in the exercise now, and its hints have a price.
 
-    If no assignment has the exercise itself, those with one of ``alike`` decide.
+    If no assignment has the exercise itself, assignments with one of the exercises ``alike``
+    decide.
     """
     return any(
         terms.hint_prices(exercise) is not None and terms.state(now) in ("open", "late")
@@ -202,7 +205,7 @@ def has_priced_hints(
 
 
 def has_full_marks(connection: Connection, learner: str, number: int, exercise: str) -> bool:
-    """True if an attempt of the learner has full marks here, if late or after hints, too."""
+    """True if an attempt has full marks before deductions for lateness and hints."""
     return _is_full(_attempts(connection, learner).get((number, exercise), []))
 
 

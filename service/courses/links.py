@@ -33,9 +33,9 @@ def issue_links(
     address: str,
     now: datetime,
 ) -> list[PersonalLink]:
-    """Return the links of learners; make those that are absent, expired or to be renewed.
+    """Return the links of learners; make links that are absent, expired or to be renewed.
 
-    ``address`` is that of the service. Raises CourseError.
+    ``address`` is the address of the service. Raises CourseError.
     """
     if not settle(connection, secret, now):
         raise CourseError("unusable", WRONG_SECRET)
@@ -69,7 +69,7 @@ def written_links(links: Iterable[PersonalLink]) -> Iterator[bytes]:
 def revoke_links(
     connection: Connection, course: str, learners: Collection[str] | None, now: datetime
 ) -> int:
-    """End the links of these learners, or of all; return how many there were."""
+    """End the links of these or all learners; return the number of ended links."""
     mine = (keys.c.course == course) & keys.c.learner.is_not(None) & keys.c.revoked_at.is_(None)
     if learners is not None:
         mine &= keys.c.learner.in_(learners)

@@ -9,7 +9,7 @@ from service.contract.courses import CourseLearner, MissingLearner
 
 
 def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, str]:
-    """Return the name of each learner by id; learners of one name also have e-mail or id."""
+    """Return names by id; learners with equal names also get their e-mail address or id."""
     count = Counter(each.name for each in people)
     return {
         each.learner: each.name

@@ -45,7 +45,7 @@ def course(connection: Connection, course_id: str) -> Course:
 
 
 def all_courses(connection: Connection, only: str | None = None) -> list[Course]:
-    """Return the courses, the newest first; with ``only``, this one."""
+    """Return the courses, the newest first; ``only`` restricts the result to one course."""
     return _courses(connection, true() if only is None else courses.c.id == only)
 
 

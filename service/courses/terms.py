@@ -45,8 +45,8 @@ class LearnerTerms:
     """The terms of an assignment for one learner, with an extension if there is one.
 
     ``number`` is the row number of the assignment, ``exercises`` has the points of each exercise.
-    ``variants`` is the secret of the learners' variants, None if there are none. ``choices`` is
-    what their exercises may vary, as JSON; None if the exercise files define it.
+    ``variants`` is the secret of the learners' variants, None if there are none. ``choices`` says
+    what the variants may vary, as JSON; None if the exercise files define this.
     """
 
     number: int
@@ -84,7 +84,7 @@ class LearnerTerms:
         return "late" if self._is_past_due(now) else "open"
 
     def may_practise(self, now: datetime, *, is_full: bool) -> bool:
-        """True if answers may be graded that are not recorded; ``is_full`` is for full marks."""
+        """True if unrecorded answers may be graded; ``is_full`` is True after full marks."""
         if self.practice == "after":
             return is_full or self._is_past_due(now)
         return self.practice == "open"
@@ -123,9 +123,10 @@ def terms_of(connection: Connection, course: str, assignment: str, learner: str)
 def learner_terms(
     connection: Connection, learner: str, only: str | None = None
 ) -> Iterator[tuple[str, LearnerTerms]]:
-    """Yield the learner's courses and the terms of their assignments; with ``only``, this course's.
+    """Yield the course and the terms of each assignment of a learner.
 
-    The assignments of a course are in the order in which they were added.
+    ``only`` restricts the result to one course. The assignments of a course are in the order in
+    which they were added.
     """
     if only is None:
         rows = connection.execute(_OF_LEARNER, {"learner": learner})
@@ -164,7 +165,7 @@ def extended(
     closes: datetime | None = None,
     limit: int | None = None,
 ) -> AttemptsSpec:
-    """Return the rules of an assignment with these dates and this limit of an extension."""
+    """Return the rules of an assignment, changed by the dates and the limit of an extension."""
     new_due, new_closes = own_dates(row, due, closes)
     return AttemptsSpec(
         limit=limit or row.max_attempts,
@@ -179,7 +180,7 @@ def extended(
 def own_dates(
     assignment: Any, due: datetime | None, closes: datetime | None
 ) -> tuple[datetime | None, datetime | None]:
-    """Return the last moments of a learner with this extension: to hand in in time, and late.
+    """Return the due date and the closing date for a learner with this extension.
 
     Late attempts are accepted until the latest of all dates.
     """

@@ -17,8 +17,8 @@ from service.time_slices import checkpoint
 class TableBlame:
     """The grader's judgement of a wrong table.
 
-    ``codes`` are those of its messages on errors, ``cells`` the wrong cells. ``single`` are the
-    cells that can each be repaired alone, so that the table becomes valid.
+    ``codes`` are the codes of the grader's messages on errors, ``cells`` the wrong cells. Repairing
+    any one of the cells ``single`` makes the table valid.
     """
 
     codes: frozenset[str]
@@ -30,8 +30,8 @@ class TableBlame:
 class DrawnSlip:
     """A table with one slip.
 
-    ``texts`` is the wrong table, ``model`` the right one. ``misconception`` is its code.
-    ``places`` are the sets of cells that explain the slip; there are several if parallel axes
+    ``texts`` is the wrong table, ``model`` the right one. ``misconception`` is the code of the
+    slip. ``places`` are the sets of cells that explain the slip; there are several if parallel axes
     share an offset.
     """
 
@@ -69,7 +69,7 @@ def drawn_slip(
     judge_table: JudgeTable,
     wanted: str | None = None,
 ) -> DrawnSlip:
-    """Return the table that a seed draws; with ``wanted``, one with the misconception of this code.
+    """Return the table with one slip that a seed draws; ``wanted`` may be the code of the slip.
 
     Raises NoSlipError if no table has exactly one slip that the grader finds.
     """
@@ -98,7 +98,7 @@ def _tries(table: ModelTable, seed: int, wanted: str | None) -> Iterator[tuple[s
 
 
 def _places(name: str, change: SlipChange, blame: TableBlame) -> tuple[frozenset[TableCell], ...]:
-    """Return the places of a slip; none if the grader finds another one or several."""
+    """Return the places of a slip; none if the grader finds another slip or several slips."""
     cells = frozenset(change)
     if blame.codes != {name} or blame.cells != cells:
         return ()

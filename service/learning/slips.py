@@ -1,7 +1,8 @@
 """The slips that can be put into a table, by the code of the misconception that explains them.
 
 Each function yields changes of a model table: other texts for some of its cells. A change need not
-cause its code. ``find_slip`` asks the grader, and refuses those that the grader explains otherwise.
+cause its code. ``find_slip`` asks the grader, and refuses changes that the grader explains by
+another code.
 """
 
 import math
@@ -239,7 +240,7 @@ def _link_columns_shifted(table: ModelTable) -> Iterator[SlipChange]:
 
 
 def _other_convention(table: ModelTable) -> Iterator[SlipChange]:
-    """Yield the table of the other convention, if only a and α move by a row."""
+    """Yield the table of the other convention if it only moves a and α by one row."""
     count = len(table.cells)
     step = 1 if table.convention is Convention.STANDARD else -1
     end = count - 1 if step == 1 else 0
@@ -270,7 +271,7 @@ def _joint_numbering_by_kind(table: ModelTable) -> Iterator[SlipChange]:
 
 
 def _numbered(joint: Joint, number: int, table: ModelTable) -> str:
-    """Return the variable of a joint with another number, as this robot's joints are named."""
+    """Return the variable of a joint with another number, in the naming of this robot."""
     letters = joint.variable.rstrip("0123456789")
     known = {each.variable for each in table.joints}
     name = f"{letters}{number}"
@@ -307,7 +308,7 @@ SLIPS: Final[Mapping[str, SlipMaker]] = {
 
 
 def changes_of(name: str, table: ModelTable) -> list[SlipChange]:
-    """Return the changes that may cause the code ``name``, without cells that stay as they are."""
+    """Return the changes that may cause the code ``name``, without unchanged cells."""
     texts = table.texts
     found: list[SlipChange] = []
     for change in SLIPS[name](table):

@@ -66,7 +66,7 @@ class ModelTable:
         return tuple(tuple(cell.text() for cell in row) for row in self.cells)
 
     def changed(self, changes: Mapping[TableCell, str]) -> TableTexts:
-        """Return the texts with other ones in some cells."""
+        """Return the texts with the given changes in some cells."""
         return tuple(
             tuple(changes.get((i, j), cell.text()) for j, cell in enumerate(row))
             for i, row in enumerate(self.cells)

@@ -60,7 +60,7 @@ class IdenticalMistakes:
 
     @property
     def groups(self) -> Sequence[MistakeGroup]:
-        """The groups of at least two, by decreasing size, then by the number of wrong cells."""
+        """The groups of two or more submissions, by decreasing size and number of wrong cells."""
         return sorted(
             self._groups.values(), key=lambda group: (-len(group.submissions), -len(group.mistakes))
         )

@@ -17,7 +17,7 @@ _SENTENCES: Final = 50
 
 @dataclass(slots=True)
 class CountedSlip:
-    """A code in answers of one kind.
+    """The occurrences of a message code in answers of one kind.
 
     ``is_unreadable`` is True if the code is about an unreadable entry, which is not a
     misconception. ``submissions`` has each submission once; ``parts`` is the number of submissions
@@ -46,12 +46,12 @@ class CountedSlip:
 
     @property
     def sentence(self) -> str:
-        """The most frequent message; the first one of several."""
+        """The most frequent message; the first one if several are equally frequent."""
         return self._sentences.most_common(1)[0][0]
 
 
 class SlipCounts:
-    """Counts the codes of reports, each once for a part of a submission.
+    """Counts the message codes in reports; a code counts once in each part of a submission.
 
     The same code in another kind of answer is a different slip.
     """
@@ -75,7 +75,7 @@ class SlipCounts:
 
 
 def _slips(part: PartReport) -> dict[tuple[str, bool], str]:
-    """The first sentence of each code of the part; the key is True for unreadable entries."""
+    """The first sentence of the part by code, and by whether the entry is unreadable."""
     found: dict[tuple[str, bool], str] = {}
     for message, verdict in _counted(part):
         found.setdefault((message.code, verdict is Verdict.UNREADABLE), message.message)

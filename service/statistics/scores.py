@@ -14,7 +14,7 @@ _EDGE: Final = 1e-6
 class ScoreBin:
     """The submissions with a score from ``low`` up to, but not including, ``high``.
 
-    The last bin includes 1. ``passed`` is the number of them that reach the pass mark.
+    The last bin includes 1. ``passed`` is the number of these submissions that reach the pass mark.
     """
 
     low: float

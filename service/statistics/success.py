@@ -110,7 +110,7 @@ class PartSuccess:
         return {label: row for label, row in self._rows.items() if 2 * row.seen > self.detailed}
 
     def commonest_wrong(self, most: int, at_least: int = 2) -> list[FrequentEntry]:
-        """Return up to ``most`` wrong entries that occur ``at_least`` times, by frequency."""
+        """Return the ``most`` commonest wrong entries with at least ``at_least`` occurrences."""
         found = [entry for entry in self._wrong() if entry.times >= at_least]
         return sorted(found, key=lambda entry: -entry.times)[:most]
 

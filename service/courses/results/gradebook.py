@@ -65,7 +65,7 @@ def gradebook(connection: Connection, course: str, assignment: str | None = None
 
 
 def missing(connection: Connection, course: str, assignment: str) -> list[MissingLearner]:
-    """Return who has not handed in which exercises of an assignment. Raises CourseError."""
+    """Return the learners who have not handed in all assigned exercises. Raises CourseError."""
     [chosen] = _chosen(connection, course, assignment)
     present = {
         (learner, exercise) for learner, _, exercise, _ in _shares(connection, course, assignment)
@@ -136,7 +136,7 @@ def _shares(
 ) -> Iterator[tuple[str, str, str, float | None]]:
     """Yield learner, assignment, exercise, and the share of the points that counts.
 
-    A share is there for each exercise with an attempt that counts.
+    Exercises without an attempt that counts are left out.
     """
     chosen = select(assignments.c.number, assignments.c.id).where(
         assignments.c.course == course,

@@ -1,4 +1,4 @@
-"""The gradebook as a workbook (Office Open XML), in which no text is a formula."""
+"""The gradebook as a workbook (Office Open XML); no text in it becomes a formula."""
 
 import io
 from collections.abc import Mapping
@@ -28,8 +28,8 @@ class HandIns(NamedTuple):
 def gradebook_workbook(connection: Connection, course: str, assignment: str | None = None) -> bytes:
     """Return the gradebook of a course, or of one assignment, as a workbook. Raises CourseError.
 
-    Its first sheet has the points, as the CSV file has them; the second one the number of attempts
-    and the last hand-in, on the clocks of the course.
+    The first sheet has the points, as in the CSV file. The second sheet has the number of attempts
+    and the time of the last hand-in, in the time zone of the course.
     """
     zone = ZoneInfo(roll.course(connection, course).zone)
     book = gradebook(connection, course, assignment)
@@ -84,7 +84,7 @@ def _written(book: Gradebook, hand_ins: Mapping[GradebookPlace, HandIns], zone: 
 
 
 def _head(sheet: Any, titles: list[str], bold: Any) -> None:
-    """Write the headings, which stay in sight, as well as the names."""
+    """Write the headings; freeze the headings and the columns of names."""
     for i, title in enumerate((*_PEOPLE, *titles)):
         sheet.write_string(0, i, visible(title), bold)
         sheet.set_column(i, i, _WIDTHS[i] if i < len(_WIDTHS) else max(12, len(title)))
