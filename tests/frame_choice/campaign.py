@@ -1,7 +1,7 @@
 """The campaign: many tables of every robot in random frames, valid ones and ones with slips.
 
-``python -m tests.frame_choice`` runs it and prints its figures. pytest runs it with
-``-m campaign``, and a sample of it always (``test_properties``).
+``python -m tests.frame_choice`` runs the campaign and prints its figures. ``pytest -m campaign``
+runs all of it, too; every run of pytest runs a sample (``test_properties``).
 """
 
 import os
@@ -26,7 +26,7 @@ FREE_TABLES = 20
 
 @dataclass(frozen=True)
 class Task:
-    """The work of one process at a time: ``tables`` tables of a robot in one convention."""
+    """A unit of work for one process: ``tables`` tables of a robot in one convention."""
 
     robot: Robot
     convention: str

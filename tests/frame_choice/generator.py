@@ -205,7 +205,7 @@ class _Reassignment:
         self._end_directly(target)
 
     def _end_directly(self, target: Numbers) -> None:
-        """Append one row to the end-effector frame, whose x axis must meet this z axis at 90°."""
+        """Append one row to the end-effector frame; its x axis must meet the last z axis at 90°."""
         theta = np.arctan2(target[:, 1, 0], target[:, 0, 0])
         alpha = np.arctan2(target[:, 2, 1], target[:, 2, 2])
         a = target[:, 0, 3] * np.cos(theta) + target[:, 1, 3] * np.sin(theta)
@@ -216,7 +216,7 @@ class _Reassignment:
         self.x.append(x)
 
     def _aligned_with_tool(self, pose: Numbers) -> None:
-        """Replace the row to the last, prismatic axis so that it meets the tool's x axis."""
+        """Move the last, prismatic axis so that it meets the tool's x axis; append the last row."""
         if not self.links:
             raise _UnreachableError
         link = self.links[-1]

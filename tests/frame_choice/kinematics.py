@@ -54,7 +54,7 @@ def _value(node: ast.expr, values: Mapping[str, Numbers]) -> Numbers:
 
 
 def cell_values(rows: Sequence[Sequence[str]], values: Mapping[str, Numbers]) -> Numbers:
-    """Return the table in numbers, ``(rows, 4, ...)`` for values of the symbols of ``(...)``."""
+    """Return the table in numbers: shape ``(rows, 4, ...)`` if the values have ``(...)``."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     table = np.empty((len(rows), 4, *shape))
     for i, row in enumerate(rows):

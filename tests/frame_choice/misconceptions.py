@@ -46,7 +46,7 @@ def codes(part: PartReport) -> set[str]:
 
 @dataclass(frozen=True)
 class Named:
-    """The number of tables whose misconception was named; the others with robot, rows, codes."""
+    """The number of tables whose misconception was named, and the other tables with their codes."""
 
     named: int
     missed: list[tuple[str, Rows, list[str]]]

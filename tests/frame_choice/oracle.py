@@ -1,11 +1,11 @@
 """Decide by the full pose at random values whether two tables describe one mechanism.
 
-If the base or the end-effector frame is free, they may differ by a constant transform B or E:
-T_written(q) = B T_reference(σ q) E, with signs σ if the joints' directions are free. B and E may
+If the base or the end-effector frame is free, the tables may differ by a constant transform B or
+E: T_written(q) = B T_reference(σ q) E, with signs σ if the joints' directions are free. B and E may
 depend on the lengths. One free end is solved for at the first joint values and tested at the
-others. With two free ends, E is solved for once B is known, and B must move the reference's
-joint screws onto the written ones: T(q) = exp(S_1 q_1) … exp(S_n q_n) M, in which S_i sees nothing
-of E (Lynch and Park, Modern Robotics, section 4.1). All of it is checked on the full pose.
+others. With two free ends, B must move the reference's joint screws onto the written ones, because
+in T(q) = exp(S_1 q_1) … exp(S_n q_n) M no S_i depends on E (Lynch and Park, Modern Robotics,
+section 4.1). With B known, E is solved for. The result is checked on the full pose.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -57,13 +57,13 @@ def is_equivalent(robot: Robot, policy: Policy, texts: Texts, convention: str) -
 
 
 def mismatch(robot: Robot, policy: Policy, texts: Texts, convention: str) -> float:
-    """Return the largest difference between the pose and the nearest valid one."""
+    """Return the largest difference between the table's pose and the nearest valid pose."""
     error = difference(robot, policy, lambda values: cell_values(texts, values), convention)
     return float(np.abs(error).max())
 
 
 def difference(robot: Robot, policy: Policy, table: TableOf, convention: str) -> Numbers:
-    """Return the pose of the table minus the nearest valid one, at all samples."""
+    """Return the pose of the table minus the nearest valid pose, at all samples."""
     written = forward(table(samples(robot)), convention)
     needs_screws = policy.directions or (policy.base and policy.tool)
     own_screws = screws(robot, table, convention) if needs_screws else None

@@ -75,9 +75,10 @@ def can_repair(
 def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[int, int]]:
     """Return the cells that can each alone repair the table, if both ends are given.
 
-    The pose depends on a cell through one factor, F = A⁻¹ T_reference C⁻¹, where A and C are the
-    products before and after it. The cell repairs the table if F is such a factor at every sample,
-    with the joint variable only in its own column.
+    A cell belongs to one factor of the pose. This factor must be F = A⁻¹ T_reference C⁻¹, where A
+    and C are the products of the factors before and after it. The cell repairs the table if some
+    value of the cell gives F at every sample. The value may contain the joint variable only in the
+    variable's own column.
     """
     values = samples(robot)
     chain = factors(cell_values(texts, values), convention)
@@ -101,7 +102,7 @@ def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[in
 def _fills(
     robot: Robot, texts: Texts, row: int, column: int, wanted: Numbers, values: Values
 ) -> bool:
-    """True if some value of this cell gives the wanted factor at all samples."""
+    """True if some value of this cell gives the factor ``wanted`` at all samples."""
     axis = 0 if column in (A, ALPHA) else 2
     first, second = (axis + 1) % 3, (axis + 2) % 3
     other = evaluate(texts[row][{A: ALPHA, ALPHA: A, D: THETA, THETA: D}[column]], values)

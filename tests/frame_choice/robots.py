@@ -306,6 +306,6 @@ def exercise(robot: Robot, policy: Policy) -> Exercise:
 
 
 def conventions(robot: Robot, policy: Policy) -> tuple[str, ...]:
-    """Return the conventions in which the robot has a table; a standard one needs z0 on axis 1."""
+    """Return the conventions of the robot's tables; a standard table needs z0 on axis 1."""
     begins_elsewhere = robot.convention == MODIFIED and robot.rows[0][:2] != ("0", "0")
     return (MODIFIED,) if begins_elsewhere and not policy.base else CONVENTIONS

@@ -1,8 +1,8 @@
 """``python -m tests.frame_choice.rounded --robots N``: grade tables with rounded numbers.
 
-Print tables of random robots in random frames with three to six digits. They must get full marks.
-With a changed digit they must not, unless the oracle finds that the digit does not matter: that
-some choice of all rounded numbers, each within rounding or truncation, makes the table valid.
+Write the tables of random robots in random frames with three to six digits. These tables must get
+full marks. A table with a changed digit must not, unless the oracle finds that the digit does not
+matter: all decimals of the table can be rounded or cut off from numbers that make it valid.
 """
 
 import argparse
@@ -60,7 +60,7 @@ class RoundedCell(Cell):
 
 
 def with_odd_angles(robot: Robot, rng: np.random.Generator) -> Robot:
-    """Return the robot with random constant angles in place of all but those that are 0."""
+    """Return the robot with most of the constant angles other than 0 replaced by random ones."""
 
     def odd(text: str, column: int) -> str:
         if column not in (ALPHA, THETA) or text == "0" or text in robot.joints:
@@ -84,9 +84,9 @@ def rounded(table: Table, figures: int) -> Table:
 
 
 def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, int]] | None:
-    """Return the table with one digit changed, and the place.
+    """Return the table with the last digit of one constant changed, and the place of its cell.
 
-    None if there is no such digit, or if the table contains a root or an arc tangent.
+    Return None if the table has no constant, or if it contains a root or an arc tangent.
     """
     if any(cell.terms for row in table.rows for cell in row):
         return None
@@ -103,14 +103,15 @@ def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, i
 
 
 def _matters(other: Table, printed: Table) -> bool:
-    """True if some rounding makes the printed table valid, but none the changed one."""
+    """True if rounding can explain ``printed``, but not ``other``, in which a digit is changed."""
     return least_error(other) > CLEARLY and least_error(printed) < CLEARLY / 10
 
 
 def least_error(table: Table) -> float:
-    """Return the error for the best choice of the rounded numbers, relative to one unit's error.
+    """Return the error of the pose that remains if the numbers before rounding are chosen best.
 
-    It is computed to first order, by coordinate descent.
+    The error is a multiple of the smallest error that one unit in a last place causes. It is
+    computed to first order, by coordinate descent.
     """
     cells = [
         (i, j, cell)

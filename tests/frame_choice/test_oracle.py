@@ -101,7 +101,7 @@ def test_what_each_policy_frees() -> None:
 
 
 def test_a_mirrored_mechanism_is_another_one() -> None:
-    """With both ends free; a planar and a spatial mechanism."""
+    """Both ends are free; one mechanism is planar, the other is spatial."""
     for name in ("skew RPR", "Baxter 7R"):
         robot = BY_NAME[name]
         mirrored = [

@@ -97,7 +97,7 @@ def test_two_independent_slips_are_both_found(given: Tally) -> None:
 
 
 def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
-    """With ties. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
+    """Each bound is three deviations below the share in 31,000 tables: 98.7 % and 90.5 %."""
     assert given.counts["skew"] >= 30
     assert given.share("skew exact", "skew") >= 0.95
     assert given.counts["two slips"] >= 80

@@ -105,8 +105,8 @@ def equivalent(table: Table) -> bool:
 def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
     """True if the axes next to a cell are parallel.
 
-    a and α belong to the link between two axes: these two are parallel. d and θ are measured on one
-    axis: the previous or the next one is parallel to it.
+    a and α belong to the link between two axes: these two axes must be parallel. d and θ are
+    measured on one axis: the previous or the next axis must be parallel to this one.
     """
     link = row if table.convention != MODIFIED or column in (A, ALPHA) else row + 1
     if column in (A, ALPHA):
@@ -284,7 +284,7 @@ def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
 
 
 def _is_unshared(table: Table, edit: Edit) -> bool:
-    """True if no other single cell than that of the slip could repair the table."""
+    """True if the cell of the slip is the only single cell that could repair the table."""
     wrong = table.edited(edit.row, edit.column, edit.cell)
     return len(repairing_cells(table.robot, wrong.texts, table.convention)) == 1
 

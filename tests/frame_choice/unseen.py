@@ -1,6 +1,6 @@
 """Random robots of one to seven joints.
 
-Axes are skew, parallel, intersecting or one line; lengths are letters, decimals, or some of each.
+Axes are skew, parallel, intersecting or coincident; lengths are letters, decimals, or both.
 """
 
 import numpy as np

@@ -48,7 +48,7 @@ ZEROS = {
 
 
 def pose_with(exercise: str, text: str, time: int) -> list[list[object]]:
-    """Return the pose with ``text`` for each 0; its last entry is a 1 in another spelling."""
+    """Return the pose with ``text`` for each 0, and with its last 1 in another spelling."""
     matrix: list[list[object]] = [list(line) for line in POSES[exercise]]
     for i, j in ZEROS[exercise]:
         matrix[i][j] = text

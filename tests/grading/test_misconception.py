@@ -23,7 +23,7 @@ from service.grading.misconception import (
 
 @dataclass
 class WrongNumber:
-    """A number; ``tried`` collects the hypotheses that it was compared with."""
+    """A number; ``tried`` collects the hypotheses with which the number was compared."""
 
     actual: int
     tried: list[int] = field(default_factory=list)

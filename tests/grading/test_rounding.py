@@ -233,7 +233,7 @@ def test_a_wrong_short_length_is_found_beside_a_long_one(
 def test_decimals_beyond_the_limit_count_as_written(
     behind: bool, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """A right table with ten more rows of four decimals is wrong, and is graded."""
+    """A table with two right rows and ten rows of four decimals is graded, as wrong."""
     garbage = [("0.371", "0.613", "0.829", "1.273")] * 10
     right = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
     rows = [*right, *garbage] if behind else [*garbage, *right]

@@ -67,7 +67,7 @@ def test_a_thief_with_all_hints_gains_nothing(
 
 @pytest.mark.long
 def test_a_thief_gets_the_table_at_full(catalogue: Mapping[str, Exercise]) -> None:
-    """A thief succeeds at the level full, so that the test above can fail."""
+    """This shows that the test above can fail: at the level full, a thief succeeds."""
     table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")
     before, after = table.steal()
     assert before == 0

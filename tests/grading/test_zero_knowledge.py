@@ -172,7 +172,7 @@ def test_the_given_transform_is_not_its_own_inverse(catalogue: Mapping[str, Exer
 
 
 def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
-    """Yield, for each cell of the right table made wrong, its cost and the share of its row."""
+    """Yield the cost of one wrong cell, and the share of its row, for each cell of the table."""
     right: Any = solve(exercise).answers[part.id]
     for i, row in enumerate(right["rows"]):
         for column in ZERO_ROW:

@@ -1,8 +1,8 @@
-"""``python -m tests.frame_choice.rows.blanking --tries 20000``: an empty cell earns no more.
+"""``python -m tests.frame_choice.rows.blanking --tries 20000``: an empty cell must earn no more.
 
-Empty a row or a cell in wrong tables of all kinds, under each policy: that should never raise the
-points. It still does in a few tables with several wrong rows: an empty cell in a right row can lead
-the search to a better reading, and the work budget limits the readings of a table with extra rows.
+Empty a row or a cell in wrong tables of all kinds, under each policy. This should never raise the
+points, but does in a few tables with several wrong rows: an empty cell in a right row can lead the
+search to a better reading, and the work budget limits the readings of a table with extra rows.
 """
 
 import argparse
@@ -96,7 +96,7 @@ def judge(
     texts: Texts,
     rng: np.random.Generator,
 ) -> None:
-    """Grade a table, and again with each of some rows and cells left empty."""
+    """Grade a table; grade it again for each of some rows and cells, with this place empty."""
     compiled = exercise(robot, policy)
     written = grade_rows(compiled, texts, name)
     for row, columns in places(written, len(texts), rng):
@@ -115,7 +115,7 @@ def judge(
 def places(
     report: PartReport, rows: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, Sequence[int]]]:
-    """Yield random rows and cells as row and columns; half of them are blamed."""
+    """Yield random places, each a row and its columns; half of the places are blamed ones."""
     blamed = [
         (i, j)
         for i, row in enumerate(report.rows)

@@ -2,9 +2,10 @@
 
 One row of a valid table is wrong in one to four cells, as students write them. The right cells of
 the other rows must stay right, and frames that only the wrong row implies must not be praised. An
-exception is a table that fewer wrong cells explain as well, or as many in another row: the oracle
-checks this for the blamed cells. A table gets full marks only if it is valid, or if its decimals
-may be rounded from the numbers of a valid table: another oracle checks this (``true_numbers``).
+exception is a table that can also be explained by fewer wrong cells, or by as many in another row:
+the oracle checks this for the blamed cells. A table gets full marks only if it is valid, or if its
+decimals may be rounded from the numbers of a valid table. Another oracle, ``true_numbers``, checks
+the decimals.
 """
 
 import argparse
@@ -128,9 +129,10 @@ def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
 
 
 def is_as_good(table: WrongRow, blamed: set[Place]) -> bool:
-    """True if other values in the blamed cells repair the table, and these cells are fewer.
+    """True if the blamed cells are few enough, and other values in them repair the table.
 
-    An equal number counts as fewer if all are in one row, or if the frames are the student's own.
+    There must be fewer blamed cells than wrong ones. An equal number is enough if all blamed cells
+    are in one row, or if the frames are the student's own.
     """
     rows = {row for row, _ in blamed}
     most = table.count - (len(rows) > 1 and table.usual)

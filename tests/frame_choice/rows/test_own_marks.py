@@ -1,4 +1,4 @@
-"""Marks in frames of one's own: what a lazy table earns, and what one slip costs."""
+"""Marks in the student's own frames: the points of a lazy table, and the cost of one slip."""
 
 import pytest
 

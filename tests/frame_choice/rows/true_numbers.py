@@ -1,8 +1,8 @@
-"""Decide whether true numbers, of which the decimals of a table are rounded, make it valid.
+"""Decide whether the decimals of a table can be rounded from numbers that make the table valid.
 
-It is independent of the service: a decimal of three or more figures becomes an unknown between the
-numbers that are rounded or cut off to it. The pose depends on these almost linearly, so that they
-follow from a few steps of linear least squares.
+This oracle is independent of the service. Each decimal of three or more figures becomes an unknown
+in the range of the numbers that are rounded or cut off to the decimal. The pose depends on the
+unknowns almost linearly, so that a few steps of linear least squares find them.
 """
 
 import re
@@ -24,7 +24,7 @@ STEPS, STEP = 3, 0.1
 
 
 def is_valid_when_rounded(robot: Robot, policy: Policy, texts: Texts, convention: str) -> bool:
-    """True if some true numbers of the table's decimals make it valid, at all sets of lengths."""
+    """True if the decimals can be rounded from numbers with which the table is valid."""
     numbers: list[Decimal] = []
 
     def named(match: re.Match[str]) -> str:

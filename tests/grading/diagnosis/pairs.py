@@ -13,7 +13,7 @@ from service.grading.misconception import Explained, Record, all_records, explai
 class Pair(NamedTuple):
     """A misconception or a check with two cases, and the code of the finding on the first.
 
-    ``source`` maps a case to the argument of the function, by default to itself.
+    ``source`` maps a case to the argument of the function; the default is the case itself.
     """
 
     function: Callable[[Any], Any]

@@ -115,7 +115,7 @@ def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def complaint_about_signs(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
-    """Return the complaint about a misconception on signs with this record."""
+    """Return the complaint about the record of a misconception about these signs."""
 
     def signed(case: WrongPosition) -> Iterator[Written[Numbers]]:
         for sign in signs:

@@ -65,7 +65,7 @@ def test_only_these_cells_are_wrong(
 def test_a_millimetre_beside_a_thousand_kilometres_is_wrong(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The wrong row of the two is unknown, because only the sum of the offsets counts."""
+    """Either of the two rows may be the wrong one: only the sum of the offsets counts."""
     rows = [("a1", "0", "1e6", "theta1"), ("a2", "0", "-1e6 + 0.0009", "theta2")]
     wrong = list(not_correct(graded_table(catalogue["planar-rr"], rows)))
     assert wrong in ([("1", "d")], [("2", "d")])

@@ -60,7 +60,7 @@ class PastedText(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """How a text was read, and the codes and messages of everything that was not."""
+    """How a text was read, and the codes and messages of everything that could not be read."""
 
     outcome: Outcome
     advice: tuple[str, ...] = ()
@@ -154,7 +154,7 @@ _READERS: Final = {"matrix": _matrix, "position": _position}
 
 
 def _repaired(entry: Entry, cell: str, kind: Kind, case: PastedText) -> bool | None:
-    """Return True if a repaired text has the meaning of the cell; None if there is none."""
+    """True if the repaired text has the meaning of the cell; None if there is no repair."""
     suggestion = next((each.suggestion for each in entry.findings if each.suggestion), None)
     if suggestion is None:
         return None

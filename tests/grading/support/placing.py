@@ -32,7 +32,7 @@ class Arm:
 
     @property
     def text(self) -> str:
-        """The exercise file: the frames, and the table that any valid frames lead to."""
+        """The exercise file: one part asks for the frames, the other for a table in free frames."""
         lines = []
         for i, (a, alpha, d, theta) in enumerate(self.rows):
             cells = [f"{a!r}", f"{alpha!r}deg", f"{d!r}", f"{theta!r}deg"]
@@ -114,7 +114,7 @@ class Home:
 
     @property
     def asked(self) -> list[int]:
-        """The index of the joint of each asked frame."""
+        """The indices of the joints on which the exercise asks for a frame."""
         count = len(self.arm.rows) - 1
         first = 1 if self.arm.convention == "standard" else 0
         return [first + i for i in range(count)]
@@ -134,7 +134,7 @@ def home_of(arm: Arm) -> Home:
 
 @dataclass(frozen=True)
 class Placed:
-    """A frame as placed: the joint's number, z, origin and x, not of unit length."""
+    """A placed frame: joint number, z, origin and x; z and x may have any length."""
 
     joint: int
     z: Vector
@@ -227,7 +227,7 @@ def broken(home: Home, frames: list[Placed], rng: Generator) -> tuple[int, list[
 
 
 def is_valid(home: Home, frames: list[Placed]) -> bool:
-    """True if the frames are on their axes, and each two have a DH row."""
+    """True if the frames are on their axes, and all neighbours have a DH row between them."""
     for joint, frame in zip(home.asked, frames, strict=True):
         axis, z, x = home.axes[joint], unit(frame.z), unit(frame.x)
         if frame.joint != joint + 1 or abs(x @ z) > EXACT:

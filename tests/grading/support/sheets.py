@@ -16,7 +16,7 @@ Grid = list[list[str]]
 class Sheet:
     """The labels of an answer's rows and columns, and the JSON shape of the answer.
 
-    ``marked`` are the right marks on a slip, which every answer to such a part gets.
+    ``marked`` are the right marks in a part that asks for a slip; every posted answer has them.
     """
 
     kind: str

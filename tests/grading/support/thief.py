@@ -76,10 +76,10 @@ def shortened(text: str) -> str:
 
 @dataclass
 class Thief:
-    """A thief at work on one part, at one level.
+    """A thief at work on one part, at one feedback level.
 
     ``known`` are the values that need no theft. The trivial values 0, 1 and -1, which are in most
-    cells of every answer, do not count as stolen either. ``hints`` are all hints that a thief had.
+    cells of every answer, do not count as stolen either. ``hints`` are all hints so far.
     """
 
     exercise: Exercise

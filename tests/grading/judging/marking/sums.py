@@ -1,8 +1,8 @@
 """``python -m tests.grading.judging.marking.sums --answers 1000``: points add up in every report.
 
 Hand in random wrong answers to every part of every shipped exercise, or with ``--tables`` only to
-the tables. The rows sum to the part, the lost points to what is missing, and all of them are whole
-quarters or hundredths.
+the tables. The points of the rows add up to the points of the part, and the lost points to the
+missing points. All points are multiples of a quarter or a hundredth.
 """
 
 import argparse
@@ -106,7 +106,7 @@ def faults(part: PartReport) -> Iterator[str]:
 
 
 def in_steps(start: float, end: float, *between: float) -> bool:
-    """True if amounts lead exactly from one to the other."""
+    """True if ``start`` plus the amounts ``between`` is ``end``."""
     return abs(start + sum(between) - end) < 1e-6
 
 
@@ -115,7 +115,7 @@ def run(
 ) -> tuple[int, list[str]]:
     """Return the number of parts that were graded, and what was wrong in them.
 
-    Only parts of these ``kinds`` are answered; without any, all are.
+    Only parts of these ``kinds`` are answered, or all parts if ``kinds`` is empty.
     """
     graded, found = 0, []
     for exercise in catalogue.values():

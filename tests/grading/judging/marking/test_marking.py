@@ -24,7 +24,7 @@ Path = tuple[str | int, ...]
 
 
 def parts_with_answers() -> list[tuple[Exercise, PartSpec, Any]]:
-    """Return each part with its right answer, if that has texts and not only numbers."""
+    """Return each part with its right answer, if the answer contains texts."""
     return [
         (exercise, part, answer)
         for exercise in shipped_exercises().values()

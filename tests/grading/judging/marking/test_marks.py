@@ -112,7 +112,7 @@ def test_lost_points_have_places(catalogue: Mapping[str, Exercise]) -> None:
 
 
 def test_a_slip_of_the_whole_table_is_lost_at_one_place(catalogue: Mapping[str, Exercise]) -> None:
-    """The signs of all twists: a quarter of 12 points."""
+    """Wrong signs of all twists cost a quarter of 12 points."""
     turned = {"pi/2": "-pi/2", "-pi/2": "pi/2", "0": "0"}
     rows = [(a, turned[alpha], d, theta) for a, alpha, d, theta in EXACT.rows(STANFORD)]
     report = graded_table(catalogue[STANFORD.exercise], rows)

@@ -1,6 +1,6 @@
 """One slip that could be repaired in several cells: the likeliest cell is wrong.
 
-The RRRP arm's first three axes are parallel, z3 and z4 point down: the pose holds only the sum
+The RRRP arm's first three axes are parallel, z3 and z4 point down: the pose contains only the sum
 d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics, Example 2).
 """
 
