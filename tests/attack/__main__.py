@@ -46,7 +46,7 @@ HONEST_ADDRESS = "127.0.0.2"
 
 @dataclass(frozen=True)
 class Attack:
-    """A flood, the pause of honest clients, and whether it may change their waiting times."""
+    """A flood, the pause of honest clients, and whether their waiting times are compared."""
 
     flood: Flood
     pause: float = 0.0

@@ -1,4 +1,4 @@
-"""Compare the reports on submissions in many spellings with that on the plain spelling."""
+"""Compare reports on submissions in many spellings with the report on the plain spelling."""
 
 import json
 import re
@@ -86,7 +86,7 @@ def _refused(report: PartReport) -> bool:
 
 
 def _spoiled(random: Random, trees: Trees) -> tuple[Trees, tuple[int, int]] | None:
-    """Return the matrix with a sign changed and the place of that, or None if no value changes."""
+    """Return the matrix with one sign changed, and its cell; None if no value changes."""
     i, j = random.randrange(len(trees)), random.randrange(len(trees[0]))
     changed = changed_sign(random, trees[i][j])
     values = numbers(random)

@@ -77,7 +77,7 @@ class InProcess:
 
 
 def caches() -> Iterator[Callable[[], None]]:
-    """Yield the function that empties it, for each cache in the program's modules."""
+    """For each cache in the program's modules, yield a function that empties this cache."""
     known = set()
     for name, module in sorted(sys.modules.items()):
         if name.startswith("service."):

@@ -26,7 +26,8 @@ expected-statuses = ["2xx", 403, 404, 422]
 def with_all_accepted(document: dict[str, Any]) -> dict[str, Any]:
     """Return the OpenAPI document, extended by requests that the service accepts in addition.
 
-    An optional field may be null, and each of many submissions is checked separately.
+    An optional field may be null. A list of submissions may have any items, because the service
+    checks each submission separately.
     """
     schemas = document["components"]["schemas"]
     for schema in schemas.values():

@@ -425,5 +425,5 @@ def _may_touch(left: str, right: str) -> bool:
 
 
 def _is_bare(text: str, spelling: Spelling) -> bool:
-    """True if a text ends with the argument of a function without brackets."""
+    """True if a text may end with a function's argument that has no brackets."""
     return bool(spelling.bare) and text[-1] not in ")]}"

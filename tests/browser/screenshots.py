@@ -97,7 +97,7 @@ def reading_help(page: Page, service: str) -> None:
 
 
 def ten_minutes(page: Page, service: str) -> None:
-    """Answer a screen of DH in ten minutes with a mistake."""
+    """Give a wrong answer on a screen of "DH in ten minutes"."""
     page.goto(f"{service}/learn-dh#alpha")
     page.locator("#alpha input").fill("-90")
     page.locator("#alpha").get_by_role("button", name="Check").click()

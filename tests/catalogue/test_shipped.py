@@ -128,7 +128,7 @@ def test_planar_rrr_in_the_distal_convention(catalogue: Mapping[str, Exercise]) 
 def test_a_table_of_one_number_never_passes(
     exercise_id: str, number: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The tests above for full marks can fail."""
+    """This shows that the tests above for full marks can fail."""
     exercise = catalogue[exercise_id]
     [spec] = [spec for spec in exercise.parts if isinstance(spec, DhTableSpec)]
     rows = exercise.robot.tables[exercise.robot.convention].rows

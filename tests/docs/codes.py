@@ -139,7 +139,7 @@ def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
 
 
 def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None:
-    """Return the code argument of a call, None without one, or the call itself if unknown."""
+    """Return the code argument of a call; None without one; if it is unknown, the call itself."""
     for keyword in call.keywords:
         if keyword.arg == CODE:
             return keyword.value

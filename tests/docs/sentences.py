@@ -1,9 +1,9 @@
 """Write the page of all sentences of messages, each with an example: docs/sentences.md.
 
-``python -m tests.docs.sentences > docs/sentences.md`` writes it. Examples are those of the records
-of misconceptions, of docs/messages.md and of ``sentence_examples.toml``, the answers tried in the
-exercise files, and the corpus of formulas. Each is handed in; a sentence goes on the page with the
-first that draws it.
+``python -m tests.docs.sentences > docs/sentences.md`` writes it. The examples come from the records
+of misconceptions, docs/messages.md, ``sentence_examples.toml``, the checks in the exercise files,
+and the corpus of formulas. Each example is handed in. The page shows each sentence with the first
+example that causes it.
 """
 
 import sys
@@ -90,7 +90,7 @@ def pasted_texts() -> Iterator[str]:
 
 
 def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
-    """Answers to parts of exercises."""
+    """Yield answers to parts of exercises."""
     for record in all_records():
         if record.example is not None:
             name, part, answer, *unit = record.example
@@ -225,7 +225,7 @@ def known_templates() -> list[Known]:
 
 
 def all_said() -> Iterator[Said]:
-    """All that the examples draw."""
+    """Yield all messages that the examples cause."""
     catalogue = exercises()
     yield from said_of_formulas(formulas())
     # A preview without an exercise uses the names of textbooks.
@@ -245,8 +245,8 @@ class Row:
 def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
     """Return the first message with each template, and the templates without a message.
 
-    Many sentences may contain a short template. So it counts only at the beginning of a sentence,
-    or in a message of its own file.
+    Many sentences may contain a short template. So a short template counts only at the beginning
+    of a sentence, or in a message of its own file.
     """
     unmet = list(known)
     rows: list[Row] = []
@@ -270,7 +270,7 @@ def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], lis
 
 
 def _section(met: Iterable[Template], code: str) -> str:
-    """The section of docs/messages.md that has the code and most others of the sentence's file."""
+    """Return the section of messages.md with the code and most codes of the files of ``met``."""
     told = [use.code for use in messages_page.program() for each in met if use.file == each.file]
     listed: dict[str, set[str]] = {}
     for line in messages_page.LINES:
@@ -328,7 +328,7 @@ def _cell(text: str) -> str:
 
 
 def code_span(text: str) -> str:
-    """A text as code, whatever it holds; a long one without its middle."""
+    """Return a text with any characters as code in Markdown; shorten the middle of a long one."""
     text = text.replace("\n", END)
     if len(text) > _LONGEST:
         text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 4 :]}"

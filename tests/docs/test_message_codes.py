@@ -68,8 +68,8 @@ LINES = lines(PAGE)
 def program() -> Sequence[CodeUse]:
     """Return every use of a code in the program, found once because it takes a second.
 
-    Attempts only count the codes of reports, the codes of translations are those of languages, and
-    those of files handed in at a platform are defined by a standard.
+    Three folders are left out: ``attempts`` only counts the codes of reports, the codes in
+    ``translations`` name languages, and a standard defines the codes in ``lti/handed_files``.
     """
     telling = {
         file: text

@@ -3,11 +3,11 @@
 The words after the three backticks say what a code block does:
 
     console           each line `$ dh-grader …` is run, and the lines below it are what it prints
-    console exit=1    the same, where the last command ends with that exit code
+    console exit=1    is run like console; the last command must end with exit code 1
     toml FILE         is added to the end of the file
-    toml FILE instead replaces what the block before has added
+    toml FILE instead replaces the text that the previous toml block has added
     json FILE         becomes the file, and so does csv FILE; a name with blanks is in quotes
-    csv FILE expected is what a command before has written into the file
+    csv FILE expected is the text of a file that an earlier command has written
     toml, json, yaml, sh  is only read
 
 In the output, `…` matches any text within a line, and alone on a line any lines.

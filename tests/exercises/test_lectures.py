@@ -193,7 +193,7 @@ def test_the_pitch_of_the_spatial_arm_is_printed_with_the_wrong_sign(
 def test_the_pitch_by_the_formula_that_the_lecture_prints_with_it(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """β = Atan2(−r31, √(r11² + r21²)); where c23 < 0 that is another triple of the rotation."""
+    """β = Atan2(−r31, √(r11² + r21²)); for c23 < 0, it gives another triple of the rotation."""
     r11, r21, r31, r32, r33 = "c1 c23", "s1 c23", "s23", "c23", "0"
     beta = f"atan2(-({r31}), sqrt(({r11})^2 + ({r21})^2))"
     by_formula = [
@@ -233,7 +233,7 @@ def test_the_final_stanford_table_of_robotic_fundamentals_has_lost_a_degree_of_f
 def test_the_spherical_wrist_with_the_angle_at_which_it_is_drawn(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The figure is drawn with θ5 = −90°; the table holds, and needs no offset."""
+    """The figure is drawn with θ5 = −90°, but the table is right without an offset."""
     rows = [("0", "-90", "0", "theta4"), ("0", "90", "0", "theta5"), ("0", "0", "d6", "theta6")]
     assert full_marks(graded(catalogue, "spherical-wrist", "table", table(rows), "degrees"))
     rows[1] = ("0", "90", "0", "theta5 - 90")
@@ -255,7 +255,7 @@ def test_the_parallel_axes_of_the_lecture_notes_read_literally_are_left_handed(
 
 
 def test_the_task_space_vector(catalogue: Mapping[str, Exercise]) -> None:
-    """Printed with cos θ_12; θ_12 on its own could be a joint 12, so the sum is asked for."""
+    """The lecture prints cos θ_12. This is refused with a repair: θ_12 could mean joint 12."""
     printed = [
         r"l_1 \cos \theta_1 + l_2 \cos \theta_{12} + l_3 \cos \theta_{123}",
         r"l_1 \sin \theta_1 + l_2 \sin \theta_{12} + l_3 \sin \theta_{123}",

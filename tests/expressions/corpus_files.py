@@ -66,8 +66,9 @@ def spelling_cases() -> list[SpellingCase]:
 class RepairCase(NamedTuple):
     """A text that a rule refuses, or, without a ``code``, a similar text that is read.
 
-    ``span`` is from-to, and ``part`` the text at this place (empty for a text written in Python).
-    ``answer`` is the repaired text or None; for a text that is read, it is its meaning.
+    ``span`` is the place of the fault, from-to, and ``part`` the text at this place (empty for a
+    text written in Python). ``answer`` is the repaired text, or None if there is no repair. For a
+    text that is read, ``answer`` is the meaning of this text.
     """
 
     text: str | float

@@ -115,7 +115,7 @@ def test_no_labels_overlap(name: str) -> None:
 @pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) -> None:
-    """Frames {0} with the axes that the statement speaks of, lengths, and joint variables."""
+    """The figure names all frames, axes, lengths and joint variables of the statement."""
     exercise = SHIPPED[name]
     statement = exercise.statement
     told = labels(drawn(name))

@@ -57,7 +57,7 @@ def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: in
 
 @cache
 def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
-    """Return these exercises with a table, with its part and the rows with full marks."""
+    """Return each part of these exercises that asks for a table, with the right rows."""
     shipped = shipped_exercises()
     return [
         (exercise, part.id, dict[str, Any](solved(exercise).answers)[part.id]["rows"])
@@ -68,9 +68,9 @@ def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
 
 
 def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Iterator[Body]:
-    """Yield tables of the shipped exercises without end; a share has one to four slips.
+    """Yield tables of exercises without end; the share ``wrong`` has one to four slips.
 
-    With ``names``, only of these exercises.
+    The exercises are those with these ``names``; by default all shipped ones.
     """
     choose, models = random.Random(seed), _models(names)
     while True:

@@ -46,7 +46,7 @@ def previews_of(exercise: str, part: str, text: str) -> Attack:
 def frames_of(exercise: str, joints: int, text: str) -> Attack:
     """Return a request for the frames of a table with long cells, and for a figure.
 
-    It has as many sets of joint values as allowed.
+    The request has as many sets of joint values as allowed.
     """
     rows = [dict.fromkeys(KEYS[:3], f"{text}+{i}") | {"theta": f"q{i + 1}"} for i in range(joints)]
     values = [[0.1 * k + 0.01 * i for i in range(joints)] for k in range(30)]
@@ -57,8 +57,8 @@ def frames_of(exercise: str, joints: int, text: str) -> Attack:
 def free_frames_of(exercise: str, text: str, **other: object) -> Attack:
     """Return a request for the frames, formulas and figure of a free table with long cells.
 
-    It belongs to no exercise: ``exercise`` is only its place in the search. ``other`` are further
-    fields of the body.
+    The request belongs to no exercise: ``exercise`` is only the place of the request in the search.
+    ``other`` are further fields of the table.
     """
     rows = [
         {key: f"{text}+{3 * i + j}" for j, key in enumerate(KEYS[:3])} | {"theta": f"q{i + 1}"}

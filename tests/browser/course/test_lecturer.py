@@ -167,7 +167,7 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
 
 
 def _delete(page: Page, said: str, check: Callable[[], None]) -> None:
-    """Delete the course or the assignment of a page, which first says what goes."""
+    """Delete the course or assignment of a page; the page must first say what is deleted."""
     page.get_by_text("Delete", exact=True).click()
     page.get_by_role("button", name="Delete the").click()
     expect(page.get_by_text(said)).to_be_visible()

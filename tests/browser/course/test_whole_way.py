@@ -22,12 +22,12 @@ LATE_BEFORE, LATE_AFTER = "3.13", "4"
 
 
 def day(days: int) -> str:
-    """Return the same time of another day, as a form wants it."""
+    """Return the same time of another day, in the format of a form field."""
     return f"{datetime.now(ZoneInfo('Europe/Berlin')) + timedelta(days=days):%Y-%m-%dT%H:%M}"
 
 
 def correct(folder: Path) -> None:
-    """Change the exercise so that a table without the half turn is right, but not its checks."""
+    """Change the exercise, but not its checks: a table without the half turn is now right."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     changed = text.replace('["a2", "180deg",', '["a2", "0",')
     (folder / "scara.toml").write_text(changed, encoding="utf-8")

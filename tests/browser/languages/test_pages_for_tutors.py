@@ -1,4 +1,4 @@
-"""The pages on which lecturers run a course, in the pseudo-language: told, and narrow enough."""
+"""The pages on which lecturers run a course are translatable, and fit in the pseudo-language."""
 
 import json
 from collections.abc import Callable

@@ -65,9 +65,9 @@ def fill(page: Page, texts: list[str]) -> None:
 
 
 def lose_the_answer(route: Route) -> None:
-    """Let the service record, but give the page no answer.
+    """Let the service record a request, but give the page no answer.
 
-    The page may reload meanwhile, and gives the request up itself.
+    If the page reloads meanwhile, it cancels the request itself.
     """
     with suppress(Error):
         route.fetch()

@@ -81,7 +81,7 @@ def test_a_student_solves_a_robot_and_takes_another(
 
 @pytest.mark.long
 def test_back_is_followed_though_a_robot_has_just_loaded(visit: Opening, service: str) -> None:
-    """The address changes a moment before the page hears of it; a robot may be ready in between."""
+    """The page is notified shortly after the address changes; a robot may be ready in between."""
     page = visit().page
     page.goto(f"{service}/practice#practice-1-standard~5")
     expect(page.locator("#title")).to_have_text("Practice robot 5, level 1")

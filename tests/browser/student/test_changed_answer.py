@@ -1,4 +1,4 @@
-"""After a check, a change of the answer takes the marks that it may have made wrong."""
+"""A change of the answer after a check removes the marks that may no longer be right."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""What scrolls sideways says so: an arrow at each edge behind which something is hidden."""
+"""Areas that scroll sideways have an arrow at each edge beyond which something is hidden."""
 
 from collections.abc import Callable
 

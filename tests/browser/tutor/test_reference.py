@@ -1,4 +1,4 @@
-"""The page /docs has the colours of the other pages, and no barriers."""
+"""The page /docs has the colours of the other pages, and is accessible."""
 
 from collections.abc import Callable
 from typing import Final

@@ -24,7 +24,7 @@ VALID, ACCEPTED, WRONG, REFUSED = "valid", "accepted", "wrong", "refused"
 
 @dataclass
 class Found:
-    """Counts of tables by what they are and how they were judged, and the misjudged ones."""
+    """Counts of tables by kind and judgement, and the misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -57,7 +57,7 @@ class Found:
 
 
 def policy_of(exercise: Exercise) -> Policy:
-    """Return what the exercise leaves free."""
+    """Return the policy in which the same choices are free as in the exercise."""
     [spec] = [part for part in exercise.parts if isinstance(part, DhTableSpec)]
     free = tuple(each == "free" for each in (spec.base, spec.tool, spec.directions))
     [policy] = [each for each in POLICIES if (each.base, each.tool, each.directions) == free]

@@ -19,9 +19,9 @@ ARMS = Path(__file__).parents[2] / "importing" / "arms"
 class Maker(NamedTuple):
     """A file and its source.
 
-    ``signs`` are -1 for joints that the file counts the other way, and ``zeros`` its values in
-    degrees at the home configuration of the exercise; empty if file and exercise agree. ``tip`` is
-    the link at the tool.
+    ``signs`` has -1 for each joint that the file counts in the other direction. ``zeros`` are the
+    file's joint values, in degrees, at the home configuration of the exercise. Both are empty if
+    file and exercise agree. ``tip`` is the link at the tool.
     """
 
     file: str
@@ -79,7 +79,7 @@ def differences(name: str, file: Path) -> list[Difference]:
 
 
 def main(folder: Path) -> None:
-    """Print the differences to the files in a folder."""
+    """Print the differences between the exercises and the files in a folder."""
     for name, maker in MAKERS.items():
         file = folder / f"{maker.file}.urdf"
         if not file.exists():

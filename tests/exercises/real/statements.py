@@ -1,4 +1,4 @@
-"""The words of a real robot's statement -> its joint axes and its tool at home."""
+"""Read the joint axes and the tool at home from the words of a real robot's statement."""
 
 import re
 from collections.abc import Iterator, Mapping

@@ -1,6 +1,6 @@
-"""The tables of real robots against the URDF files of their makers, as far as these are here.
+"""Compare tables of real robots with those URDF files of their makers that the repository has.
 
-``python -m tests.exercises.real.makers`` compares the others.
+``python -m tests.exercises.real.makers`` compares tables with other files.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The tables of the real robots against other published tables of the same robots.
+"""Compare the tables of the real robots with other published tables of the same robots.
 
 Frames, signs and home configurations differ between sources, but not the distances and angles
 between neighbouring joint axes: |a| and α (modulo 180°) of two axes, and |d| along an axis between

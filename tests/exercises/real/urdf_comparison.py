@@ -1,4 +1,4 @@
-"""A robot's table against a URDF file: poses by plain rotations, without the code under test."""
+"""Compare a robot's table with a URDF file, by plain rotations instead of the tested code."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ POSES = 100
 
 @dataclass(frozen=True)
 class Difference:
-    """The largest differences at all poses, and how far the base and the tool lie apart, in mm.
+    """The largest differences of the poses, and the distances of the bases and of the tools in mm.
 
-    Before, the poses of the file are moved by one constant transform at the base and one at the
-    tool, which fit best.
+    Before the poses are compared, those of the file are multiplied by two constant transforms, one
+    at the base and one at the tool, that fit best.
     """
 
     millimetres: float
@@ -121,10 +121,10 @@ def moved(rotations: Numbers, places: Numbers) -> Numbers:
 
 
 def fitted(reference: Numbers, poses: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the base and the tool that fit best, around the poses.
+    """Return the best transform at the base, the poses, and the best transform at the tool.
 
-    From one pose to another, the reference moves by A and the file by B, with A base = base B: the
-    axes of the turns give the rotation of the base, and linear equations its position.
+    From one pose to another, the reference moves by A and the file by B, with A base = base B. The
+    axes of these motions give the rotation of the base; linear equations give its position.
     """
     a = reference @ np.linalg.inv(reference[0])
     b = poses @ np.linalg.inv(poses[0])

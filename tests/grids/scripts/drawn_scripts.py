@@ -1,4 +1,4 @@
-"""Draw scripts for the Robotics Toolbox for Python, with the rows that it makes of them.
+"""Draw scripts for the Robotics Toolbox for Python, and the rows that they define.
 
 Source: P. Corke, Robotics Toolbox for Python, the constructors of RevoluteDH, PrismaticDH, their
 modified forms, DHLink and DHRobot.

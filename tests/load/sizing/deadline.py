@@ -1,9 +1,9 @@
-"""Simulate a class that hands in before a deadline: who waits how long for how many processes.
+"""Simulate a class that hands in before a deadline: the waits with a number of processes.
 
 The model: a week of work, and a power law for the times of hand-in, half of them on the last day.
-This is more than one in six in the last hour and one in 27 in the last minute. Before a hand-in, a
-student types the answers (each pause is a preview) and checks them, sometimes wrongly. The process
-of a student is chosen by chance, because connections are; each process takes one request at a time.
+So about one in six hand-ins falls into the last hour, and one in 27 into the last minute. Before
+the hand-in, a student types the answers (each pause is a preview) and checks them; some are wrong.
+Each student gets a random process, because connections do. A process takes one request at a time.
 """
 
 from collections.abc import Mapping
@@ -78,7 +78,7 @@ def waits(students: int, processes: int, seconds: Costs, choose: np.random.Gener
 def waited(asked: Numbers, cost: Numbers) -> Numbers:
     """Return the seconds to each answer of one process that answers in the order of the requests.
 
-    A request ends at its cost after the later of its own moment and the end of the one before.
+    Work on a request begins when it arrives or when the previous one ends, whichever is later.
     """
     order = np.argsort(asked, kind="stable")
     asked, cost = asked[order], cost[order]
