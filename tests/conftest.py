@@ -56,9 +56,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark what is left out of a sample; shuffle all tests if ``--shuffle`` is given.
+    """Mark cases left out of a sample as long; shuffle all tests if ``--shuffle`` is given.
 
-    Each process uses the same order. Of a test marked ``sampled(n)``, one case in n stays short.
+    Of a test marked ``sampled(n)``, one case in n is not marked. Each process uses the same order.
     """
     places: Counter[str] = Counter()
     for item in items:
@@ -89,7 +89,7 @@ def figure(record_property: Callable[[str, object], None]) -> Callable[[str], No
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Print the figures, which the reports of tests bring from all processes."""
+    """Print the figures of all processes, which the reports of tests contain."""
     figures = [
         str(value)
         for reports in terminalreporter.stats.values()

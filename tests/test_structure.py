@@ -123,12 +123,12 @@ def imports() -> Mapping[str, frozenset[str]]:
 
 
 def room(module: str, house: str) -> str:
-    """Return the name of the module or package directly below ``house`` that has a module."""
+    """Return the name of the module or package directly below ``house`` that contains a module."""
     return module.removeprefix(f"{house}.").partition(".")[0]
 
 
 def against_the_order(place: Mapping[str, int], house: str) -> list[str]:
-    """Return the imports below ``house`` of a package with a later place."""
+    """Return the imports below ``house`` in which a package imports one with a later place."""
     return [
         f"{module} imports {target}"
         for module, targets in imports().items()

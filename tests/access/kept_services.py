@@ -1,4 +1,4 @@
-"""Services with keys over databases, kept for all tests: to build one takes longer than a test."""
+"""Services with keys and a database, shared by all tests: building one takes longer than a test."""
 
 from collections.abc import Callable
 from typing import Any
@@ -27,7 +27,10 @@ class KeptServices:
     def empty(
         self, kind: str, catalogue: object, build: Build
     ) -> tuple[Any, AttemptStore, KeyRing]:
-        """Return those of a kind, without any row. The application must keep the catalogue."""
+        """Return the application, store and keys for this kind and catalogue, with empty tables.
+
+        The application must keep the catalogue alive, because the catalogue's id is the key.
+        """
         place = kind, id(catalogue)
         if place not in self._built:
             store = AttemptStore.open(self._url(kind))

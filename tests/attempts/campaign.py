@@ -89,7 +89,7 @@ def fill(
 
 
 def _insert(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Insert the rows; PostgreSQL has COPY for millions of them."""
+    """Insert the rows; in PostgreSQL with COPY, because there may be millions of rows."""
     if connection.dialect.name != "postgresql":
         connection.execute(insert(attempts), rows)
         return

@@ -1,4 +1,4 @@
-"""The variants of a bundle: who gets which seed, and the data of platforms that say nothing."""
+"""A student always gets the same seeds of a bundle; data that name no student are refused."""
 
 import json
 from pathlib import Path
@@ -22,7 +22,7 @@ def seeds(folder: Path, submission: object) -> dict[str, str]:
 
 
 def users(*numbers: object) -> object:
-    """Return what Gradescope writes about a submission of these accounts."""
+    """Return the description that Gradescope writes of a submission of these accounts."""
     return {"id": 5, "users": [{"id": each, "email": "a@b.c", "name": "A"} for each in numbers]}
 
 

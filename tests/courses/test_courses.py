@@ -50,7 +50,7 @@ def all_right() -> Any:
 
 
 def near(value: float) -> list[Any]:
-    """Return one value as it is within rounding."""
+    """Return a list that equals ``[value]`` up to rounding."""
     return [pytest.approx(value, abs=1e-5)]
 
 

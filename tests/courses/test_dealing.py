@@ -197,7 +197,7 @@ def test_no_learner_sees_a_seed_that_counts(
 
 
 class TestAVariantThatCannotBeMade:
-    """A fault of the file that shows in nearly every variant, but not in that of the check."""
+    """The file has a fault in nearly every variant, but not in the variant that is checked."""
 
     @pytest.fixture
     def catalogue(self, catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
@@ -316,7 +316,7 @@ def test_a_tutor_renews_the_variants_over_http(class_: Class) -> None:
     assign(class_)
 
     def change(catalogue: Mapping[str, Exercise], **fields: Any) -> str:
-        """Change the assignment as the machine's own user; return its choices."""
+        """Change the assignment over HTTP, without a key; return its recorded choices."""
         access = Access(OPEN_HERE, read_attempts=None)
         app = application(catalogue, access=access, store=class_.store)
 

@@ -1,4 +1,4 @@
-"""Hints at handed-in answers: their price, the try in between, and what a thief gains by them."""
+"""Hints at handed-in answers: their price, a new answer between two steps, and thieves."""
 
 from collections.abc import Mapping
 from dataclasses import replace

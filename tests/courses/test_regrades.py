@@ -87,7 +87,7 @@ def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
 def test_a_course_leaves_the_queue_of_the_others_alone(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """An interrupted regrade of all attempts has put those of both courses into the queue."""
+    """An interrupted regrade of all attempts has left attempts of both courses in the queue."""
     both = set_up(class_)
     both.do(Regrading(catalogue["scara"], FeedbackLevel.FULL).enqueue)
     assert both.ask("POST", PATH, "tutor", apply=True).json()["regraded"] == 1

@@ -1,4 +1,4 @@
-"""Deno on the scripts of the pages: types, linter, formatter and unit tests, from one wheel.
+"""Check the scripts of the pages with Deno: types, linter, formatter and unit tests.
 
 ``python -m tests.front.deno`` checks everything; with ``--fix`` it formats the scripts first.
 """
@@ -28,7 +28,7 @@ _VARIABLES: Final = {
 
 
 def scripts() -> list[Path]:
-    """Return our own scripts, in all rooms."""
+    """Return all scripts of the pages except those of third parties."""
     return sorted(file for file in STATIC.rglob("*.js") if VENDOR not in file.parents)
 
 

@@ -1,4 +1,4 @@
-"""The ghost frame of a row that is played, against products of matrices by numpy."""
+"""Compare the ghost frame of a row that is played with products of matrices by numpy."""
 
 import json
 from collections.abc import Sequence

@@ -84,7 +84,7 @@ def test_scripts_and_rooms_stay_easy_to_survey() -> None:
 
 
 def test_no_comment_names_another_script() -> None:
-    """A name in quotes is an import for the service, which would then be loaded at once."""
+    """The service takes a script's name in quotes for an import, and would load that script."""
     comments = re.compile(r"/\*.*?\*/|^\s*//[^\n]*", re.DOTALL | re.MULTILINE)
     naming = [
         script.name

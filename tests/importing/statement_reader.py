@@ -18,7 +18,7 @@ WAYS = {"x0": [1.0, 0, 0], "y0": [0, 1.0, 0], "z0": [0, 0, 1.0]}
 
 
 def way(words: str) -> np.ndarray:
-    """Return the direction in words."""
+    """Return the direction that the words describe."""
     if found := re.fullmatch(r"along \((.+)\)", words):
         return np.array([float(each) for each in found[1].split(", ")])
     if found := TILTED.fullmatch(words):
@@ -30,7 +30,7 @@ def way(words: str) -> np.ndarray:
 
 
 def point(words: str, lengths: dict[str, float]) -> np.ndarray:
-    """Return the point in words: three sums of letters and numbers."""
+    """Return the point that the words describe: three sums of letters and numbers."""
     coordinates = []
     for text in words.split(", "):
         terms = re.findall(r"([+-]?) ?([a-z]\d+|[\d.]+)", text)
@@ -44,7 +44,7 @@ def point(words: str, lengths: dict[str, float]) -> np.ndarray:
 
 
 def pose(statement: str, lengths: dict[str, float], values: np.ndarray) -> list[np.ndarray]:
-    """Return the tool's origin, x and z: those at home, moved by the joints from last to first."""
+    """Return the tool's origin, x and z at these joint values: the joints move the home pose."""
     tool = TOOL.search(statement.replace("\n", " "))
     assert tool
     place, x, z = point(tool["point"], lengths), way(tool["x"]), way(tool["z"])

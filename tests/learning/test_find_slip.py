@@ -1,4 +1,4 @@
-"""5,000 seeds: each draws exactly one slip, and only marking and mending it has full marks."""
+"""Each of 5,000 seeds draws one slip; full marks need both the mark and the right table."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -82,7 +82,10 @@ def elsewhere(drawn: DrawnSlip, count: int) -> Iterator[tuple[int, int]]:
 
 
 def covers_all(drawn: DrawnSlip, count: int) -> bool:
-    """True if each row has two wrong cells, or each column: then all rows may be marked."""
+    """True if each cell is wrong, or has two wrong cells in its row or column.
+
+    Then all rows may be marked.
+    """
     rows = Counter(i for i, _ in drawn.cells)
     columns = Counter(j for _, j in drawn.cells)
     fine = {(i, j) for i in range(count) for j in range(4) if rows[i] > 1 or columns[j] > 1}

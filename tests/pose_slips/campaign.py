@@ -26,7 +26,7 @@ SAME = 1e-9
 class Trial:
     """A graded answer: its slip, and whether no other slip gives the same answer (``alone``).
 
-    ``outcome`` is "named", "silent", "several messages" or the message instead of the slip's.
+    ``outcome`` is "named", "silent", "unread", "several messages: …", or the one wrong message.
     """
 
     robot: str

@@ -98,7 +98,7 @@ def _degrees(cell: str) -> str:
 
 
 def robot_of(name: str, setting: str) -> SpoiltRobot:
-    """Return the robot of the beginning of an exercise file, to which parts are added."""
+    """Return the robot of ``setting``, the beginning of an exercise file, with parts added."""
     robot = tomllib.loads(setting)["robot"]
     variables = [sp.Symbol(each) for each in robot["joints"]]
     first = int("".join(filter(str.isdigit, robot["joints"][0])))

@@ -1,4 +1,4 @@
-"""Every error that a body can have is told in a sentence of ours, in each language."""
+"""Every error in a request body gets a sentence of the service, in each language."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
@@ -31,7 +31,7 @@ def errors_of(model: type[BaseModel], body: object) -> list[Any]:
 
 
 def request_models() -> Iterator[type[BaseModel]]:
-    """Yield the models of bodies: they refuse unknown fields, and those of answers do not."""
+    """Yield the models of request bodies. Models of responses do not refuse unknown fields."""
     assert application is not None
     waiting: list[type[BaseModel]] = [BaseModel]
     while waiting:

@@ -2,8 +2,9 @@
 
 ``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes those
 that no source has any more, and compiles the ``.mo`` files that the program reads. Sentences
-without a translation stay empty; nothing is guessed. It writes them to ``untranslated.json``, with
-a place for the translation to each language; run it again after filling that file in.
+without a translation stay empty; nothing is guessed. The command writes these sentences to
+``untranslated.json``, with an empty text for each language. Fill the texts in, and run the command
+again.
 
 For one language, ``--missing de sentences`` prints the sentences that German lacks, as JSON;
 ``--fill de sentences FILE`` writes translations into the catalogue from such a JSON file.
@@ -163,7 +164,7 @@ def as_mo(found: Catalog) -> bytes:
 
 
 def write(code: str, domain: str, found: Catalog) -> None:
-    """Write both files of a catalogue. The compiled one is made of the text just written."""
+    """Write both files of a catalogue; compile the second one from the text of the first."""
     (FOLDER / code).mkdir(exist_ok=True)
     text = as_po(found)
     (FOLDER / code / f"{domain}.po").write_bytes(text)
@@ -174,8 +175,8 @@ def write(code: str, domain: str, found: Catalog) -> None:
 def faults(found: Catalog) -> Iterator[str]:
     """Yield what is wrong with the translations of a catalogue, a line for each sentence.
 
-    A translation has the places of its sentence, the same texts between backticks, and blanks
-    where the sentence begins and ends with them.
+    A translation must have the same placeholders and the same texts between backticks as its
+    sentence. It must begin and end with a blank exactly where the sentence does.
     """
     for message in found:
         sources = _texts(message.id)

@@ -1,4 +1,4 @@
-"""A German of a few sentences, which a test writes by hand."""
+"""German translations of a few sentences, which a test writes by hand."""
 
 from collections.abc import Mapping
 from gettext import NullTranslations

@@ -1,6 +1,7 @@
-"""A language that is English with accents, and a third longer: what it lacks is not translatable.
+"""A pseudo-language: English with accents, and a third longer.
 
-``python -m tests.translations.pseudo serve`` starts the service with it.
+A text that the service shows without accents is not translatable.
+``python -m tests.translations.pseudo serve`` starts the service with the pseudo-language.
 """
 
 import re
@@ -45,7 +46,7 @@ vars(PSEUDO).update(
 
 
 def offer_pseudo() -> None:
-    """Offer the language in this process."""
+    """Offer the pseudo-language in this process."""
     LANGUAGES[PSEUDO.code] = PSEUDO  # type: ignore[index]
 
 

@@ -1,4 +1,4 @@
-"""Names in texts; `tests/front/units/names.test.js` holds the scripts to the same cases."""
+"""Names in texts; `tests/front/units/names.test.js` tests the scripts with the same cases."""
 
 import json
 import time

@@ -1,4 +1,4 @@
-"""Deployed variants: different ones of one difficulty, and the file in which they are written."""
+"""Deployed variants are different and equally hard; the exercise file contains their seeds."""
 
 import tomllib
 

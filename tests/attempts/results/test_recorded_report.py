@@ -1,4 +1,4 @@
-"""Recorded reports are told to each reader in the reader's language."""
+"""Recorded reports are translated into the language of each reader."""
 
 import json
 from collections.abc import Mapping

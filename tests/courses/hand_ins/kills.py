@@ -1,4 +1,4 @@
-"""Hand-ins to services of which one is killed in the midst, again and again."""
+"""Learners hand in while processes of the service are killed, again and again."""
 
 import asyncio
 import json

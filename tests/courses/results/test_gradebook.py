@@ -1,4 +1,4 @@
-"""The gradebook reads its index, also in a database without statistics."""
+"""The gradebook query uses its index, also in a database without statistics."""
 
 from typing import Any
 

@@ -1,6 +1,7 @@
 """The campaign of generated robots: ``python -m tests.variants.robots --seeds 10000 --level 1``.
 
-Robots in which zeros and joint variables earn more than a quarter are not dealt; they are counted.
+A robot is not dealt if zeros and joint variables earn more than a quarter of its points. The
+campaign counts such robots.
 """
 
 import argparse
@@ -26,7 +27,7 @@ MOST_FOR_NOTHING = 0.25
 
 
 def main() -> int:
-    """Print what does not hold, and the figures; return 1 if something does not hold."""
+    """Print the failed checks and the figures; return 1 if a check failed."""
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--level", type=int, default=1)
     arguments.add_argument("--first", type=int, default=0)

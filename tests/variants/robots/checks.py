@@ -1,4 +1,4 @@
-"""What must hold for every generated robot. The robots are built again from their statements."""
+"""Check that a generated robot is sound. Each robot is built again from its statement."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -85,9 +85,9 @@ def is_the_robot_of_its_statement(exercise: Exercise, seed: int) -> bool:
 
 
 def form(exercise: Exercise) -> tuple[object, ...]:
-    """Return the axes and the tool at home as numbers, the same for the same form.
+    """Return the axes and the tool at home as numbers, equal for robots that differ in sizes only.
 
-    The n-th length that the statement names is √(n + 1), so that a form has no sizes.
+    The n-th length that the statement names counts as √(n + 1).
     """
     words = exercise.statement
     names = re.findall(r"(?<![\w.{])(?:[adh]\d+|\d+\.\d+|[1-9]\d*)(?![\w.}°])", words)
