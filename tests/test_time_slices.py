@@ -112,14 +112,14 @@ def test_other_threads_are_not_suspended() -> None:
 
 def test_working_time_excludes_suspension() -> None:
     async def slow() -> None:
-        await asyncio.sleep(0.05)
+        await asyncio.sleep(0.5)
 
     def work() -> float:
         began = working_time()
         checkpoint()
         return working_time() - began
 
-    assert asyncio.run(in_slices(work, slow)) < 0.04
+    assert asyncio.run(in_slices(work, slow)) < 0.4
 
 
 @pytest.mark.long

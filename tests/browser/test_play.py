@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.figures.pace import MOST_SCRIPT_MS, pace
 from tests.browser.fixtures import Visit
 from tests.browser.maths.reading import typed_names
 from tests.browser.test_pages import violations
@@ -12,26 +13,9 @@ from tests.browser.test_robot_view import picture
 
 Opening = Callable[..., Visit]
 
-# Measures three figures: pictures in a second of dragging, pictures in a second of a page that only
-# changes a number (for comparison), and milliseconds of script for each picture.
-DRAG = """async (slider) => {
-  const pictures = async (change) => {
-    const from = performance.now();
-    let count = 0, script = 0;
-    for (let now = from; now < from + 1000; now = performance.now(), count++) {
-      change(Math.sin((now - from) / 300));
-      script += performance.now() - now;
-      await new Promise((done) => requestAnimationFrame(done));
-    }
-    return [count, script / count];
-  };
-  const output = slider.parentElement.querySelector("output");
-  const [floor] = await pictures((value) => (output.textContent = value));
-  const [count, script] = await pictures((value) => {
-    slider.value = value;
-    slider.dispatchEvent(new Event("input", { bubbles: true }));
-  });
-  return [count, floor, script];
+DRAG = """(slider, seconds) => {
+  slider.value = Math.sin(seconds / 0.3);
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
 }"""
 
 SMALL = {"width": 640, "height": 480}
@@ -63,13 +47,9 @@ def test_a_seven_joint_arm_can_be_moved(
     slider.press("End")
     assert picture(page) != home
     assert entries(page)[11] < 1
-    drawn, floor, script = slider.evaluate(DRAG)
-    figure(
-        f"seven joints: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each"
-    )
-    # At 30 pictures a second there are 33 ms for one, and the browser needs most of them.
-    assert script < 33
-    assert drawn > floor / 6
+    measured = pace(slider, DRAG)
+    figure(f"seven joints: {measured}")
+    assert measured.script_ms < MOST_SCRIPT_MS
 
     # The table in the other convention has the same pose.
     slider.press("Home")

@@ -5,9 +5,10 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import CDPSession, Page, expect
+from playwright.sync_api import Page, expect
 
 from service.web.assets import FOLDER
+from tests.browser.figures.pace import MOST_SCRIPT_MS, pace
 from tests.browser.fixtures import Visit
 from tests.browser.maths.reading import typed_names
 from tests.browser.steps import cells, open_exercise
@@ -18,38 +19,6 @@ Opening = Callable[..., Visit]
 
 TABLE = ["0.5", "0", "0", "theta1", "a2", "0", "0", "theta2"]
 MOST = 60_000
-
-# Measures pictures in a second while a row is played, pictures in a second of the page alone, and
-# milliseconds of script for each picture.
-PLAY = """async (button) => {
-  const ask = window.requestAnimationFrame.bind(window);
-  const pictures = async () => {
-    const from = performance.now();
-    let count = 0;
-    for (; performance.now() < from + 1000; count++) await new Promise((done) => ask(done));
-    return count;
-  };
-  const floor = await pictures();
-  let script = 0, calls = 0;
-  window.requestAnimationFrame = (run) => ask((now) => {
-    const from = performance.now();
-    run(now);
-    script += performance.now() - from;
-    calls += 1;
-  });
-  button.click();
-  const count = await pictures();
-  window.requestAnimationFrame = ask;
-  // Two calls for each picture: one moves the ghost, one draws it.
-  return [count, floor, 2 * script / calls];
-}"""
-
-
-def style_passes(metrics: CDPSession) -> int:
-    """Return how often the page has computed styles so far."""
-    found = metrics.send("Performance.getMetrics")["metrics"]
-    [count] = [each["value"] for each in found if each["name"] == "RecalcStyleCount"]
-    return int(count)
 
 
 def text(page: Page, name: str) -> str:
@@ -139,17 +108,13 @@ def test_a_row_of_seven_joints_moves_smoothly(
     page.get_by_role("button", name="Play a row").click()
     page.get_by_label("Row", exact=True).select_option("3")
     picture(page)
-    play = page.get_by_role("button", name="Play", exact=True)
-    metrics = page.context.new_cdp_session(page)
-    metrics.send("Performance.enable")
-    before = style_passes(metrics)
-    drawn, floor, script = play.evaluate(PLAY)
+    # A mouse would change the style of the button.
+    page.get_by_role("button", name="Play", exact=True).evaluate("(button) => button.click()")
+    measured = pace(page.get_by_role("slider", name="Moves of the row"))
+    figure(f"a row: {measured}")
     # Each picture used to write texts and ask for a size, which took two passes over the page.
-    assert style_passes(metrics) - before <= drawn + 8
-    figure(f"a row: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each")
-    # At 60 pictures a second there are 16 ms for one, and the browser needs most of them.
-    assert script < 16
-    assert drawn > floor / 6
+    assert measured.style_passes <= measured.pictures + 20
+    assert measured.script_ms < MOST_SCRIPT_MS
 
 
 def test_the_scripts_of_the_3d_view_are_small() -> None:
