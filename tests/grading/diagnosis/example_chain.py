@@ -1,4 +1,4 @@
-"""A chain of four links in numbers, its pose, and wrong matrices for that pose."""
+"""A numeric chain of four links, its pose, and functions that make cases of wrong matrices."""
 
 from functools import reduce
 
@@ -30,12 +30,15 @@ POSE = product(A1, A2, A3, A4)
 
 
 def wrong_pose(matrix: Numbers, chain: Chain | None = CHAIN) -> MatrixCase:
-    """Return the wrong pose ``matrix`` ``(COUNT, 4, 4)``; the right one is ``POSE``."""
+    """Return a case in which the student's pose is ``matrix`` ``(COUNT, 4, 4)``, not ``POSE``."""
     return wrong_matrix(matrix, POSE, chain)
 
 
 def wrong_matrix(matrix: Numbers, right: Numbers, chain: Chain | None = None) -> MatrixCase:
-    """Return the wrong ``matrix`` ``(COUNT, rows, columns)``; the right one is ``right``."""
+    """Return a case in which the student wrote ``matrix``, but ``right`` is expected.
+
+    Both have the shape ``(COUNT, rows, columns)``.
+    """
     actual, expected = (np.moveaxis(each, 0, -1) for each in (matrix, right))
     return MatrixCase(
         actual=actual,

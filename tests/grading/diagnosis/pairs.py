@@ -11,9 +11,10 @@ from service.grading.misconception import Explained, Record, all_records, explai
 
 
 class Pair(NamedTuple):
-    """A misconception or a check with two cases, and the code of the finding on the first.
+    """A misconception or check, a case that it explains, and a case that it does not explain.
 
-    ``source`` maps a case to the argument of the function; the default is the case itself.
+    ``code`` is the expected code, by default the name of ``function``. ``source`` maps a case to
+    the argument of ``function``, by default the case itself.
     """
 
     function: Callable[[Any], Any]
@@ -29,7 +30,7 @@ def each_pair(pairs: Sequence[Pair]) -> pytest.MarkDecorator:
 
 
 def record_of(function: Callable[[Any], Any]) -> Record:
-    """Return the record of a function."""
+    """Return the record whose function is ``function``."""
     [record] = (record for record in all_records() if record.function is function)
     return record
 
@@ -37,7 +38,7 @@ def record_of(function: Callable[[Any], Any]) -> Record:
 def explained(case: Any, function: Callable[[Any], Any], source: Any = None) -> Explained | None:
     """Return the hypothesis of one misconception or check that explains a case, or None.
 
-    The ``when`` of its record is ignored.
+    The condition ``when`` of the record is ignored.
     """
     record = replace(record_of(function), when=None)
     return explained_by_one(record, case, case if source is None else source)

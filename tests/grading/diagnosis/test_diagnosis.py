@@ -21,7 +21,7 @@ WITHOUT_CODE = [record for record in all_records() if record.function and not re
 
 
 def complaint_about(record: Record) -> str:
-    """Return a complaint that names the record, or an empty string if its examples are right."""
+    """Return an error message that names the record, or nothing ("") if its examples are fine."""
     if record.example is None or not record.means:
         return f"{record.name}: give it an example, and say what its code means"
     exercise, part, answer, *unit = record.example
@@ -60,7 +60,7 @@ def test_a_record_explains_only_its_example(record: Record) -> None:
 
 @cache
 def traces() -> list[Trace]:
-    """Return the traces of all examples."""
+    """Grade the example of each record, and return the traces of grading."""
     return [trace_of(*record.example) for record in all_records() if record.example]
 
 
@@ -108,14 +108,14 @@ EXCHANGED = "[a1 s1 + a2 s12, a1 c1 + a2 c12]"
 
 @pytest.fixture
 def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Let a test add records, and remove them afterwards."""
+    """Let a test add records of misconceptions, and remove them afterwards."""
     monkeypatch.setattr(engine, "_RECORDS", list(all_records()))
     yield
     engine.records_of.cache_clear()
 
 
 def complaint_about_signs(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
-    """Return the complaint about the record of a misconception about these signs."""
+    """Register a misconception that multiplies by ``signs``; return the error message on it."""
 
     def signed(case: WrongPosition) -> Iterator[Written[Numbers]]:
         for sign in signs:

@@ -1,4 +1,4 @@
-"""Which hypotheses explain numbers; a hypothesis without a change explains nothing."""
+"""Which hypotheses explain numbers; a hypothesis that changes nothing explains nothing."""
 
 import numpy as np
 
@@ -86,7 +86,7 @@ def counterexample(text: str, *, degrees: bool = False, corrects: bool = False) 
 
 
 def test_a_counterexample_can_be_checked_with_a_pocket_calculator() -> None:
-    """Near 180°, an angle of four figures gives a sine of only two."""
+    """Near 180°, an angle of four figures gives a sine of only two figures."""
     for degrees in (True, False):
         found = counterexample("1000 l1 sin(q1)", degrees=degrees).values
         assert found is not None

@@ -1,4 +1,4 @@
-"""Traces of a grading: the records that were asked, and those that explained an answer."""
+"""Traces of a grading: the misconceptions that were tried, and those that explained an answer."""
 
 import json
 import tomllib
@@ -25,7 +25,7 @@ MADE = Path(__file__).parents[2] / "docs" / "sentence_examples.toml"
 
 @dataclass
 class Trace:
-    """The records that were asked, those that explained something, and the codes of the report."""
+    """The records that were tried, those that explained an answer, and the codes of the report."""
 
     asked: set[Record] = field(default_factory=set)
     explaining: set[Record] = field(default_factory=set)
@@ -35,7 +35,7 @@ class Trace:
 
 @contextmanager
 def traced() -> Iterator[Trace]:
-    """Fill in a trace while answers are graded."""
+    """Yield a trace that is filled in while answers are graded."""
     trace = Trace()
     findings = Hypothesis.findings.fget  # type: ignore[attr-defined]
     hypotheses, verdict = Record.hypotheses, Record.verdict
@@ -69,7 +69,7 @@ def model_answers(exercise_id: str) -> Mapping[str, Any]:
 
 @cache
 def exercises() -> Mapping[str, Exercise]:
-    """Return the exercises of the program and those that exist only for some examples."""
+    """Return the shipped exercises, and those that were made only for the examples of records."""
     made = tomllib.loads(MADE.read_text(encoding="utf-8"))["made"]
     with TemporaryDirectory() as folder:
         for name, text in made.items():

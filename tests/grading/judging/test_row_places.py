@@ -1,4 +1,4 @@
-"""The message on rows that are graded under another number than in the answer."""
+"""The message on rows that are compared with a joint of another number."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Tables of another length or order than the robot's; the tolerance of a cell."""
+"""Tables with missing, extra or exchanged rows, and the tolerance of a cell."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,7 @@ NOTHING: Row = ("0", "0", "0", "0")
 
 
 def codes(report: PartReport) -> list[str]:
-    """Return the codes of the part's messages, without infos."""
+    """Return the codes of the part's messages, except infos."""
     return [each.code for each in report.feedback if each.severity is not Severity.INFO]
 
 

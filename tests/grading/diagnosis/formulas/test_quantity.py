@@ -1,4 +1,4 @@
-"""The quantity that a formula looks like."""
+"""A formula is recognised as a length, an angle, a number, or none of these."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Misconceptions about an angle that is a sum of angles: the direction of a planar arm's link."""
+"""Misconceptions about a sum of angles, such as the direction of a link of a planar arm."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -24,7 +24,7 @@ ROTATION = Rotation.from_euler("ZYX", RIGHT.T)
 
 
 def case(*angles: Numbers | float) -> WrongTriple:
-    """Return these wrong angles; the right ones are q1, 0.4, q2 about moving axes."""
+    """Return these wrong angles about moving z, y and x axes; q1, 0.4, q2 are correct."""
     return WrongTriple(triple(*angles), ROTATION.as_matrix(), "ZYX", fixed=False)
 
 

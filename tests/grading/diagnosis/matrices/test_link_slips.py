@@ -66,7 +66,7 @@ def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
 
 
 def matrix(angle: str, length: str, of_length: str) -> list[list[Any]]:
-    """Return a link of a planar arm."""
+    """Return a link transform of a planar arm, written with these indices and this length."""
     return [
         [f"c{angle}", f"-s{angle}", 0, f"{length} c{of_length}"],
         [f"s{angle}", f"c{angle}", 0, f"{length} s{of_length}"],
@@ -99,7 +99,7 @@ def test_a_pose_for_the_second_link_is_named(catalogue: Mapping[str, Exercise]) 
 
 
 def test_two_links_with_the_same_slip_get_one_message(make_exercise: Make) -> None:
-    """A2 of a SCARA arm is also turned by θ1, A4 by θ1 + θ2."""
+    """In the answer, A2 of a SCARA arm is also turned by θ1, and A4 by θ1 + θ2."""
     second = [[re.sub(r"([cs])2", r"\g<1>12", text) for text in row] for row in SCARA_A2]
     turn = "theta1 + theta2 + theta4"
     last = [

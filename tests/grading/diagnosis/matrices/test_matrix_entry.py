@@ -176,7 +176,7 @@ def test_a_misconception_does_not_explain_other_entries(
 def test_a_misconception_that_changes_nothing_explains_nothing(
     misconception: Misconception,
 ) -> None:
-    """The answer is right within rounding, but is treated as wrong."""
+    """The test treats the answer as wrong, although it is correct within rounding."""
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
     assert explained(case, misconception) is None
 

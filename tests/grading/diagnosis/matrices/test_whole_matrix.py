@@ -18,14 +18,14 @@ R, P = POSE[:, :3, :3], POSE[:, :3, 3]
 
 
 def with_rotation(rotation: Numbers) -> MatrixCase:
-    """Return the right pose with another rotation ``(COUNT, 3, 3)``."""
+    """Return the correct pose with a wrong rotation ``(COUNT, 3, 3)``."""
     matrix = POSE.copy()
     matrix[:, :3, :3] = rotation
     return wrong_pose(matrix)
 
 
 def with_position(position: Numbers) -> MatrixCase:
-    """Return the right pose with another position ``(COUNT, 3)``."""
+    """Return the correct pose with a wrong position ``(COUNT, 3)``."""
     matrix = POSE.copy()
     matrix[:, :3, 3] = position
     return wrong_pose(matrix)
@@ -104,7 +104,7 @@ def test_a_misconception_or_check_explains_only_its_case(pair: Pair) -> None:
     ],
 )
 def test_an_alternative_that_is_right_explains_nothing(rows: list[list[float]]) -> None:
-    """Links can be left out, exchanged or transposed here without effect."""
+    """With these tables, a link can be left out, exchanged or transposed without effect."""
     lengths = np.linspace(1.0, 2.0, 8)
     table = np.array(rows)[..., None] * np.array([lengths, 0 * lengths + 1] * 2)
     chain = Chain(table, Convention.STANDARD, tuple("0123"[: len(rows) + 1]))

@@ -1,4 +1,4 @@
-"""Slips in a motion composed of several, whose result the exercise gives in formulas."""
+"""Slips in a product of several motions; the exercise gives only the product, in formulas."""
 
 from collections.abc import Mapping
 
@@ -56,7 +56,7 @@ MOTION = GivenMotion(
 
 
 def wrong(actual: Numbers, right: Numbers) -> WrongNumbers:
-    """Return wrong matrices or vectors ``(COUNT, ...)``; the right ones are ``right``."""
+    """Return a case with the student's numbers ``actual`` ``(COUNT, ...)`` and the correct ones."""
     actual, right = np.moveaxis(actual, 0, -1), np.moveaxis(right, 0, -1)
     return WrongNumbers(actual, right, np.ones(right.shape[:-1]))
 
@@ -180,7 +180,7 @@ def test_a_slip_in_three_motions_is_named(text: str, name: str, make_exercise: M
 
 
 def test_motions_in_reverse_order_are_named(make_exercise: Make) -> None:
-    """H3 H2 H1 is multiplied out by hand."""
+    """The answer is the product H3 H2 H1, multiplied out by hand."""
     answer = [
         ["cφ", "-sφ", 0, "a"],
         ["cψ sφ", "cψ cφ", "-sψ", "l - b sψ"],

@@ -1,4 +1,4 @@
-"""Tables with a and d exchanged in one row, and with another slip."""
+"""Tables with two slips: a and d are exchanged in one row, and another cell is wrong."""
 
 from collections.abc import Mapping
 

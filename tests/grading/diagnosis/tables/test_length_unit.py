@@ -1,4 +1,4 @@
-"""Lengths in another unit than the exercise's."""
+"""Tables whose lengths are in another unit than the exercise uses."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Slips in whole rows and columns of a table that lead to a wrong pose."""
+"""Slips in whole rows and columns of a table are named from the wrong pose that they cause."""
 
 import pytest
 
@@ -17,7 +17,7 @@ EXERCISE = exercise_of(ARM)
 
 
 def said(table: Table, kind: str = "transform", arm: Arm = ARM) -> tuple[tuple[str, str], ...]:
-    """Return the messages on the product of this table in the arm's convention."""
+    """Return the messages on the answer that follows from this table in the arm's convention."""
     slip = ArmSlip("", frozenset(), table, arm.convention, tuple(range(len(table))))
     exercise = EXERCISE if arm is ARM else exercise_of(arm)
     return said_of(exercise, kind, answer_to(kind, slip))
@@ -117,7 +117,7 @@ def test_a_missing_link_is_named() -> None:
 
 
 def test_exchanged_rows_and_a_missing_link_are_both_named_if_both_fit() -> None:
-    """A link that only turns does not move the end if nothing comes after it."""
+    """Row 3 only turns: without A3, the position is the same as with rows 3 and 4 exchanged."""
     rows = (ROW1, ROW2, (NONE, UP, NONE, {"q3": 1.0}), ROW4)
     [(code, words)] = said((*rows[:2], ROW4), "position", Arm(rows, "RRRR", STANDARD))
     assert (code, words) == (

@@ -159,7 +159,7 @@ def test_a_number_for_a_length_gets_advice_to_use_symbols(
 
 @pytest.mark.parametrize("right", ["a1", "0", "d3"])
 def test_an_unknown_length_is_named(right: str) -> None:
-    """Joint 1 turns, so d1 cannot mean its variable."""
+    """Joint 1 is revolute, so d1 is not its variable, and the exercise has no length d1."""
     finding = diagnose(wrong("d", 3 if right == "d3" else 1, "d1", right))
     assert finding.code == "unknown_symbol"
     assert finding.hint == "This exercise has no d1. It has d3."

@@ -28,7 +28,7 @@ def samples_of(exercise: Exercise) -> Samples:
 
 
 def written(rows: Sequence[Sequence[Cell]], samples: Samples) -> Table:
-    """Return a table with the values of numbers and of symbols."""
+    """Return the table in numbers; each cell is a number or the name of a symbol."""
     return np.array(
         [
             [
@@ -114,7 +114,7 @@ def test_joints_that_share_an_axis_need_not_be_neighbours(stanford: Exercise) ->
 
 
 def test_four_dependent_joints_are_named(catalogue: Mapping[str, Exercise]) -> None:
-    """With α3 = 90° the last joint slides in the plane of motion of the other three."""
+    """With α3 = 90°, the last joint slides in the plane in which the other three move the arm."""
     exercise = catalogue["rrrp"]
     table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     table[2, ALPHA] = H

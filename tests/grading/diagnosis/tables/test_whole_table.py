@@ -58,13 +58,13 @@ def wrong(table: Table) -> WrongTable:
 
 
 def in_modified_rows(table: Table) -> Table:
-    """Return the table with a and α one row later; the last link gets no row."""
+    """Return the table with a and α one row later; a and α of the last link are lost."""
     table[:, :2] = np.concatenate([np.zeros((1, 2, SAMPLES)), table[:-1, :2]])
     return table
 
 
 def twists_too_late(table: Table) -> Table:
-    """Return the table with its twists one row later; the lengths stay."""
+    """Return the table with each α one row later; the other columns stay."""
     table[:, ALPHA] = np.roll(table[:, ALPHA], 1, axis=0)
     return table
 

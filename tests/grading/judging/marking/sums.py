@@ -1,8 +1,8 @@
-"""``python -m tests.grading.judging.marking.sums --answers 1000``: points add up in every report.
+"""``python -m tests.grading.judging.marking.sums --answers 1000``: check that points add up.
 
-Hand in random wrong answers to every part of every shipped exercise, or with ``--tables`` only to
-the tables. The points of the rows add up to the points of the part, and the lost points to the
-missing points. All points are multiples of a quarter or a hundredth.
+Submit random wrong answers to every part of every shipped exercise, or with ``--tables`` only to
+the tables. Check three things: the points of the rows add up to the points of the part, the lost
+points are the missing points, and all points are multiples of a quarter or a hundredth.
 """
 
 import argparse
@@ -78,7 +78,7 @@ def entries(answer: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def faults(part: PartReport) -> Iterator[str]:
-    """Yield the sums that are wrong in a report on a part."""
+    """Yield a description of each wrong sum in the report on a part."""
     rows, lost = part.rows, [each.points for each in part.lost]
     if not in_steps(part.points, part.max_points, *lost):
         yield "lost points are not the missing points"
@@ -113,7 +113,7 @@ def in_steps(start: float, end: float, *between: float) -> bool:
 def run(
     catalogue: Mapping[str, Exercise], count: int, seed: int, kinds: frozenset[str] = frozenset()
 ) -> tuple[int, list[str]]:
-    """Return the number of parts that were graded, and what was wrong in them.
+    """Return the number of graded parts, and a description of each fault in their points.
 
     Only parts of these ``kinds`` are answered, or all parts if ``kinds`` is empty.
     """

@@ -28,7 +28,7 @@ def stanford(*changes: tuple[int, int, str]) -> list[Row]:
 
 
 def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exercise]) -> None:
-    """Wrong signs of all twists cost a quarter; four separate wrong cells would cost 4 of 7.2."""
+    """Wrong signs of all twists cost a quarter of the points; four wrong cells would cost more."""
     turned = {"pi/2": "-pi/2", "-pi/2": "pi/2", "0": "0"}
     rows = [(a, turned[alpha], d, theta) for a, alpha, d, theta in EXACT.rows(STANFORD)]
     report = graded_table(catalogue[STANFORD.exercise], rows)
@@ -38,7 +38,7 @@ def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exerc
 
 
 def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> None:
-    """The rows are those of the arm in the modified convention: a and α are moved by a row."""
+    """The rows are those of the modified convention: a and α are one row later."""
     rows = EXACT.rows(STANFORD)
     ends = [("0", "0"), *((a, alpha) for a, alpha, _, _ in rows)]
     moved = [(*ends[i], d, theta) for i, (_, _, d, theta) in enumerate(rows)]
@@ -50,7 +50,7 @@ def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> N
 def test_a_standard_table_is_named_if_the_row_of_the_tool_is_empty(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """In the standard convention, the three joints need three rows; the form has a fourth, e."""
+    """The standard convention needs three rows; the fourth row of the form, e, is left empty."""
     rows = [(f"l{i}", "0", "0", f"q{i}") for i in (1, 2, 3)]
     report = graded_table(catalogue["planar-rrr"], [*rows, ("", "", "", "")])
     assert codes(report) == ["other_convention"]
@@ -61,7 +61,7 @@ def test_a_standard_table_is_named_if_the_row_of_the_tool_is_empty(
 def test_a_slip_of_the_whole_table_costs_no_more_than_its_cells(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The SCARA's table has only one twist, so that wrong twists cost at most one unit."""
+    """The SCARA arm's table has only one twist, so wrong twists cost at most one cell."""
     rows = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2"), *EXACT.rows(SCARA)[2:]]
     report = graded_table(catalogue[SCARA.exercise], rows)
     assert report.points == 8 - 1.75

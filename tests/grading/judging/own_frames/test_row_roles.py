@@ -1,4 +1,4 @@
-"""The pairing of rows in order has the largest sum of scores."""
+"""Rows are paired in order so that the sum of their scores is the largest."""
 
 import numpy as np
 import pytest

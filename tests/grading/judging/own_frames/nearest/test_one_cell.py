@@ -1,6 +1,6 @@
-"""One slip under each policy: only the cell with the slip is wrong.
+"""One slip with each choice of free base, tool and directions: only its own cell is wrong.
 
-The robot's axes are skew, so that a repair is possible only in the right cell.
+The robot's axes are skew, so that no other cell can repair the table.
 """
 
 from itertools import product
@@ -84,7 +84,7 @@ def test_a_wrong_variable_is_found_if_its_constant_is_right(make_exercise: Make,
 
 
 def test_only_the_variable_is_wrong_if_any_constant_is_valid(make_exercise: Make) -> None:
-    """With a free base any constant is right in row 1, so the student's constant is kept."""
+    """If the base is free, any constant in row 1 is valid, so the student's constant is kept."""
     exercise = make_exercise(policy("free", "free", "given"))
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
     rows[0]["theta"] = "-theta1 + 23deg"
