@@ -70,7 +70,7 @@ def test_a_trivial_table_earns_no_later_marks(scara: Exercise) -> None:
 
 
 def test_no_part_follows_from_a_poor_table(scara: Exercise) -> None:
-    """Only the joint variables are right; with 0 in all other cells the matrices are too easy."""
+    """Only the joint variables of this table are correct, so no later part follows from it."""
     poor = table(
         [("0", "1", "1", "q1"), ("0", "1", "1", "q2"), ("1", "1", "d3", "1"), ("1", "1", "1", "q4")]
     )
@@ -80,7 +80,7 @@ def test_no_part_follows_from_a_poor_table(scara: Exercise) -> None:
 
 
 def test_a_variable_without_effect_earns_no_later_marks(scara: Exercise) -> None:
-    """0·q is not a motion."""
+    """The term 0·q does not move the joint."""
     idle = "0*(q1 + q2 + d3 + q4)"
     still = [[f"1 + {idle}", "0", "0", "0"], *IDENTITY[1:]]
     parts = graded(scara, table=table([("0", "0", "0", idle)] * 4), links=[still] * 4, pose=still)
@@ -88,7 +88,7 @@ def test_a_variable_without_effect_earns_no_later_marks(scara: Exercise) -> None
 
 
 def test_no_part_follows_from_a_chain_with_lost_freedom(scara: Exercise) -> None:
-    """Without twists and lengths, four joints are on one line, and the pose is trivial."""
+    """Without twists and lengths, all four joint axes are on one line, and the pose is trivial."""
     bare = table(
         [("0", "0", "0", "q1"), ("0", "0", "0", "q2"), ("0", "0", "d3", "0"), ("0", "0", "0", "q4")]
     )

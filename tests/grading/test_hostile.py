@@ -1,4 +1,4 @@
-"""Every submission gets a report, soon."""
+"""Every submission, even a hostile one, soon gets a report."""
 
 import json
 import time
@@ -245,7 +245,7 @@ def test_an_answer_without_a_matrix_is_unreadable(
 def test_the_costliest_submission_is_graded_soon(
     given_frames: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
-    """Every cell has another wrong expression at the limits of size, none of them memoized."""
+    """Every cell has a different long wrong expression, so that no expression is memoized."""
     exercise = given_frames[STANFORD.exercise]
     letters = ("q1", "q2", "q4", "q5", "q6", "d2", "d3", "d6")
 

@@ -401,7 +401,7 @@ def test_misconceptions_without_effect_are_not_named(catalogue: Mapping[str, Exe
 
 
 def test_the_work_budget_limits_explanations(catalogue: Mapping[str, Exercise]) -> None:
-    """With many unexplained entries the others are only compared; with few they are explained."""
+    """If early entries use up the budget, later entries are only compared and not explained."""
     exercise = catalogue[SCARA.exercise]
     late = {(2, 2): "cos(0)*cos(pi/2)*c1", (2, 3): "-d3 + d4"}
     nonsense = "c1*s1*c2*s2*c4*s4*a1*a2*d3*d4*c1*s1*c2*s2*c4"

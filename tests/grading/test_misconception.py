@@ -1,4 +1,4 @@
-"""The engine that finds the misconception behind a wrong answer."""
+"""The engine that finds the misconception that explains a wrong answer."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ from service.grading.misconception import (
 
 @dataclass
 class WrongNumber:
-    """A number; ``tried`` collects the hypotheses with which the number was compared."""
+    """A wrong number; ``tried`` collects the answers of all hypotheses compared with it."""
 
     actual: int
     tried: list[int] = field(default_factory=list)
@@ -36,12 +36,12 @@ class WrongNumber:
 
 
 class Text(str):
-    """A source of hypotheses that is not the case itself."""
+    """A text that a misconception gets as its argument instead of the wrong number."""
 
 
 @pytest.fixture(autouse=True)
 def records(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Some records, of which those of a higher rank are registered first."""
+    """Register only a few records for a test, not in the order of their ranks."""
     monkeypatch.setattr(engine, "_RECORDS", [])
     engine.records_of.cache_clear()
 

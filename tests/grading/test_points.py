@@ -1,4 +1,4 @@
-"""Points add up, and each marking works as documented."""
+"""Points add up, and each marking scheme works as documented."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""Copying from a report below the level full into the wrong cells earns nothing.
+"""Copying values from a report below the level ``full`` into the wrong cells earns nothing.
 
 No message at these levels contains the right value of a cell.
 """
@@ -101,7 +101,7 @@ class Slip(NamedTuple):
 
 
 def slips(right: Grid, every: int) -> Iterator[Slip]:
-    """Yield one in ``every`` slips in each cell."""
+    """Yield every n-th of the slips in the cells of a right answer, with n = ``every``."""
     count = 0
     for i, row in enumerate(right):
         for j, text in enumerate(row):
@@ -115,7 +115,7 @@ def slips(right: Grid, every: int) -> Iterator[Slip]:
 
 
 def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
-    """Return the expressions in a report with hints equal to the right value of the cell."""
+    """Return the expressions in a report with hints that equal the correct value of the cell."""
     sheet = sheet_of(spec, exercise)
     answers = {spec.id: sheet.posted(slip.grid)}
     corrected = _correction(part(handed_in(exercise, answers, feedback=FULL), spec.id), sheet, slip)

@@ -78,7 +78,7 @@ def blamed(report: PartReport, unread: Verdict) -> list[tuple[object, ...]]:
 
 
 def subsets(cells: list[Place], rng: random.Random) -> Iterator[list[Place]]:
-    """Yield every second cell alone, then two cells, four, six …"""
+    """Yield every second cell alone, then random sets of two, four, six … cells."""
     yield from ([cell] for cell in cells[::2])
     for count in range(2, len(cells) + 1, 2):
         yield rng.sample(cells, count)
@@ -154,7 +154,7 @@ def scara_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
 def test_unread_entries_of_a_link_in_other_frames_affect_no_other(
     i: int, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """x1 is reversed, and origins are moved along the parallel axes; valid by hand."""
+    """The answer is valid: x1 is reversed, and origins are moved along the parallel axes."""
     right = [
         scara_link("-a1", "0", "0.3", "theta1 + pi"),
         scara_link("a2", "180", "-0.1", "theta2 - pi"),

@@ -1,4 +1,4 @@
-"""The budget for explanations: one message on omissions; no verdict depends on the budget."""
+"""The budget for explanations: one message if it is used up; no verdict depends on the budget."""
 
 from collections.abc import Iterator, Mapping
 
@@ -49,7 +49,7 @@ def marks(report: Report) -> list[tuple[object, ...]]:
 
 
 def told(report: Report) -> list[str]:
-    """Return the parts with the message that something was left out."""
+    """Return the ids of the parts with the message that explanations were left out."""
     return [part.part for part in report.parts for m in part.feedback if m.code == "work_limit"]
 
 
@@ -78,7 +78,7 @@ def everything_wrong(exercise: Exercise) -> dict[str, object]:
 
 
 def test_an_omission_gets_one_message(catalogue: Mapping[str, Exercise]) -> None:
-    """Of 24 wrong cells of a table and seven wrong matrices, the table is explained first."""
+    """The 24 wrong cells of the table are explained before the seven wrong matrices."""
     exercise = catalogue["stanford-arm"]
     report = grade(exercise, Submission(everything_wrong(exercise)))
     assert len(told(report)) == 1

@@ -30,7 +30,7 @@ Rows = list[dict[str, str]]
 
 
 def padded(rows: Rows) -> Iterator[Rows]:
-    """Yield the rows with as many fixed rows as possible before, between and after them."""
+    """Yield the rows with as many fixed rows as allowed before, between and after them."""
     room = MOST_ROWS - len(rows)
     for row in (ZERO_ROW, GARBAGE):
         yield [row] * room + rows
@@ -44,7 +44,7 @@ def padded(rows: Rows) -> Iterator[Rows]:
 
 
 def dressed_up(rows: Rows) -> Iterator[Rows]:
-    """Yield the rows with arbitrary numbers in cells that some frames leave free."""
+    """Yield the rows with numbers added that may cancel each other, or with all signs changed."""
     for column in ("d", "theta"):
         for first in range(len(rows) - 1):
             changed = [dict(row) for row in rows]
@@ -59,7 +59,7 @@ def dressed_up(rows: Rows) -> Iterator[Rows]:
 
 
 def standing_still(rows: Rows) -> Iterator[Rows]:
-    """Yield rows with no joint variables, or practically none."""
+    """Yield tables in which no joint variable has an effect, or only a negligible one."""
     yield [ZERO_ROW] * len(rows)
     yield [{"a": "1", "alpha": "1", "d": "1", "theta": "1"}] * len(rows)
     first = next(cell for cell in rows[0].values() if cell != "0")
@@ -106,13 +106,13 @@ def without_knowledge(part: PartSpec, exercise: Exercise) -> list[object]:
 
 
 def sliding(exercise: Exercise) -> list[list[str]]:
-    """Return a table in which every joint slides along its own axis, unlike the robot."""
+    """Return the pose of an arm whose first joints slide along x, y and z, unlike the robot."""
     names = [*(joint.variable for joint in exercise.joints), "0", "0", "0"]
     return [[*row[:3], name] for row, name in zip(IDENTITY[:3], names, strict=False)] + IDENTITY[3:]
 
 
 def best_of(part: PartSpec, exercise: Exercise) -> float:
-    """Return the best share of a part that one of the answers earns alone."""
+    """Return the largest share of a part that one answer without knowledge earns alone."""
     graded = (
         grade(exercise, Submission({part.id: answer}))
         for answer in without_knowledge(part, exercise)
@@ -126,7 +126,7 @@ def best_of(part: PartSpec, exercise: Exercise) -> float:
 
 
 def best_together(exercise: Exercise) -> dict[str, float]:
-    """Return the best shares if all parts are answered, so that one may follow from another."""
+    """Return each part's largest share if all parts get answers without knowledge at once."""
     best = dict.fromkeys((part.id for part in exercise.parts), 0.0)
     answers = {part.id: without_knowledge(part, exercise) for part in exercise.parts}
     for k in range(0, max(map(len, answers.values())), 2):
@@ -172,7 +172,7 @@ def test_the_given_transform_is_not_its_own_inverse(catalogue: Mapping[str, Exer
 
 
 def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
-    """Yield the cost of one wrong cell, and the share of its row, for each cell of the table."""
+    """For each cell of the table, yield the share that a slip costs, and the share of its row."""
     right: Any = solve(exercise).answers[part.id]
     for i, row in enumerate(right["rows"]):
         for column in ZERO_ROW:

@@ -21,7 +21,7 @@ WITHOUT_CODE = [record for record in all_records() if record.function and not re
 
 
 def complaint_about(record: Record) -> str:
-    """Return an error message that names the record, or nothing ("") if its examples are fine."""
+    """Return an error message that names the record; it is empty if the examples are correct."""
     if record.example is None or not record.means:
         return f"{record.name}: give it an example, and say what its code means"
     exercise, part, answer, *unit = record.example

@@ -1,4 +1,4 @@
-"""Three angles: every triple of the rotation is right; a slip costs as few angles as possible."""
+"""Three angles: all triples that give the rotation are correct; a slip costs as few as possible."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -59,7 +59,7 @@ def test_angles_may_be_in_degrees(spatial: Exercise) -> None:
 
 
 def test_the_erratum_of_the_lecture(spatial: Exercise) -> None:
-    """The lecture prints β = θ2 + θ3; from its own formula β = −(θ2 + θ3)."""
+    """The lecture prints β = θ2 + θ3, but its own formula gives β = −(θ2 + θ3)."""
     report = graded(spatial, ["theta1", "theta2 + theta3", "90deg"])
     assert not_correct(report) == {("2", "1"): Verdict.INCORRECT}
     assert report.points == pytest.approx(4)
@@ -186,7 +186,7 @@ def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
 def test_the_nearest_triple_keeps_two_of_three_angles(
     sequence: str, fixed: bool, angles: tuple[float, float, float], slipped: int
 ) -> None:
-    """Two right angles are right, whichever triple the rotation itself gives."""
+    """If two angles are correct, they stay correct, whichever triple the rotation itself gives."""
     name = sequence.lower() if fixed else sequence
     rotation = Rotation.from_euler(name, angles).as_matrix()[None]
     written = np.array(angles)[:, None].copy()

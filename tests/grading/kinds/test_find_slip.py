@@ -1,4 +1,4 @@
-"""The slip is marked for one half of the points, and the table mended for the other."""
+"""Marking the place of a slip earns half of the points, correcting the table the other half."""
 
 from collections.abc import Mapping
 from typing import Any

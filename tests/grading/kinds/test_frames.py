@@ -1,4 +1,4 @@
-"""Frames placed on joint axes: the rules, all valid choices, slips, reading, and the table."""
+"""Frames on joint axes: the rules, all valid choices, slips, reading, and their DH table."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -252,7 +252,7 @@ def test_an_empty_cell_never_earns_more(stanford: Exercise) -> None:
 
 
 def table_of(report: PartReport) -> list[list[str]]:
-    """Return the table that the report shows."""
+    """Return the DH table that the report shows."""
     [message] = [each for each in report.feedback if each.code == "table_of_frames"]
     assert message.correction is not None
     return [row.split(", ") for row in message.correction.text.split("; ")]

@@ -1,4 +1,4 @@
-"""Screw axes: space and body frame, prismatic joints, signs, and the worth of a row."""
+"""Screw axes: space and body frame, prismatic joints, signs, and the points of a row."""
 
 import json
 from collections.abc import Mapping
@@ -166,7 +166,7 @@ def test_one_axis_needs_no_list_around_it(make_exercise: Make) -> None:
 
 
 def test_the_axes_of_a_robot_with_a_table_are_right(make_exercise: Make) -> None:
-    """Spatial RRR at home: z0 points up through the origin; two axes are along −y at R, R + L1."""
+    """At home, axis 1 is z0; axes 2 and 3 are along −y through x = R and x = R + L1."""
     space = make_exercise(one_part("screw_axes", 'frame = "space"', SPATIAL_RRR))
     answer: Screws = [
         [0, 0, 1, 0, 0, 0],

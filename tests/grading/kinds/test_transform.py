@@ -1,4 +1,4 @@
-"""Transforms other than the tool's pose: given, inverse, at home, and by exponentials."""
+"""Given transforms, inverse poses, home poses, and poses as products of exponentials."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,11 +1,10 @@
 """Pasted texts of students in five languages, each with the meaning that a person gives it.
 
-``pasted_texts/*.txt`` and ``pasted_texts/more/*.txt`` have one file for each language. A line
-``=== title | table elbow`` begins a text; the words after the bar name a meaning of
-``meanings.toml``, or are ``refused`` (a table) or ``refused matrix``. ⇥ is a tab, ⍽ a no-break
-space, ⎵ a narrow one.
-The meanings are plain arithmetic, evaluated by ``reference``, which shares no code with the
-program.
+``pasted_texts/*.txt`` and ``pasted_texts/more/*.txt`` have one file for each language. A line ``===
+title | table elbow`` begins a text. The words after the bar are the name of a meaning in
+``meanings.toml``; or they are ``refused`` for a table that must be refused, ``refused matrix`` for
+a matrix. ⇥ is a tab, ⍽ a no-break space, ⎵ a narrow no-break space. The meanings are plain
+arithmetic. The module ``reference`` evaluates them; it shares no code with the program.
 """
 
 import re
@@ -67,13 +66,13 @@ class Reading(NamedTuple):
 
 
 def languages() -> list[str]:
-    """Return the names of the files."""
+    """Return the names of the files with pasted texts, without ``.txt``."""
     files = sorted(FOLDER.rglob("*.txt"))
     return [file.relative_to(FOLDER).with_suffix("").as_posix() for file in files]
 
 
 def texts(language: str) -> list[PastedText]:
-    """Return the texts of a file."""
+    """Return the pasted texts in a file."""
     found = []
     for piece in _TITLE.split((FOLDER / f"{language}.txt").read_text("utf-8"))[1:]:
         head, _, text = piece.partition("\n")
@@ -89,7 +88,7 @@ def texts(language: str) -> list[PastedText]:
 
 
 def reading_of(case: PastedText) -> Reading:
-    """Return how the program reads a text, compared with its meaning."""
+    """Read a pasted text with the program, and compare the result with the text's meaning."""
     reader = Reader(
         _vocabulary(case.kind, _joints(case)), Samples(_samples(case, 0)), case.angle_unit, "m"
     )
@@ -154,7 +153,7 @@ _READERS: Final = {"matrix": _matrix, "position": _position}
 
 
 def _repaired(entry: Entry, cell: str, kind: Kind, case: PastedText) -> bool | None:
-    """True if the repaired text has the meaning of the cell; None if there is no repair."""
+    """True if the suggested repair has the meaning of the cell; None if there is no suggestion."""
     suggestion = next((each.suggestion for each in entry.findings if each.suggestion), None)
     if suggestion is None:
         return None

@@ -1,4 +1,4 @@
-"""The star after a joint variable: no note in a cell of a table, a note in other answers."""
+"""A star after a joint variable gets no message in a table, but a message in other answers."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Values with names are ordered by them, or unreadable if the names contradict each other."""
+"""Named values are put in order; contradicting names make them unreadable."""
 
 import time
 from collections.abc import Mapping
@@ -39,7 +39,7 @@ def euler(sequence: str, expected: str, axes: str = "moving") -> str:
 
 
 def only(report: PartReport, code: str) -> None:
-    """Assert that the report has this code, once, and no other code."""
+    """Assert that the report has exactly one message, and that it has this code."""
     messages = [*report.feedback]
     for row in report.rows:
         messages += (*row.feedback, *(each for cell in row.cells for each in cell.feedback))

@@ -1,7 +1,7 @@
-"""Random robots, frames that are placed on them by construction, and an oracle of the rules.
+"""Random robots, frames that are valid by construction, and an oracle for the rules of frames.
 
 Nothing here uses the geometry of the program: the frames come from plain products of rotations, the
-common normals from least squares, and the oracle only tests the two conditions of a DH row.
+common normals from linear equations, and the oracle only tests the two conditions of a DH row.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ LENGTHS = (0.0, 0.0, 0.4, 0.25, -0.3)
 
 @dataclass(frozen=True)
 class Arm:
-    """A robot in numbers (degrees): rows (a, alpha, d, theta) without the joint variables."""
+    """A robot in numbers; its rows are (a, alpha, d, theta) in degrees, without joint variables."""
 
     structure: str
     convention: str
@@ -114,7 +114,7 @@ class Home:
 
     @property
     def asked(self) -> list[int]:
-        """The indices of the joints on which the exercise asks for a frame."""
+        """The indices of the joints whose frames the exercise asks for."""
         count = len(self.arm.rows) - 1
         first = 1 if self.arm.convention == "standard" else 0
         return [first + i for i in range(count)]
@@ -156,7 +156,7 @@ def unit(vector: Vector) -> Vector:
 
 
 def feet(one: Line, other: Line) -> tuple[Vector, Vector, Vector]:
-    """Return the feet of the common normal of two lines on both, and its direction."""
+    """Return the point of each line on their common normal, and the direction of the normal."""
     normal = unit(np.cross(one.direction, other.direction))
     solved = np.linalg.solve(
         np.column_stack([one.direction, -other.direction, normal]), other.point - one.point
@@ -169,7 +169,7 @@ def feet(one: Line, other: Line) -> tuple[Vector, Vector, Vector]:
 
 
 def drawn_frames(home: Home, rng: Generator) -> list[Placed]:
-    """Draw frames that follow the rules of the convention."""
+    """Draw frames that follow the rules of the robot's convention."""
     standard = home.arm.convention == "standard"
     asked = home.asked
     lines = dict(enumerate(home.axes))

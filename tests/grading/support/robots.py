@@ -21,7 +21,7 @@ AngleUnit = Literal["radians", "degrees"]
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot: its id in the catalogue, its table, and its letters (``joints``, ``lengths``)."""
+    """A robot: its exercise, its table, and the letters for joint variables and for lengths."""
 
     exercise: str
     joints: tuple[str, ...]
@@ -102,7 +102,7 @@ class Spelling:
 
 
 def _named(cell: str, pattern: str) -> str:
-    """Return a cell with another name of its variable; ``#`` in the pattern is the number."""
+    """Return a cell with its variable renamed by ``pattern``, in which ``#`` is the number."""
     name = cell.removesuffix("*")
     if name == cell:
         return cell

@@ -16,7 +16,8 @@ Grid = list[list[str]]
 class Sheet:
     """The labels of an answer's rows and columns, and the JSON shape of the answer.
 
-    ``marked`` are the right marks in a part that asks for a slip; every posted answer has them.
+    ``marked`` are the cells with the slip, if the part asks for a slip; every posted answer marks
+    them.
     """
 
     kind: str
@@ -63,7 +64,7 @@ class Sheet:
 
 
 def sheet_of(part: PartSpec, exercise: Exercise) -> Sheet:
-    """Return the sheet of a part."""
+    """Return the sheet for the answers to a part."""
     shape = dict(part.shape(exercise.reference))
     rows = tuple(shape.get("rows") or ("1",))
     if "matrices" in shape:

@@ -78,8 +78,9 @@ def shortened(text: str) -> str:
 class Thief:
     """A thief at work on one part, at one feedback level.
 
-    ``known`` are the values that need no theft. The trivial values 0, 1 and -1, which are in most
-    cells of every answer, do not count as stolen either. ``hints`` are all hints so far.
+    ``known`` are the texts that the thief knows without a report. The trivial values 0, 1 and -1,
+    which are in most cells of every answer, do not count as stolen either. ``hints`` collects all
+    hints.
     """
 
     exercise: Exercise
@@ -137,7 +138,7 @@ class Thief:
         return first, report.points
 
     def _copied(self, text: str, report: PartReport) -> PartReport:
-        """Return the report after copying ``text`` into every wrong cell that it improves."""
+        """Copy ``text`` into every wrong cell that it improves, and return the new report."""
         everywhere = [
             [own if self._is_right(report, i, j) else text for j, own in enumerate(row)]
             for i, row in enumerate(self.grid)
@@ -182,7 +183,7 @@ def worth(report: PartReport) -> tuple[float, int]:
 
 
 def known_before(sheet: Sheet, grid: Grid) -> set[str]:
-    """Return the texts that a student knows without a report: the answer and the labels."""
+    """Return what a student knows without a report: the texts of an answer, and the labels."""
     labels = {piece for label in (*sheet.rows, *sheet.columns) for piece in label.split(".")}
     return {*labels, *(cell for row in grid for cell in row)}
 
@@ -193,7 +194,7 @@ def thief(exercise: Exercise, part: PartSpec, level: FeedbackLevel, grid: Grid) 
 
 
 def lazy(exercise: Exercise, part: PartSpec) -> Grid:
-    """Return the lazy answer: bare joint variables in a table, the identity, or zeros."""
+    """Return the lazy answer: a table of bare joint variables and zeros, the identity, or zeros."""
     sheet = sheet_of(part, exercise)
     grid = sheet.filled("0")
     if part.kind == "dh_table":

@@ -1,4 +1,4 @@
-"""Names of link transforms in textbooks and programs, and the places that they mean."""
+"""Names of matrices in textbooks and programs, and the links that these names mean."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Screw axes in every way that students write them: rows, columns, named vectors, halves."""
+"""Screw axes as students write them: as rows, as columns, or ω and v separately."""
 
 from collections.abc import Mapping
 from typing import Any

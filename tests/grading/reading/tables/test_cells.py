@@ -125,7 +125,7 @@ def test_too_many_rows_are_still_counted() -> None:
 
 
 def test_only_the_first_names_of_a_body_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each name costs about ten microseconds, and a body may have tens of thousands of them."""
+    """Each name costs about ten microseconds, and a request may have tens of thousands of names."""
     read: list[str] = []
     monkeypatch.setattr(reading_cells, "read_header", read.append)
     canonical_table([{f"α_{i}_{j}": 0 for j in range(200)} for i in range(50)])

@@ -20,7 +20,7 @@ ROWS = "[q1 400 300 90; q2 0 0 0; q3 0 0 0]"
 
 @pytest.fixture
 def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
-    """An arm whose lengths are in metres."""
+    """Return an arm whose lengths are in metres."""
     return catalogue["rrrp"]
 
 

@@ -1,4 +1,4 @@
-"""Empty cells and dashes in a table, and tables with one parameter in each row."""
+"""Empty cells and dashes in a table, and tables with a row for each parameter."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -38,7 +38,7 @@ def graded(exercise: Exercise, answer: object) -> PartReport:
 
 
 def as_zero(exercise: Exercise) -> Exercise:
-    """Return the exercise with the rule that empty cells count as 0."""
+    """Return the exercise, changed so that empty cells count as 0."""
     parts = tuple(
         each.model_copy(update={"empty_cells": "zero"}) if isinstance(each, DhTableSpec) else each
         for each in exercise.parts
