@@ -1,7 +1,8 @@
 """``python -m tests.frame_choice.by_policy --robots N``: random robots under the eight policies.
 
-Draw tables of random robots under each policy and in each convention. Valid ones must get full
-marks, ones with a slip must not, and no verdict may depend on the random samples.
+A policy says which of base, end-effector frame and joint directions the student may choose. Draw
+tables of random robots under each policy and in each convention. Valid tables must get full marks,
+tables with a slip must not, and no verdict may depend on the random samples.
 """
 
 import argparse
@@ -47,7 +48,7 @@ class Counts:
         )
 
     def judge(self, table: Table, edit: Edit | None, seeds: int) -> None:
-        """Grade a table, which is wrong if there is an edit, and count the judgement."""
+        """Grade a table and count the judgement; a table with an ``edit`` is wrong."""
         truth = WRONG if edit else VALID
 
         def count(said: str) -> None:
@@ -70,7 +71,7 @@ class Counts:
 
 
 def full_marks(table: Table, seed: int) -> bool:
-    """True if the table gets full marks with other random samples."""
+    """True if the table gets full marks with the random samples that ``seed`` gives."""
     compiled = exercise(table.robot, table.policy)
     redrawn = replace(compiled, version=f"{compiled.version} {seed}")
     report = grade_rows(redrawn, table.texts, table.convention)

@@ -83,7 +83,7 @@ def total(found: Sequence[Tally]) -> Tally:
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure and its least share, or None if it is only reported."""
+    """A share of tables; ``least`` is its least allowed value, None if it is only reported."""
 
     name: str
     part: int

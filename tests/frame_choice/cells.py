@@ -75,7 +75,7 @@ def _whole(value: float) -> float:
 
 
 def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence[Term]) -> Cell:
-    """Return the cell with ``values`` ``(K,)``: a sum of letters and a constant, or a root."""
+    """Return the cell that has ``values`` at K sets of lengths: a sum with letters, or a root."""
     basis = np.array([*letters.values(), np.ones(len(values))]).T
     solution = np.linalg.lstsq(basis, values, rcond=None)[0]
     if np.abs(basis @ solution - values).max() < SAME:
@@ -92,7 +92,7 @@ def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence
 
 
 def angle_cell(values: Numbers, arcs: Sequence[Term]) -> Cell:
-    """Return the cell with ``values`` ``(K,)`` mod 2π: a constant and at most two of the arcs."""
+    """Return the cell that has ``values`` (mod 2π): a constant plus at most two of the arcs."""
     for count in range(3):
         for chosen in combinations(arcs, count):
             for signs in product((1.0, -1.0), repeat=count):

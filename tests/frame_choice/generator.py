@@ -5,7 +5,8 @@ directions of z and x are random. If the next axis is parallel, the origin and x
 the axis of a prismatic joint may be anywhere. Each row is computed from the common normal between
 two z axes, at K values of the lengths at once. In the end the numbers are written as formulas.
 
-``pose`` is always the student's frame in the reference's frame at the same joint, ``(K, 4, 4)``.
+``pose`` is always the transform ``(K, 4, 4)`` from the reference's frame to the student's frame at
+the same joint.
 """
 
 from dataclasses import dataclass, replace
@@ -87,7 +88,11 @@ class _Reassignment:
         self._read_reference()
 
     def _read_reference(self) -> None:
-        """Read the reference's constants as X_0, then Z_i X_i; ``tool`` is Z_n X_n Z_e."""
+        """Read the reference as a product X_0 (Z_1 X_1) … (Z_n X_n) Z_e of screw motions.
+
+        ``first`` is X_0, ``links`` are the products Z_i X_i without the last one, and ``tool`` is
+        Z_n X_n Z_e.
+        """
         home = {name: np.zeros(K) for name in self.robot.joints}
         cells = cell_values(self.robot.rows, home | self.letters)
         none = np.zeros((1, 2, K))
@@ -205,7 +210,7 @@ class _Reassignment:
         self._end_directly(target)
 
     def _end_directly(self, target: Numbers) -> None:
-        """Append one row to the end-effector frame; its x axis must meet the last z axis at 90°."""
+        """Append a row to the tool's frame, whose x axis must meet the last z axis at 90°."""
         theta = np.arctan2(target[:, 1, 0], target[:, 0, 0])
         alpha = np.arctan2(target[:, 2, 1], target[:, 2, 2])
         a = target[:, 0, 3] * np.cos(theta) + target[:, 1, 3] * np.sin(theta)
@@ -216,7 +221,7 @@ class _Reassignment:
         self.x.append(x)
 
     def _aligned_with_tool(self, pose: Numbers) -> None:
-        """Move the last, prismatic axis so that it meets the tool's x axis; append the last row."""
+        """Move the last (prismatic) axis until it meets the tool's x axis; append the last row."""
         if not self.links:
             raise _UnreachableError
         link = self.links[-1]
@@ -301,7 +306,7 @@ class _Reassignment:
     # Writing down
 
     def _rows(self) -> tuple[CellRow, ...]:
-        """Return the constants as cells, in the rows of the convention."""
+        """Return the constants as cells, grouped in the rows of the table's convention."""
         none = (np.zeros(K), np.zeros(K))
         if self.convention == STANDARD:
             pairs = list(zip(self.x[1:], self.z, strict=True))
@@ -330,5 +335,5 @@ class _Reassignment:
 
 
 def _read_x(screw: Numbers) -> Constants:
-    """Return a and α of an X factor."""
+    """Return a and α of the transforms X = Rot_x(α) Trans_x(a)."""
     return screw[:, 0, 3], np.arctan2(screw[:, 2, 1], screw[:, 2, 2])

@@ -129,7 +129,7 @@ def _screws_of_reference(robot: Robot) -> Numbers:
 
 
 def _base_from_screws(robot: Robot, signs: tuple[int, ...], written: Numbers) -> Numbers:
-    """Return the rigid motions ``(LENGTHS, 4, 4)`` from the reference's screws to the written."""
+    """Return the motions ``(LENGTHS, 4, 4)`` that move the reference's screws to ``written``."""
     reference = _screws_of_reference(robot) * np.array(signs)[:, None]
     return np.array([_align(*pair) for pair in zip(reference, written, strict=True)])
 

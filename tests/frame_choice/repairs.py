@@ -33,8 +33,9 @@ def can_repair(
 ) -> bool:
     """True if other values of these cells make the table valid.
 
-    Each cell becomes a constant for each set of lengths, plus or minus the joint variable in its
-    own column. The constants are found by least squares from several starts.
+    Each cell gets an unknown constant for each set of lengths. In the column of the row's joint
+    variable, the variable is added or subtracted. Least squares finds the constants from several
+    starts.
     """
     values = samples(robot)
     holds_variable = [robot.column(r) == c if r < len(robot.joints) else False for r, c in cells]

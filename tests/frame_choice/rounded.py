@@ -40,7 +40,7 @@ class RoundedCell(Cell):
 
     @property
     def unit(self) -> float:
-        """The value of one unit in the last place; 0 without a constant."""
+        """The value of one unit in the last place, or 0 if the cell has no constant."""
         if not self.constant:
             return 0.0
         return float(10.0 ** (np.floor(np.log10(abs(self.constant))) + 1 - self.figures))
@@ -160,7 +160,7 @@ class RoundedCounts:
     misses: list[str] = field(default_factory=list)
 
     def judge(self, table: Table, kind: str, *, right: bool, seeds: int) -> None:
-        """Grade a table, and count it."""
+        """Grade a table and count the judgement."""
         self.counts[kind] += 1
         try:
             is_right = graded(table).full_marks
@@ -195,7 +195,7 @@ def tables(
 def run(
     numbers: Iterable[int], seed: int, seeds: int = 0, policies: tuple[Policy, ...] = POLICIES
 ) -> RoundedCounts:
-    """Return the counts for the robots with these numbers."""
+    """Return the counts for the random robots with these numbers."""
     found = RoundedCounts()
     for table, rng in tables(numbers, seed, policies):
         figures = int(rng.choice(FIGURES))

@@ -1,4 +1,4 @@
-"""Rounded tables of unseen robots are right, and one with a changed digit is not."""
+"""Rounded tables of random robots are correct; tables with a changed digit are not."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Grade random tables and count the results: valid ones, with one slip, with two."""
+"""Grade random tables (valid ones, and ones with one or two slips) and count the results."""
 
 import time
 from collections import Counter
@@ -33,7 +33,7 @@ DRAWS = 60
 
 @dataclass(frozen=True)
 class Grading:
-    """The report on a table; ``blamed`` are rows (from 0) and columns."""
+    """The report on a table; ``blamed`` are the rows (from 0) and columns of the wrong cells."""
 
     report: PartReport
     blamed: frozenset[Place]
@@ -153,7 +153,7 @@ class Miss:
 
 @dataclass
 class Tally:
-    """Counts by name, times, and misses."""
+    """Counts by name, times of grading, and misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     right_ms: list[float] = field(default_factory=list)
@@ -173,7 +173,7 @@ class Tally:
         self.policies += other.policies
 
     def share(self, name: str, of: str) -> float:
-        """Return the count ``name`` as a share of the count ``of``; 1 if that is 0."""
+        """Return the count ``name`` divided by the count ``of``, or 1 if the count ``of`` is 0."""
         return self.counts[name] / self.counts[of] if self.counts[of] else 1.0
 
 
@@ -194,8 +194,8 @@ def run(
 ) -> Tally:
     """Grade ``tables`` random tables of a robot, and some of them with one slip and with two.
 
-    ``slips`` is the number of tables with slips; all if None. ``explain`` checks for each miss
-    whether the blamed cells could repair the table, which takes long.
+    ``slips`` is the number of tables that are also graded with slips, None for all. If ``explain``
+    is True, check for each miss whether the blamed cells could repair the table, which takes long.
     """
     tally = Tally(explain=explain)
     in_turn = policies(only_given)

@@ -24,7 +24,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Trial:
-    """A graded answer: its slip, and whether no other slip gives the same answer (``alone``).
+    """A graded answer with a slip; ``alone`` is True if no other slip gives the same answer.
 
     ``outcome`` is "named", "silent", "unread", "several messages: …", or the one wrong message.
     """
@@ -57,7 +57,7 @@ def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
 
 
 def spoilt(robot: SpoiltRobot, slip: TableSlip | None) -> list[list[sp.Expr]]:
-    """Return the table with the slip."""
+    """Return the table with the slip, or the correct table for None."""
     if slip is not None and slip.rows:
         return [list(row) for row in slip.rows]
     rows = [list(row) for row in robot.rows]
@@ -67,7 +67,7 @@ def spoilt(robot: SpoiltRobot, slip: TableSlip | None) -> list[list[sp.Expr]]:
 
 
 class Numbers:
-    """Computes answers in numbers at generic joint values, to find equal ones."""
+    """Compute link transforms at random joint values, to find slips that give equal answers."""
 
     def __init__(self, robot: SpoiltRobot) -> None:
         self.robot = robot
@@ -78,7 +78,7 @@ class Numbers:
         self.values = dict(zip(symbols, values.tolist(), strict=True))
 
     def of(self, slip: TableSlip | None) -> np.ndarray:
-        """Return all link transforms ``(rows, 4, 4)``."""
+        """Return all link transforms ``(rows, 4, 4)`` of the table with the slip."""
         rows = spoilt(self.robot, slip)
         numeric = [[float(cell.subs(self.values)) for cell in row] for row in rows]
         return np.array(

@@ -53,8 +53,8 @@ UNSEEN = {
 class SpoiltRobot:
     """A robot: its exercise as TOML, its table in SymPy (a, α, d, θ in radians) and its joints.
 
-    For each row, ``joints`` has the number, the variable, and True for a prismatic joint; None for
-    a fixed row.
+    ``joints`` has an entry for each row: the number, the variable, and True for a prismatic joint;
+    or None for a fixed row.
     """
 
     name: str
@@ -65,7 +65,7 @@ class SpoiltRobot:
 
 
 def robots() -> Iterator[SpoiltRobot]:
-    """Yield all robots; of the shipped ones, those whose files have no variants."""
+    """Yield the robots of shipped exercises without variants, and some others."""
     for file in sorted(shipped_folder().glob("*.toml")):
         text = file.read_text(encoding="utf-8")
         if "table = [\n" in text and "[robot]" in text and "[vary]" not in text:

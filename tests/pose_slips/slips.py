@@ -18,8 +18,8 @@ A, ALPHA, D, THETA = range(4)
 class TableSlip:
     """A wrong cell: its row, its column, its content, and the codes of the slip.
 
-    ``joint`` is the number of the row's joint or of the last one, ``label`` the label of the row.
-    If ``rows`` is set, it is a whole wrong table.
+    ``joint`` is the number of the row's joint; for a fixed row, the number of the last joint.
+    ``label`` is the label of the row. If ``rows`` is set, the slip is a whole wrong table.
     """
 
     row: int
@@ -39,7 +39,11 @@ def slips_of(robot: SpoiltRobot) -> Iterator[TableSlip]:
 
 
 def _of_rows(robot: SpoiltRobot) -> Iterator[tuple[str, tuple[tuple[sp.Expr, ...], ...]]]:
-    """Yield whole tables: a and d or two rows exchanged, all α negated, the other convention."""
+    """Yield whole wrong tables, each with the codes of its slip.
+
+    In a wrong table, a and d are exchanged in a row, two rows are exchanged, all α are negated, or
+    the rows are those of the other convention.
+    """
     rows, none = robot.rows, (sp.Integer(0), sp.Integer(0))
     for i, ((a, alpha, d, theta), joint) in enumerate(zip(rows, robot.joints, strict=True)):
         moving = joint[1] if joint and d.has(joint[1]) else 0

@@ -1,6 +1,6 @@
-"""`python -m tests.worst --minutes 10`: search for the costliest bodies, and print their stages.
+"""`python -m tests.worst --minutes 10`: find the costliest request bodies, and print their stages.
 
-Exit with 1 if a body costs more than 400 times the plain-numpy floor of the benchmarks.
+Exit with 1 if a body costs more than 400 times the benchmarks' floor, a pose in plain NumPy.
 """
 
 import argparse
@@ -19,7 +19,7 @@ PROMISED = 400
 
 
 def line_of(found: Found, target: Target) -> str:
-    """Return the cost, the stages and the beginning of a body as one line."""
+    """Return the cost, the stages and the beginning of a request body as text."""
     stages = Stages()
 
     def action() -> None:

@@ -1,4 +1,4 @@
-"""The costliest bodies found so far, by name."""
+"""The costliest request bodies found so far, by name."""
 
 from collections.abc import Mapping
 from typing import Final

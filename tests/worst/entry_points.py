@@ -1,4 +1,4 @@
-"""The entry points of the program, called with a body and measured with empty caches."""
+"""The entry points of the program, called with a request body and measured with empty caches."""
 
 import asyncio
 import gc
@@ -65,7 +65,7 @@ def forget() -> None:
 
 
 def floor_seconds() -> float:
-    """Measure the processor time of the plain-numpy floor of the benchmarks."""
+    """Return the processor time of the benchmarks' floor: a Stanford arm's pose in plain NumPy."""
     times = []
     for _ in range(20):
         start = time.process_time()
@@ -76,7 +76,7 @@ def floor_seconds() -> float:
 
 
 class Target:
-    """The program in this process."""
+    """The program, started in this process, which gets the requests."""
 
     def __init__(self, exercises: Mapping[str, Exercise]) -> None:
         self.exercises = exercises
@@ -97,11 +97,11 @@ class Target:
         self._folder.cleanup()
 
     def answer(self, attack: Attack) -> int:
-        """Send a request; return the status, which is 200 or 201 if the body was accepted."""
+        """Send a request and return the response's status: 200 or 201 if the body was accepted."""
         return self._action(attack)()
 
     def seconds(self, attack: Attack, rounds: int = 2) -> tuple[float, int]:
-        """Return the least processor time of some answers with empty caches, and their status."""
+        """Send a request several times, with empty caches; return the least time and the status."""
         action = self._action(attack)
         best, status = float("inf"), 0
         for _ in range(rounds):

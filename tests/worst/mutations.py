@@ -1,4 +1,4 @@
-"""Change bodies at random, as an attacker would."""
+"""Change request bodies at random, as an attacker would."""
 
 import copy
 import json
@@ -33,7 +33,7 @@ _ONLY = {PREVIEWS: "entries", FRAMES: "rows"}
 
 
 class Mutator:
-    """Changes bodies at random; ``cells`` are texts to insert."""
+    """Changes request bodies at random; ``cells`` are texts to insert."""
 
     def __init__(self, choose: random.Random, cells: Sequence[str]) -> None:
         self._choose = choose

@@ -1,4 +1,4 @@
-"""Evolutionary search: keep the costliest bodies, and change them at random."""
+"""Evolutionary search: keep the costliest request bodies, and change them at random."""
 
 import random
 import time
@@ -18,7 +18,7 @@ NEARLY = 0.8
 
 @dataclass(frozen=True)
 class Found:
-    """A body and its cost, as a multiple of the floor."""
+    """A measured request body; its cost ``ratio`` is a multiple of the floor."""
 
     ratio: float
     attack: Attack
@@ -26,7 +26,7 @@ class Found:
 
 
 class Search:
-    """The bodies kept, by entry point and exercise."""
+    """Keeps the costliest request bodies for each entry point and exercise."""
 
     def __init__(self, target: Target, seed: int, cells: list[str]) -> None:
         self.kept: dict[tuple[str, str], list[Found]] = defaultdict(list)
@@ -60,7 +60,7 @@ class Search:
             del kept[KEPT:]
 
     def evolve(self, begin: Iterable[Attack], until: float, entry: str = "") -> None:
-        """Try the first bodies, then changes of the costliest, until ``time.monotonic()``."""
+        """Try the first bodies, then changed copies of the costliest, until the time ``until``."""
         first = list(begin)
         self._choose.shuffle(first)
         for attack in first:

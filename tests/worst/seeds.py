@@ -1,4 +1,4 @@
-"""The first bodies of the search: known costly ones, and the checks of exercises."""
+"""The first request bodies of the search: known costly ones, and answers from exercise files."""
 
 import random
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ LONG_TABLE = ["=", "=", "=", {}, "=", ["0^-1", "sqrt(q1)", "theta1", "atan2(0,0)
 
 
 def halves(i: int, runs: int = 6) -> str:
-    """Return an unreadable text that a repair nearly fits; it differs for each ``i``."""
+    """Return an unreadable text, different for each ``i``, that a repair almost makes readable."""
     return "//".join([HALVES] * runs) + str(i)
 
 
@@ -30,7 +30,7 @@ def padded(rows: int, size: int = 16_000, pad: str = "$") -> str:
 
 
 def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]]:
-    """Return link transforms whose entries contain a text; they differ for each ``number``."""
+    """Return link transforms whose entries contain ``text``, different for each ``number``."""
     return [
         [[f"{text}+{1000 * number + 16 * k + 4 * i + j}" for j in range(4)] for i in range(4)]
         for k in range(links)

@@ -30,7 +30,7 @@ def _path(frame: FrameType) -> str:
 
 
 def _stage(frame: FrameType | None) -> tuple[str, str]:
-    """Return the stage, and the innermost function of the service."""
+    """Return the stage of a sample, and the innermost function of the service on the stack."""
     paths: list[str] = []
     innermost = ""
     follows = False
@@ -74,7 +74,7 @@ class Stages:
             signal.signal(signal.SIGPROF, before)
 
     def line(self, most: int = 3) -> str:
-        """Return the largest shares as one line."""
+        """Return the stages and functions with the largest shares as one line."""
         return "; ".join(
             ", ".join(f"{name} {count / (counts.total() or 1):.0%}" for name, count in largest)
             for counts in (self.stages, self.functions)

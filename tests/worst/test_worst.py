@@ -1,4 +1,4 @@
-"""The costliest known bodies are roughly within the promised cost, and the search runs."""
+"""The costliest known bodies cost roughly no more than promised, and the search runs."""
 
 import random
 from collections.abc import Callable, Iterator

@@ -1,8 +1,8 @@
-"""``python -m tests.frame_choice.rows.blanking --tries 20000``: an empty cell must earn no more.
+"""``python -m tests.frame_choice.rows.blanking --tries 20000``: empty cells must not earn more.
 
 Empty a row or a cell in wrong tables of all kinds, under each policy. This should never raise the
-points, but does in a few tables with several wrong rows: an empty cell in a right row can lead the
-search to a better reading, and the work budget limits the readings of a table with extra rows.
+points, but does in a few tables with several wrong rows: an empty cell in a correct row can lead
+the search to a better reading, and the work budget limits the readings of a table with extra rows.
 """
 
 import argparse
@@ -43,7 +43,7 @@ SYSTEMATIC = (
 
 @dataclass
 class Found:
-    """Tries and gains by kind of table, and the tables in which an empty place earned more."""
+    """Counts of tries and of raised points by kind of table, and the tables with raised points."""
 
     tries: Counter[str] = field(default_factory=Counter)
     gains: Counter[str] = field(default_factory=Counter)
@@ -96,7 +96,7 @@ def judge(
     texts: Texts,
     rng: np.random.Generator,
 ) -> None:
-    """Grade a table; grade it again for each of some rows and cells, with this place empty."""
+    """Grade a table; then grade it again with one of its rows or cells empty, several times."""
     compiled = exercise(robot, policy)
     written = grade_rows(compiled, texts, name)
     for row, columns in places(written, len(texts), rng):
@@ -115,7 +115,7 @@ def judge(
 def places(
     report: PartReport, rows: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, Sequence[int]]]:
-    """Yield random places, each a row and its columns; half of the places are blamed ones."""
+    """Yield random places, each a row and columns; half of them are among the wrong cells."""
     blamed = [
         (i, j)
         for i, row in enumerate(report.rows)

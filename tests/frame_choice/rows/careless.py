@@ -68,7 +68,7 @@ def _turned(text: str, sign: str) -> str:
 
 
 def careless(texts: Texts, robot: Robot, rng: np.random.Generator) -> Iterator[tuple[str, Texts]]:
-    """Yield the table with slips that concern whole rows, and with two of them at once."""
+    """Yield the table with one slip of whole rows, and with two such slips at once."""
     first = list(_slips(texts, robot, rng))
     yield from first
     name, slipped = first[int(rng.integers(len(first)))]

@@ -48,7 +48,8 @@ PRAISE = "own_frame_choice"
 class WrongRow:
     """A table with ``count`` wrong cells in one row.
 
-    ``valid`` is the table without them; ``usual`` is True if its frames are the reference's.
+    ``valid`` is the table without the wrong cells; ``usual`` is True if the table has the
+    reference's frames.
     """
 
     robot: Robot

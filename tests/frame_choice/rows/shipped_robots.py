@@ -1,4 +1,4 @@
-"""The robots of the shipped exercises that ask for a table, in the form of these tests."""
+"""The robots of the shipped exercises that ask for a table, converted to ``Robot``."""
 
 import re
 from functools import cache
@@ -14,7 +14,7 @@ _DEGREES = re.compile(r"(\d+(?:\.\d+)?)\s*deg")
 def shipped_robots() -> tuple[Robot, ...]:
     """Return each robot once, because several exercises may ask for the same one.
 
-    Most real robots have a campaign of their own (``tests.exercises.real``).
+    Most real robots are left out: they have a campaign of their own (``tests.exercises.real``).
     """
     found: dict[tuple[str, tuple[TextRow, ...]], Robot] = {}
     shipped = shipped_exercises()
@@ -27,7 +27,7 @@ def shipped_robots() -> tuple[Robot, ...]:
 
 
 def robot_of(exercise: Exercise) -> Robot:
-    """Return the robot of an exercise in the form of these tests."""
+    """Convert the robot of an exercise to ``Robot``."""
     robot = exercise.robot
     rows = []
     for row in robot.tables[robot.convention].rows:

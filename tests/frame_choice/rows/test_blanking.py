@@ -208,7 +208,7 @@ def test_an_empty_place_leads_to_no_better_reading(table: OtherReading) -> None:
 
 
 def _holds(robot: Robot, policy: Policy, convention: str, texts: Texts, empty: Texts) -> None:
-    """Assert that the empty place earns no more, and that the points add up."""
+    """Assert that the table earns no more with empty cells, and that the points add up."""
     compiled = exercise(robot, policy)
     written, blank = (grade_rows(compiled, each, convention) for each in (texts, empty))
     assert 0 < blank.points <= written.points < written.max_points

@@ -1,4 +1,4 @@
-"""Marks in the student's own frames: the points of a lazy table, and the cost of one slip."""
+"""Marks in the student's own frames, for a table without knowledge and for one slip."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Aligning the axes of an arm with those of the same arm, moved as a rigid body."""
+"""The axes of an arm are moved onto the axes of a rigidly moved copy of the arm."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The freedom of a free base remains as long as the axes coincide."""
+"""The freedom that each further joint axis leaves to a free base frame."""
 
 import numpy as np
 

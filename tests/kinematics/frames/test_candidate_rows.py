@@ -31,7 +31,7 @@ RELATIONS = pytest.mark.parametrize("relation", TARGETS)
 
 
 def reached(rows: Numbers, target: Matrices) -> Matrices:
-    """Return the frames after the rows, relative to the target: ``(H, K, L, 4, 4)``."""
+    """Return the frames to which the rows lead, seen from the target frame."""
     return np.asarray(inverse(target)[:, None] @ standard_link(*np.moveaxis(rows, 2, 0)))
 
 

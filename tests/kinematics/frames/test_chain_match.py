@@ -1,4 +1,7 @@
-"""A chain in other frames matches; another chain does not. The identities are from the docs."""
+"""A chain in other frames matches the reference, and another mechanism does not.
+
+The identities are from the documentation.
+"""
 
 from collections.abc import Sequence
 

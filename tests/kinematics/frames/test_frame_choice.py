@@ -1,4 +1,4 @@
-"""The nearest valid table to a table with a slip is the table without it."""
+"""For a table with one slip, the nearest valid table is the table without the slip."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Reversed chains: the inverse product, and the nearest valid table from the tool."""
+"""Reversed chains: their product is the inverse, and valid tables are found from the tool."""
 
 from collections.abc import Sequence
 
@@ -48,7 +48,7 @@ OFFSETS = z_links(cells_of(REFERENCE)[1:])
 
 
 def seen_from_tool(table: Rows) -> tuple[float, Numbers]:
-    """Return the cost of the nearest valid table, and its rows in the order of the table."""
+    """Return the cost and the rows of the nearest valid table, searched for from the tool."""
     targets = reversed_targets(TARGETS, OFFSETS)
     match = nearest_table(reversed_rows(rows_of(table)), targets, 0.5)
     return match.cost, -reversed_cells(match.rows)

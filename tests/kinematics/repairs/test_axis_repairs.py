@@ -1,4 +1,4 @@
-"""The right value of a wrong cell is among the values that follow from the axes."""
+"""The correct value of a wrong cell is among the values that follow from the axes."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ SLIDING = np.array([False, True, False, False, False])
 
 
 def arm(rng: np.random.Generator) -> Table:
-    """Return five rows in general position: each cell moves axes on both of its sides."""
+    """Return five rows of random numbers without zeros, so that no axes are parallel."""
     return rng.uniform(0.3, 1.2, (5, 4, SAMPLES))
 
 

@@ -14,7 +14,7 @@ OF_ENTRIES = {"value", "independent_of", "joint_variable_extra", "term_sign", "q
 
 
 class Counts:
-    """The number of trials, and the numbers of those that are named and placed."""
+    """Counts of all trials, of those with a named slip, and of those with its place named, too."""
 
     def __init__(self) -> None:
         self.all = self.named = self.placed = 0

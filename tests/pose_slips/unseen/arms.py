@@ -88,7 +88,7 @@ def written(cell: Cell, is_angle: bool) -> str:
 
 
 def arms(seed: int, count: int) -> Iterator[Arm]:
-    """Yield ``count`` arms; the lengths are letters in one half of them, and else numbers."""
+    """Yield ``count`` arms; the lengths are letters in every second arm, else numbers."""
     random = Random(seed)
     found = 0
     while found < count:

@@ -26,7 +26,7 @@ LEAST = 10
 
 @cache
 def one_slip_each() -> Sequence[ArmTrial]:
-    """Return the trials with one slip in each arm of the sample."""
+    """Return the trials of all arms in the sample, with one slip of each class."""
     return [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
 
 

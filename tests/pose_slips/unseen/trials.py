@@ -1,4 +1,4 @@
-"""Grade the answers that follow from slips in an arm's table, and check the named slips."""
+"""Grade the answers that follow from slips in an arm's table, and check which slips are named."""
 
 import tempfile
 from collections import defaultdict
@@ -73,7 +73,7 @@ def loaded(text: str) -> Exercise:
 
 
 def right_answer(arm: Arm) -> ArmSlip:
-    """Return the table of the arm without a slip."""
+    """Return the correct table of the arm, as an ArmSlip without codes."""
     return ArmSlip("", frozenset(), arm.table, arm.convention, tuple(range(len(arm.table))))
 
 
@@ -103,7 +103,7 @@ def said_of(exercise: Exercise, kind: str, answer: Any) -> Said:
 
 
 class Slipped:
-    """The slips of an arm, and the numbers of the answers to one kind of part."""
+    """An arm's slips, and the numeric answers to one kind of part that follow from the slips."""
 
     def __init__(self, kind: str, arm: Arm, slips: Sequence[ArmSlip]) -> None:
         self.kind, self.arm, self.slips = kind, arm, slips
@@ -139,7 +139,7 @@ class Slipped:
         return [each for each, found in pairs if _is_same(found, wanted)]
 
     def codes(self, slip: ArmSlip) -> frozenset[str]:
-        """Return the codes of all slips with the same answer, and those of its numbers."""
+        """Return the codes of all slips with the same answer, and codes that fit its numbers."""
         of_slips: frozenset[str] = frozenset().union(*(each.codes for each in self.alike(slip)))
         if self.kind != "links" or slip.kind == CELL:
             return of_slips | of_numbers(self.of(slip), self.right)
