@@ -1,4 +1,4 @@
-"""Drafts: a few, for a limited time, in a folder that processes share."""
+"""Drafts of exercises: a limited number, for a limited time, in a folder that processes share."""
 
 from itertools import count
 from pathlib import Path

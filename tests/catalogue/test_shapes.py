@@ -1,4 +1,4 @@
-"""The shape of each answer, in words."""
+"""Sentences that describe the shape of each answer."""
 
 import re
 from collections.abc import Mapping

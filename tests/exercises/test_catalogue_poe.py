@@ -134,7 +134,7 @@ def xarm6(_: Numbers) -> Chain:
 
 
 def metres(name: str) -> list[float]:
-    """Return the lengths in the statement of an exercise whose numbers are varied, in order."""
+    """Return the lengths (in m) that the statement of an exercise contains, in order."""
     return [
         float(each) for each in re.findall(r"([\d.]+) m\b", shipped_exercises()[name].statement)
     ]
@@ -234,7 +234,7 @@ def drawn(exercise: Exercise) -> dict[str, Vector]:
 
 
 def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
-    """Return T at each sample, ``(SAMPLES, 4, 4)``."""
+    """Return the product of exponentials T at each sample, ``(SAMPLES, 4, 4)``."""
     poses = np.empty((SAMPLES, 4, 4))
     for lane in range(SAMPLES):
         numbers = {name: float(drawn_values[lane]) for name, drawn_values in values.items()}

@@ -1,4 +1,4 @@
-"""Answers printed in lectures get full marks; a misprint gets its points and its message.
+"""Answers printed in lectures get full marks; a misprint gets the expected points and message.
 
 The LaTeX is copied from the lectures: Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics*;
 Robotics and Automation, *Direct Kinematics (Part 2)*; MEAM 520, *More Denavit-Hartenberg (DH)*; and

@@ -44,13 +44,13 @@ def drawn(name: str) -> str:
 
 
 def texts(svg: str) -> list[str]:
-    """Return the texts of a figure as plain names: theta1."""
+    """Return the texts of a figure, with Greek letters spelled out, such as theta1."""
     found = ET.fromstring(svg).iter(f"{SVG}text")
     return ["".join(each.itertext()).translate(GREEK) for each in found]
 
 
 def labels(svg: str) -> set[str]:
-    """Return the names in a figure; a text may be a sum or a list of several."""
+    """Return the names in a figure; one text may contain several, as a sum or a list."""
     return {part for text in texts(svg) for part in re.split(r" \+ |, ", text)}
 
 

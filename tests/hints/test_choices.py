@@ -18,7 +18,7 @@ COLUMNS = ("a", "alpha", "d", "theta")
 
 
 def table_of(exercise: Exercise) -> DhTableSpec | None:
-    """Return the part of an exercise that asks for a table in free frames."""
+    """Return a part that asks for a table in frames of the student's choice, or None."""
     tables = (part for part in exercise.parts if isinstance(part, DhTableSpec))
     free = (each for each in tables if each.frames == "free" and each.convention != "either")
     return next(free, None)
@@ -51,7 +51,7 @@ def move(axis: int, length: float) -> Any:
 def pose(
     rows: Sequence[Mapping[str, str]], exercise: Exercise, convention: str, numbers: Any
 ) -> Any:
-    """Return the product of the four moves of each row."""
+    """Return the pose by a table: for each row, the product of two turns and two moves."""
     product = np.eye(4)
     for row in rows:
         a, alpha, d, theta = (

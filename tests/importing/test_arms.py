@@ -1,4 +1,4 @@
-"""The joints of real arms, from files under free licences, become tables that move as they do."""
+"""Files of real arms, under free licences, are imported as tables that move in the same way."""
 
 from pathlib import Path
 from xml.etree import ElementTree

@@ -1,4 +1,4 @@
-"""Hostile URDF files are refused with their reason, and soon."""
+"""Hostile URDF files are soon refused, and the message says why."""
 
 import time
 from collections.abc import Callable

@@ -85,7 +85,7 @@ def random_parts(rng: np.random.Generator, *, crooked: bool) -> list[Part]:
 
 
 def _place(rng: np.random.Generator) -> list[float]:
-    """Return a place, with some coordinates 0, in whole millimetres."""
+    """Return a random position in whole millimetres, with some coordinates 0."""
     return list(np.round(rng.uniform(-0.6, 0.6, 3) * (rng.random(3) < 0.5), 3))
 
 

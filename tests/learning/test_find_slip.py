@@ -1,4 +1,4 @@
-"""Each of 5,000 seeds draws one slip; full marks need both the mark and the right table."""
+"""Each of 5,000 seeds draws one slip; full marks need its place and the corrected table."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -84,7 +84,7 @@ def elsewhere(drawn: DrawnSlip, count: int) -> Iterator[tuple[int, int]]:
 def covers_all(drawn: DrawnSlip, count: int) -> bool:
     """True if each cell is wrong, or has two wrong cells in its row or column.
 
-    Then all rows may be marked.
+    Then the student may mark all rows at once.
     """
     rows = Counter(i for i, _ in drawn.cells)
     columns = Counter(j for _, j in drawn.cells)

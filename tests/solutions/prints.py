@@ -1,7 +1,7 @@
-"""Hand in model solutions as programs print them: one matrix, or all link transforms in one text.
+"""Submit model solutions as programs print them: one matrix, or all link transforms in one text.
 
-``python -m tests.solutions.prints`` hands in all of them, ``test_printers`` a sample.
-Printers that SymPy lacks are written here; they imitate the programs.
+``python -m tests.solutions.prints`` submits all of them, ``test_printers`` a sample. Printers that
+SymPy lacks are written here; they imitate the programs.
 """
 
 import argparse
@@ -283,7 +283,10 @@ def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
 
 
 def ways_around(name: str) -> Mapping[str, Callable[[str], str]]:
-    """Return the texts that may surround one matrix. A drawn matrix must begin on a new line."""
+    """Return the ways to put text around one matrix.
+
+    A matrix that is drawn over several lines must begin on a new line.
+    """
     left_out = {"named", "product"} if name in DRAWN else set()
     return {way: AROUND[way] for way in AROUND if way not in left_out}
 
@@ -331,7 +334,7 @@ _RIGHTLY_REFUSED = {
 
 
 def refused(each: Print, exercise: Exercise) -> str:
-    """Return why a print does not get full marks; "" if it does, or is rightly refused."""
+    """Return why a print gets no full marks; "" if it gets them, or is refused on purpose."""
     text = each.text
     report = part(handed_in(exercise, {each.part: text}), each.part)
     codes = {message.code for message in report.feedback}

@@ -1,6 +1,6 @@
 """The model solution of every exercise gets full marks as other programs print it.
 
-``prints`` has the printers of matrices and hands in all prints; this file hands in a sample.
+``prints`` has the printers of matrices and submits all prints; this file submits a sample.
 """
 
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""Names in texts; `tests/front/units/names.test.js` tests the scripts with the same cases."""
+"""Symbol names in texts; `tests/front/units/names.test.js` tests scripts with the same cases."""
 
 import json
 import time

@@ -1,4 +1,4 @@
-"""The line of each value in a file."""
+"""The line number of each value in an exercise file."""
 
 import re
 import tomllib

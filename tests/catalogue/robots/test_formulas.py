@@ -215,7 +215,7 @@ def test_an_exercise_without_a_robot(make_exercise: Make) -> None:
 
 
 def test_the_pose_of_a_robot_given_by_screws(make_exercise: Make) -> None:
-    """Turning by q1 and sliding by q2 along the turned x: (l + q2) c1, (l + q2) s1."""
+    """Joint 1 turns by q1, and joint 2 slides by q2: the tool is at (l + q2) c1, (l + q2) s1."""
     exercise = make_exercise(HEAD + SCREWS + PART)
     robot = exercise.reference
     assert isinstance(robot, ScrewRobot)

@@ -30,7 +30,7 @@ class Found:
     misses: list[str] = field(default_factory=list)
 
     def try_whole(self, table: Table) -> None:
-        """Grade a valid table."""
+        """Grade a valid table and count the judgement."""
         self.counts[VALID] += 1
         try:
             found = graded(table)
@@ -43,7 +43,7 @@ class Found:
             self.misses.append(f"valid, not accepted: {table.texts}")
 
     def try_wrong(self, table: Table) -> None:
-        """Grade a wrong table."""
+        """Grade a wrong table and count the judgement."""
         self.counts[WRONG] += 1
         try:
             found = graded(table)

@@ -17,7 +17,7 @@ ARMS = Path(__file__).parents[2] / "importing" / "arms"
 
 
 class Maker(NamedTuple):
-    """A file and its source.
+    """The URDF file of a robot's maker, and the source of the file.
 
     ``signs`` has -1 for each joint that the file counts in the other direction. ``zeros`` are the
     file's joint values, in degrees, at the home configuration of the exercise. Both are empty if
@@ -67,7 +67,7 @@ ROUNDED_MM = {"kinova-gen3": 0.75}
 
 
 def differences(name: str, file: Path) -> list[Difference]:
-    """Return the differences of a robot in both conventions, as written and as converted."""
+    """Return the differences between a robot's table in each convention and the robot's file."""
     exercise, maker = shipped_exercises()[name], MAKERS[name]
     count = len(exercise.joints)
     signs, zeros = maker.signs or (1,) * count, maker.zeros or (0,) * count

@@ -1,4 +1,4 @@
-"""Read the joint axes and the tool at home from the words of a real robot's statement."""
+"""Read the joint axes and the tool frame in the home position from a real robot's statement."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -26,7 +26,11 @@ _TERM = re.compile(r"([+-]?) ?([a-z]\d|\d+(?:\.\d+)?)")
 
 @dataclass(frozen=True)
 class HomeAxis:
-    """A joint at home; ``point`` is None if it slides, ``signed`` False if its sign is free."""
+    """A joint axis in the home position.
+
+    ``point`` is None if the joint slides. ``signed`` is False if the student may choose the
+    positive direction.
+    """
 
     point: Vector | None
     direction: Vector
@@ -35,7 +39,10 @@ class HomeAxis:
 
 @dataclass(frozen=True)
 class Home:
-    """A robot at home; the tool is ``(origin, x, z)``, or None if the statement leaves it free."""
+    """A robot in the home position.
+
+    ``tool`` is ``(origin, x, z)``, or None if the statement does not say where the tool frame is.
+    """
 
     axes: tuple[HomeAxis, ...]
     tool: tuple[Vector, Vector, Vector] | None

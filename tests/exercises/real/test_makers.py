@@ -34,7 +34,7 @@ def test_nine_of_the_robots_are_compared_here() -> None:
 
 
 def of_ur5e(name: str, signs: Sequence[int]) -> Difference:
-    """Compare a robot with the file of the UR5e."""
+    """Return the difference of a robot's table from the URDF file of the UR5e."""
     exercise = shipped_exercises()[name]
     return difference(exercise, Convention.STANDARD, FILES["ur5e"], signs, (0,) * 6, "tool0")
 

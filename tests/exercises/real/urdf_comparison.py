@@ -56,7 +56,7 @@ def difference(
 def table_poses(
     exercise: Exercise, convention: Convention, values: Mapping[str, Numbers]
 ) -> Numbers:
-    """Return the poses by the table, ``(poses, 4, 4)``."""
+    """Return the poses that follow from the table, ``(poses, 4, 4)``."""
     found = np.broadcast_to(np.eye(4), (POSES, 4, 4))
     for row in exercise.robot.tables[convention].rows:
         a, alpha, d, theta = (
@@ -81,7 +81,7 @@ def joints_to(file: Path, tip: str) -> list[ElementTree.Element]:
 
 
 def file_poses(file: Path, tip: str, values: Numbers) -> Numbers:
-    """Return the poses of a link of a file."""
+    """Return the poses of the link ``tip`` that follow from a URDF file."""
     found, left = np.broadcast_to(np.eye(4), (POSES, 4, 4)), list(values)
     for joint in joints_to(file, tip):
         origin, axis = joint.find("origin"), joint.find("axis")
@@ -100,7 +100,7 @@ def file_poses(file: Path, tip: str, values: Numbers) -> Numbers:
 
 
 def words(element: ElementTree.Element | None, name: str, default: str) -> Numbers:
-    """Return the numbers of an attribute."""
+    """Return the numbers in an attribute of an element, or the numbers in ``default``."""
     text = default if element is None else element.get(name, default)
     return np.array([float(word) for word in text.split()])
 
@@ -114,14 +114,14 @@ def turned(axis: Sequence[float] | Numbers, angles: Numbers) -> Numbers:
 
 
 def moved(rotations: Numbers, places: Numbers) -> Numbers:
-    """Return rotations and positions as transforms."""
+    """Return the transforms with these rotations and positions."""
     found = np.zeros((len(rotations), 4, 4))
     found[:, :3, :3], found[:, :3, 3], found[:, 3, 3] = rotations, places, 1
     return found
 
 
 def fitted(reference: Numbers, poses: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the best transform at the base, the poses, and the best transform at the tool.
+    """Return the best transform at the base, the unchanged ``poses``, and the best one at the tool.
 
     From one pose to another, the reference moves by A and the file by B, with A base = base B. The
     axes of these motions give the rotation of the base; linear equations give its position.

@@ -68,7 +68,7 @@ def tip(exercise: Exercise, values: dict[str, float]) -> np.ndarray:
 
 
 def is_the_robot_of_its_statement(exercise: Exercise, seed: int) -> bool:
-    """True if the words give the pose of the tool that the table gives, at three places."""
+    """True if the statement and the table give the same tool poses at three random joint values."""
     rng = np.random.default_rng([seed, 11])
     for _ in range(3):
         values = symbol_values(exercise, rng)
@@ -112,7 +112,7 @@ def share(exercise: Exercise, answer: object) -> float:
 
 
 def model_share(exercise: Exercise, *, solved: bool) -> float:
-    """Return the share of the model solution (slow), or else of the table that was drawn."""
+    """Return the share that the model solution earns (slow), or else the table that was drawn."""
     if solved:
         return share(exercise, solve(exercise).parts[0].answer)
     rows = [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in cells(exercise)]
@@ -125,7 +125,7 @@ def lazy_share(exercise: Exercise) -> float:
 
 
 def segments(exercise: Exercise) -> list[Segment]:
-    """Return the pieces of the path at home, with each length in the middle of its range."""
+    """Return the robot at home as line segments, with each length in the middle of its range."""
     table = exercise.robot.tables[Convention.STANDARD]
     middle = {
         each.name: 0.0 if each.kind == "angle" else (each.low + each.high) / 2
@@ -152,7 +152,7 @@ def segments(exercise: Exercise) -> list[Segment]:
 
 
 def nearest_links(exercise: Exercise) -> float:
-    """Return the least distance of pieces that are not neighbours, by points on them (in m)."""
+    """Return the least distance (in m) between points of links that are not neighbours."""
     shares = np.linspace(0, 1, 41)[:, None]
     points = [start + shares * (end - start) for start, end in segments(exercise)]
     gaps = [

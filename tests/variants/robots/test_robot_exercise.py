@@ -103,7 +103,7 @@ def test_a_statement_of_another_robot_is_noticed() -> None:
 
 
 def texts(exercise: Exercise) -> str:
-    """Return all that students read, each on a line."""
+    """Return everything that students read, with each text on its own line."""
     return "\n".join([
         exercise.title, exercise.source, exercise.summary, exercise.statement,
         *(each.title for each in exercise.parts), *(each.prompt for each in exercise.parts),
@@ -117,7 +117,7 @@ def words(text: str) -> set[str]:
 
 
 def values(text: str) -> Counter[str]:
-    """Return the numbers, letters of lengths, axes and frames in a text."""
+    """Count the numbers in a text, and the names of lengths, axes and frames."""
     return Counter(re.findall(r"-?(?<![A-Za-z])(?:[adhxyz]|theta)?\d+(?:\.\d+)?|\{\w\}", text))
 
 
