@@ -1,4 +1,4 @@
-"""Faults of the checks in a file, and their messages: line, known keys, advice."""
+"""Messages on faults of the checks in an exercise file: line, known keys, advice."""
 
 import re
 from pathlib import Path

@@ -193,7 +193,7 @@ def test_the_pitch_of_the_spatial_arm_is_printed_with_the_wrong_sign(
 def test_the_pitch_by_the_formula_that_the_lecture_prints_with_it(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """β = Atan2(−r31, √(r11² + r21²)); for c23 < 0, it gives another triple of the rotation."""
+    """For c23 < 0, β = Atan2(−r31, √(r11² + r21²)) gives another triple of the same rotation."""
     r11, r21, r31, r32, r33 = "c1 c23", "s1 c23", "s23", "c23", "0"
     beta = f"atan2(-({r31}), sqrt(({r11})^2 + ({r21})^2))"
     by_formula = [

@@ -30,7 +30,7 @@ MISJUDGED, EXACT, UNSTEADY = "misjudged", "blamed on its cell", "changed by the 
 
 @dataclass
 class Counts:
-    """Counts by policy, truth and judgement; ``misses`` are the misjudged tables."""
+    """Counts by policy, truth (valid or wrong) and judgement; ``misses`` are misjudged tables."""
 
     counts: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -93,7 +93,7 @@ def described(table: Table) -> str:
 def run(
     numbers: Iterable[int], seed: int, seeds: int, policies: tuple[Policy, ...] = POLICIES
 ) -> Counts:
-    """Return the counts for some robots, with two tables for each policy and convention."""
+    """Return the counts for random robots, with two tables for each policy and convention."""
     counts = Counts()
     for number in numbers:
         rng = np.random.default_rng([seed, number])
@@ -121,7 +121,7 @@ def _task(task: tuple[range, int, int]) -> Counts:
 
 
 def lines(found: Counts) -> list[str]:
-    """Return the figures of each policy, and of all together, as lines."""
+    """Return the figures of each policy, and of all policies together, as lines."""
     said = [(VALID, ""), (VALID, MISJUDGED), (VALID, UNSTEADY)]
     said += [(WRONG, ""), (WRONG, MISJUDGED), (WRONG, UNSTEADY), (WRONG, EXACT)]
     head = "".join(f"{told or truth:>20}" for truth, told in said)

@@ -145,7 +145,7 @@ def whole_campaign(
     jobs: int | None = None,
     show: Callable[[Task, Tally], None] = lambda _task, _tally: None,
 ) -> tuple[Tally, Tally]:
-    """Return two tallies: with base, tool and directions given, and under the free policies."""
+    """Return two tallies: with base, tool and directions given, and with some of them free."""
     found = []
     for only_given, count in ((True, tables), (False, free_tables)):
         todo = tasks(robots, only_given=only_given, tables=count, seed=seed)

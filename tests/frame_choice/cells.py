@@ -17,7 +17,7 @@ class NotExpressibleError(Exception):
 
 @dataclass(frozen=True)
 class Term:
-    """A closed form other than a sum of letters (a root, an arc tangent), and its values."""
+    """A formula that is no sum of letters (a root, an arc tangent), and its values."""
 
     text: str
     values: Numbers
@@ -25,7 +25,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell; ``variables``, ``letters`` and ``terms`` map names or closed forms to factors."""
+    """A cell: a constant, and the factors of joint variables, letters and other formulas."""
 
     angle: bool
     constant: float = 0.0

@@ -23,7 +23,7 @@ HEAD = f"{'':31}" + "".join(f"{name:>{WIDTH}}" for name, _, _ in COLUMNS) + "   
 
 
 def by_policy(tally: Tally) -> str:
-    """Return the shares of accepted and caught tables under each policy, as text."""
+    """Return, for each policy, the counts of accepted valid tables and of caught slips, as text."""
     lines = []
     for name in sorted({name for name, _ in tally.policies}):
         of = {key: count for (policy, key), count in tally.policies.items() if policy == name}
@@ -35,7 +35,7 @@ def by_policy(tally: Tally) -> str:
 
 
 def line(name: str, tally: Tally) -> str:
-    """Return counts and shares, and the median times of right and of wrong tables, as one line."""
+    """Return counts and shares, and the median times of correct and wrong tables, as one line."""
     cells = []
     for _, part, whole in COLUMNS:
         counted = f"{tally.counts[part]}/{tally.counts[whole]}"

@@ -276,7 +276,7 @@ class _Reassignment:
     def _common_normal(
         self, target: Numbers, axis: Numbers, point: Numbers
     ) -> tuple[Constants, Constants]:
-        """Solve point = d z + a x − t axis with x along z × axis; return (d, θ) and (a, α)."""
+        """Return (d, θ) and (a, α) of the common normal of z and ``axis`` through ``point``."""
         z = np.tile([0.0, 0.0, 1.0], (K, 1))
         x = np.cross(z, axis)
         x /= np.linalg.norm(x, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""The oracle is right about known pairs of tables and known identities."""
+"""The oracle gives the correct verdict on known pairs of tables and on known identities."""
 
 import math
 
@@ -127,7 +127,7 @@ def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
 
 @pytest.mark.long
 def test_the_cells_that_repair_a_table() -> None:
-    """Closed form and least squares give the same cells."""
+    """The closed form and least squares find the same cells."""
     shared = with_cell(RRRP, 1, D, "0.3")  # d1, d2, d3 lie on parallel axes
     assert repairing_cells(RRRP, shared, STANDARD) == {(0, D), (1, D), (2, D), (3, D)}
     alone = with_cell(STANFORD, 1, A, "0.3")

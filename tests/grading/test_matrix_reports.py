@@ -37,7 +37,7 @@ def shift(x: sp.Expr, z: sp.Expr) -> Matrix:
 
 
 def factors(robot: Robot) -> list[tuple[Matrix, Matrix]]:
-    """Return the transforms of each row about and along z, and about and along x."""
+    """Return two transforms for each row: one about and along z, one about and along x."""
     rows = []
     for a, alpha, d, theta in robot.rows:
         length, offset, angle = (

@@ -1,4 +1,4 @@
-"""The engine that finds the misconception that explains a wrong answer."""
+"""The engine that finds which misconception explains a wrong answer."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field

@@ -1,6 +1,6 @@
 """Copying values from a report below the level ``full`` into the wrong cells earns nothing.
 
-No message at these levels contains the right value of a cell.
+No message at the lower levels contains the correct value of a cell.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -67,7 +67,7 @@ def test_a_thief_with_all_hints_gains_nothing(
 
 @pytest.mark.long
 def test_a_thief_gets_the_table_at_full(catalogue: Mapping[str, Exercise]) -> None:
-    """This shows that the test above can fail: at the level full, a thief succeeds."""
+    """At the level ``full``, a thief succeeds; this shows that the test above can fail."""
     table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")
     before, after = table.steal()
     assert before == 0
@@ -134,7 +134,7 @@ def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
 
 
 def _correction(report: PartReport, sheet: Sheet, slip: Slip) -> str | None:
-    """Return the right formula of the slip's cell in a report at the level full."""
+    """Return the correct formula that a report at the level ``full`` gives for the slip's cell."""
     at = sheet.rows[slip.row], sheet.columns[slip.column]
     for message, places, _ in messages_of(report):
         for place in places:

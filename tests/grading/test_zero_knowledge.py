@@ -172,7 +172,7 @@ def test_the_given_transform_is_not_its_own_inverse(catalogue: Mapping[str, Exer
 
 
 def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
-    """For each cell of the table, yield the share that a slip costs, and the share of its row."""
+    """Yield two shares for each cell of the table: the cost of a slip, and the worth of its row."""
     right: Any = solve(exercise).answers[part.id]
     for i, row in enumerate(right["rows"]):
         for column in ZERO_ROW:

@@ -70,7 +70,7 @@ def spans(found: Grid | Refusal) -> list[tuple[int, int]]:
 
 
 def twice(read: Callable[[str], Found], text: str) -> Found:
-    """Return ``read(text)``; fail if a second call differs or both are slow."""
+    """Return ``read(text)``; fail if a second call gives another result, or if both are slow."""
     times = [time.process_time()]
     found = read(text)
     times.append(time.process_time())

@@ -1,4 +1,4 @@
-"""Write a table in each format, as people and programs do. Independent of the reader.
+"""Write a table in each format, as people and programs do, independently of the reader.
 
 ``test_registry`` reads each format back; ``test_hostile`` mutates the texts.
 """

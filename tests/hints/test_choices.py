@@ -1,4 +1,4 @@
-"""Other valid choices of frames describe the same robot, by an independent forward kinematics."""
+"""Independent forward kinematics: other valid choices of frames describe the same robot."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -45,7 +45,7 @@ def file_of(name: str) -> Path:
 
 
 def parts_of(file: Path) -> list[Part]:
-    """Return the joints of a reduced file, in its order, without the importer."""
+    """Read the joints of a reduced file in their order, without using the importer."""
 
     def numbers(joint: ElementTree.Element, part: str, name: str, default: str) -> list[float]:
         found = joint.find(part)

@@ -15,7 +15,7 @@ from tests.importing.urdf_texts import Part, random_parts, urdf
 
 
 def straight_parts(rng: np.random.Generator) -> list[Part]:
-    """Return an arm in which each link leads along one axis: no coordinate needs a root."""
+    """Return an arm in which each link leads along one axis, so that no coordinate needs a root."""
     return [
         Part(
             "revolute",

@@ -1,4 +1,4 @@
-"""Whole chains: poses equal closed forms, and regrouping keeps the product."""
+"""Whole chains: poses equal closed forms, and regrouping the factors keeps the product."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -105,7 +105,7 @@ def test_turns_about_fixed_axes_multiply_from_the_left() -> None:
 
 
 def test_steps_about_fixed_and_moving_axes_can_be_mixed() -> None:
-    """Fixed z by φ, then moving x by θ, then fixed y by ψ is R_y(ψ) R_z(φ) R_x(θ)."""
+    """A turn about fixed z by φ, moving x by θ and fixed y by ψ is R_y(ψ) R_z(φ) R_x(θ)."""
     found = composed([(about("Z", 0.3), True), (about("X", 0.5), False), (about("Y", 0.7), True)])
     expected = Rotation.from_euler("YZX", [0.7, 0.3, 0.5]).as_matrix()
     np.testing.assert_allclose(found, expected, atol=1e-15)

@@ -45,7 +45,7 @@ def exercise_of(robot: SpoiltRobot) -> Exercise:
 
 
 def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
-    """Return the answer that follows from a table."""
+    """Return the answer to a kind of part that follows from a table."""
     if kind == "links":
         return [printed(link(row, robot.convention)) for row in rows]
     reached = pose(rows, robot.convention)

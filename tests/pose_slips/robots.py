@@ -1,4 +1,4 @@
-"""The robots of the campaign: those of all shipped exercises, and some others."""
+"""The robots of the campaign: those of shipped exercises, and some others."""
 
 import re
 import tomllib

@@ -60,7 +60,7 @@ def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], 
 
 
 def _unchanged_entries(before: object, after: object) -> int:
-    """Return the number of long entries that were not replaced."""
+    """Return the number of long entries that are the same before and after."""
     if isinstance(before, list) and isinstance(after, list):
         return sum(map(_unchanged_entries, before, after))
     return int(isinstance(before, str) and before == after and len(before) > 100)

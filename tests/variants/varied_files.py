@@ -39,7 +39,7 @@ frames = "free"
 
 
 def varied_text(vary: str = VARY, more: str = "") -> str:
-    """Return a file with this table ``[vary]``; ``more`` is text in a cell of the robot."""
+    """Return an exercise file with this table ``[vary]``; ``more`` is added to a table cell."""
     return _FILE.format(vary=vary, more=more)
 
 

@@ -1,7 +1,8 @@
 """Random tables of the real robots: valid ones in other frames, and wrong ones.
 
-``python -m tests.exercises.real`` draws 1,000 of each for every robot; the suite draws a few. The
-tables are drawn under the robot's own policy: with base, tool and directions given or free.
+``python -m tests.exercises.real`` draws 1,000 tables of each kind for every robot; the suite draws
+a few. The tables are drawn under the robot's own policy: with base, tool and directions given or
+free.
 """
 
 import zlib

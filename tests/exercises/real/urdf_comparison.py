@@ -37,7 +37,10 @@ def difference(
     zeros: Sequence[float],
     tip: str,
 ) -> Difference:
-    """Compare at random joint values; ``zeros`` are the file's values at the exercise's home."""
+    """Compare a table with a file at random joint values.
+
+    ``zeros`` are the file's joint values at the home configuration of the exercise.
+    """
     names = [joint.variable for joint in exercise.joints]
     values = np.random.default_rng(29).uniform(-np.pi, np.pi, (len(names), POSES))
     of_file = np.array(signs)[:, None] * values + np.radians(zeros)[:, None]

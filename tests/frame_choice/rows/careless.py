@@ -1,9 +1,9 @@
 """``python -m tests.frame_choice.rows.careless``: ``blanking`` with other robots and slips.
 
 The robots are put together from the rows of textbook arms. Their tables have the reference's frames
-or reversed x axes. The slips concern whole rows: exchanged, in degrees, extra, missing, or copied,
-or a and α of the other convention from some row on. As in ``blanking``, an empty row or cell must
-not raise the points.
+or reversed x axes. The slips concern whole rows: rows are exchanged, in degrees, extra, missing or
+copied, or have a and α of the other convention from some row on. As in ``blanking``, an empty row
+or cell must not raise the points.
 """
 
 import argparse

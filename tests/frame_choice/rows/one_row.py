@@ -1,7 +1,7 @@
 """``python -m tests.frame_choice.rows.one_row --tables 5000``: grade tables with one wrong row.
 
-One row of a valid table is wrong in one to four cells, as students write them. The right cells of
-the other rows must stay right, and frames that only the wrong row implies must not be praised. An
+One row of a valid table is wrong in one to four cells, as students write them. The correct cells of
+the other rows must stay correct, and frames that only the wrong row implies must not be praised. An
 exception is a table that can also be explained by fewer wrong cells, or by as many in another row:
 the oracle checks this for the blamed cells. A table gets full marks only if it is valid, or if its
 decimals may be rounded from the numbers of a valid table. Another oracle, ``true_numbers``, checks
@@ -117,7 +117,7 @@ def praises(report: PartReport) -> set[str]:
 
 
 def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
-    """Return the cells that are not right; (-1, -1) if the rows were read in another order."""
+    """Return the cells that are not correct; (-1, -1) if the rows were read in another order."""
     labels = [row.label for row in report.rows]
     if table.robot.labels(len(labels)) != labels:
         return {(-1, -1)}
@@ -215,7 +215,7 @@ def lines(found: Found) -> list[str]:
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if one is beyond its limit."""
+    """Run the campaign and print the figures; return 1 if a figure is beyond its limit."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.one_row")
     parser.add_argument("--tables", type=int, default=5000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")

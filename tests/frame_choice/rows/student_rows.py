@@ -21,7 +21,7 @@ DRAWS = 40
 
 
 def entries(robot: Robot, texts: Texts, row: int, column: int) -> Iterator[str]:
-    """Yield the texts that a student may write in a cell, right or wrong."""
+    """Yield the texts that a student may write in a cell, correct or wrong."""
     written = texts[row][column]
     for other in (row - 1, row + 1, row + 2):
         if 0 <= other < len(texts):

@@ -1,4 +1,7 @@
-"""Each record is used, explains its example, and does not explain its counterexample."""
+"""Each record of a misconception or check is used, and its examples are correct.
+
+A record explains its example, and it does not explain its counterexample.
+"""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The message on rows that are compared with a joint of another number."""
+"""The message that says with which joints the rows of an answer were compared."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,7 @@
-"""Three angles: all triples that give the rotation are correct; a slip costs as few as possible."""
+"""Three angles: all triples that give the rotation are correct.
+
+A slip costs as few of the angles as possible.
+"""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,10 +1,10 @@
 """Pasted texts of students in five languages, each with the meaning that a person gives it.
 
-``pasted_texts/*.txt`` and ``pasted_texts/more/*.txt`` have one file for each language. A line ``===
-title | table elbow`` begins a text. The words after the bar are the name of a meaning in
-``meanings.toml``; or they are ``refused`` for a table that must be refused, ``refused matrix`` for
-a matrix. ⇥ is a tab, ⍽ a no-break space, ⎵ a narrow no-break space. The meanings are plain
-arithmetic. The module ``reference`` evaluates them; it shares no code with the program.
+``pasted_texts/*.txt`` and ``pasted_texts/more/*.txt`` have one file for each language. A text
+begins with a line such as ``=== title | table elbow``. The words after the bar are the name of a
+meaning in ``meanings.toml``, or ``refused`` (a table that must be refused), or ``refused matrix``.
+⇥ is a tab, ⍽ a no-break space, ⎵ a narrow no-break space. The meanings are plain arithmetic. The
+module ``reference`` evaluates them; it shares no code with the program.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Indices in square brackets have one reading; decimal commas are read where they are allowed."""
+"""Indices in square brackets have only one reading; decimal commas are read where allowed."""
 
 from collections.abc import Callable
 from typing import Any

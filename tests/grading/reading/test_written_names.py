@@ -307,7 +307,7 @@ def test_other_names_in_a_table_are_read_with_one_note(answer: object, make_exer
 
 
 def test_a_wrong_variable_keeps_its_own_message(make_exercise: Make) -> None:
-    """The slip in θ2 = θ2 in row 1 is the variable, not the name."""
+    """In row 1, the slip in θ2 = θ2 is the variable, not the name before the equals sign."""
     report = graded(make_exercise(TABLE), with_row(1, "R", "90deg", "0", "theta2 = theta2"))
     assert cell(report, "1", "theta").verdict is Verdict.INCORRECT
 
@@ -320,7 +320,7 @@ MATRIX = one_part(
 
 
 def matrix_with(first: str) -> list[list[str]]:
-    """Return the right matrix with this text as the entry in row 1, column 2."""
+    """Return the correct matrix with this text as the entry in row 1, column 2."""
     return [["1", first, "3"], ["4", "5", "6"], ["7", "8", "9"]]
 
 

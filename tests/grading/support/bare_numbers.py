@@ -23,7 +23,7 @@ COMPONENTS = """components = [
 
 @dataclass(frozen=True)
 class BareExercise:
-    """An exercise file with one part, the right answer to it, and wrong ones."""
+    """An exercise file with one part, the correct answer to the part, and wrong answers."""
 
     kind: str
     fields: str

@@ -177,7 +177,7 @@ class Thief:
 
 
 def worth(report: PartReport) -> tuple[float, int]:
-    """Return the thief's measure of success: the points, and the number of right cells."""
+    """Return the thief's measure of success: the points, and the number of correct cells."""
     cells = [cell.verdict for row in report.rows for cell in row.cells]
     return report.points, cells.count(Verdict.CORRECT)
 

@@ -1,4 +1,4 @@
-"""The marks of a table as a tutor computes them by hand from its text."""
+"""The points of a table, as a tutor computes them by hand from the table's text."""
 
 from collections.abc import Iterable, Sequence
 
@@ -34,8 +34,8 @@ UNREAD = {"stanford-arm": 0.25, "scara": 0.25, "rrrp": 0.25, "planar-rrr": 0.5}
 def points(robot: Robot, wrong: Iterable[int], unread: Iterable[int] = ()) -> list[float]:
     """Return the points of each row of a table.
 
-    ``wrong`` is the row of each cell that costs a unit, ``unread`` the rows in which other cells
-    were not read.
+    ``wrong`` has the row of each cell that costs a unit. ``unread`` has the rows in which other
+    cells were not read.
     """
     wrong, unread, name = list(wrong), set(unread), robot.exercise
     worth = [

@@ -14,7 +14,7 @@ OF_ENTRIES = {"value", "independent_of", "joint_variable_extra", "term_sign", "q
 
 
 class Counts:
-    """Counts of all trials, of those with a named slip, and of those with its place named, too."""
+    """Counts of trials, of trials with the slip named, and of trials with slip and place named."""
 
     def __init__(self) -> None:
         self.all = self.named = self.placed = 0

@@ -16,7 +16,7 @@ WORDS = Vocabulary([Symbol("q1", "angle"), Symbol("q2", "angle")])
 
 
 def wrong(text: str, expected: str) -> WrongValue:
-    """Return the wrong angle ``text``; the right one is ``expected``."""
+    """Return a case with the wrong angle ``text`` and the correct angle ``expected``."""
     expression = read(text, WORDS, quantity="angle")
     right = read(expected, WORDS, quantity="angle")
     zeros = np.zeros(SAMPLES)

@@ -26,7 +26,7 @@ RIGHT = "q1 + q2 + q3 - pi/2"
 
 
 def wrong(text: str, expected: str = RIGHT) -> WrongValue:
-    """Return the wrong angle ``text``; the right one is ``expected``."""
+    """Return a case with the wrong angle ``text`` and the correct angle ``expected``."""
     expression, right = (read(each, WORDS, quantity="angle") for each in (text, expected))
     zeros = np.zeros(SAMPLES)
     return WrongValue(

@@ -1,4 +1,4 @@
-"""Slips in a link transform: it contains angles or factors of earlier links."""
+"""Slips in a link transform that contains angles or factors of earlier links."""
 
 import re
 from collections.abc import Mapping

@@ -29,7 +29,7 @@ SAMPLE = Samples(
 
 
 def wrong(written: str, expected: str, unit: AngleUnit = "radians") -> WrongEntry:
-    """Return the wrong entry ``written``; the right one is ``expected``."""
+    """Return a case with the wrong entry ``written`` and the correct entry ``expected``."""
     expression = read(written, WORDS, angle_unit=unit)
     actual, right = (
         np.array(np.broadcast_to(text.evaluate(SAMPLE.values), SAMPLES))

@@ -17,7 +17,7 @@ from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, 
 
 @dataclass(frozen=True)
 class WrongPose:
-    """A wrong pose ``(COUNT, 4, 4)``; the right one is ``POSE``."""
+    """A wrong pose ``(COUNT, 4, 4)``; the correct pose is ``POSE``."""
 
     actual: Numbers
 

@@ -24,7 +24,7 @@ WORDS = Vocabulary([Symbol(name, "angle" if len(name) > 1 else "length") for nam
 
 
 def step(displacement: tuple[str, str, str], axis: str, angle: str) -> Matrices:
-    """Return the motion by a displacement and then a turn."""
+    """Return a motion: first the displacement, then the turn."""
     motion = np.tile(np.eye(4), (COUNT, 1, 1))
     motion[:, :3, :3] = about(axis, VALUES[angle]) if angle else np.eye(3)
     motion[:, :3, 3] = np.transpose(

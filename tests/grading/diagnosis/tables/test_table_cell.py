@@ -29,7 +29,7 @@ TYPED = SAMPLE.with_names({"theta3", "d1"}).values
 
 
 def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
-    """Return a wrong cell in the row of joint ``number``."""
+    """Return a case with the wrong cell ``written`` in the row of joint ``number``."""
     angle = column in ("alpha", "theta")
     quantity = "angle" if angle else "length"
     expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Tables that have lost a degree of freedom, and tables that only look like it."""
+"""Tables that have lost a degree of freedom, and tables that only seem to have lost one."""
 
 from collections.abc import Callable, Mapping, Sequence
 

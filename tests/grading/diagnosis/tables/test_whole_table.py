@@ -1,7 +1,7 @@
 """Misconceptions about a whole table.
 
 The tables are those of the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1 and a2 added
-so that no column is 0. A table is right if it gives the right pose.
+so that no column is 0. A table is correct if it gives the correct pose.
 """
 
 from dataclasses import replace
@@ -52,7 +52,7 @@ def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np
 
 
 def wrong(table: Table) -> WrongTable:
-    """Return this wrong table; the right one is ``right()``."""
+    """Return a case with this wrong table and the correct table ``right()``."""
     written = written_table.written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
     return WrongTable(written, written, valid)
 
@@ -99,7 +99,7 @@ def with_cell(table: Table, row: int, column: int, value: float) -> Table:
 
 
 def with_lengths_exchanged() -> WrongTable:
-    """Return a wrong table with d1 and d2 exchanged."""
+    """Return a case with a wrong table in which d1 and d2 are exchanged."""
     table = right()
     table[0, D], table[1, D] = LENGTHS["d2"], LENGTHS["d1"]
     written = replace(wrong(table).written, exchanges=(("d1", "d2", right() - table),))

@@ -1,4 +1,4 @@
-"""An empty entry of a matrix, a list or a row never earns more than anything written there."""
+"""An empty entry of a matrix, a list or a row never earns more than any text in its place."""
 
 import json
 import random
@@ -24,7 +24,7 @@ Path = tuple[str | int, ...]
 
 
 def parts_with_answers() -> list[tuple[Exercise, PartSpec, Any]]:
-    """Return each part with its right answer, if the answer contains texts."""
+    """Return each part with its correct answer, if the answer contains texts."""
     return [
         (exercise, part, answer)
         for exercise in shipped_exercises().values()

@@ -1,4 +1,4 @@
-"""The roles of rows that could be paired with the joints in several ways."""
+"""Rows that could be paired with the joints in several ways."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Rows are paired in order so that the sum of their scores is the largest."""
+"""The rows of an answer are paired in order with the expected rows, with the best sum of scores."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Matrices entry by entry: shapes, unreadable entries, messages on wrong ones."""
+"""Matrices entry by entry: their shapes, unreadable entries, and messages on wrong entries."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Spellings of headers and the columns and units that they mean."""
+"""Spellings of headers, and the columns and units that the headers mean."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Units in the headers of a pasted table: converted if that is safe, else refused."""
+"""Units in the headers of a pasted table are converted if that is safe, else refused."""
 
 from collections.abc import Callable, Mapping
 

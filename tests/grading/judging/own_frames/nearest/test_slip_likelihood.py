@@ -1,7 +1,8 @@
 """One slip that could be repaired in several cells: the likeliest cell is wrong.
 
-The RRRP arm's first three axes are parallel, z3 and z4 point down: the pose contains only the sum
-d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics, Example 2).
+The first three axes of the RRRP arm are parallel, and z3 and z4 point down. Therefore the pose
+contains only the sum d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics,
+Example 2).
 """
 
 from collections.abc import Mapping
