@@ -1,4 +1,4 @@
-"""Faults of given rows in an exercise file."""
+"""Messages on faults of given rows in an exercise file."""
 
 from pathlib import Path
 

@@ -167,7 +167,7 @@ def vertical_axes(_: Numbers) -> Chain:
 def in_words(name: str) -> Callable[[Numbers], Chain]:
     """Return the chain that the statement of a real robot describes.
 
-    If the student may choose directions or the tool, those of the reference are used.
+    If the student may choose directions or the tool, the reference's directions or tool are used.
     """
 
     def chain(n: Numbers) -> Chain:

@@ -233,7 +233,7 @@ def test_the_final_stanford_table_of_robotic_fundamentals_has_lost_a_degree_of_f
 def test_the_spherical_wrist_with_the_angle_at_which_it_is_drawn(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The figure is drawn with θ5 = −90°, but the table is right without an offset."""
+    """The figure is drawn with θ5 = −90°, but the correct table has no offset."""
     rows = [("0", "-90", "0", "theta4"), ("0", "90", "0", "theta5"), ("0", "0", "d6", "theta6")]
     assert full_marks(graded(catalogue, "spherical-wrist", "table", table(rows), "degrees"))
     rows[1] = ("0", "90", "0", "theta5 - 90")

@@ -51,7 +51,7 @@ def move(axis: int, length: float) -> Any:
 def pose(
     rows: Sequence[Mapping[str, str]], exercise: Exercise, convention: str, numbers: Any
 ) -> Any:
-    """Return the pose by a table: for each row, the product of two turns and two moves."""
+    """Return the pose that follows from a table: two turns and two moves for each row."""
     product = np.eye(4)
     for row in rows:
         a, alpha, d, theta = (

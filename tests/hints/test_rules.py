@@ -71,10 +71,10 @@ def test_a_picture_names_the_axes_and_the_parameter(convention: Convention) -> N
 
 
 class German(NullTranslations):
-    """The title of one rule in German."""
+    """A translation that only contains the title of one rule, in German."""
 
     def gettext(self, message: str) -> str:
-        """Return the German title; other texts stay."""
+        """Return the German title; other texts stay English."""
         return "Gliedlänge a" if message == "Link length a" else message
 
 

@@ -21,13 +21,13 @@ def filled(head: bytes, unit: bytes, end: bytes = b"</robot>") -> bytes:
 
 
 def entities() -> bytes:
-    """Return entities that would expand to 10^9 letters."""
+    """Return a URDF file whose entities would expand to 10^9 letters."""
     levels = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 10))
     return f'<!DOCTYPE robot [<!ENTITY e0 "a">{levels}]><robot name="&e9;"/>'.encode()
 
 
 def ring() -> bytes:
-    """Return 199 links in a ring."""
+    """Return a URDF file with 199 links in a ring."""
     links = "".join(f'<link name="l{i}"/>' for i in range(199))
     joints = "".join(
         f'<joint name="j{i}" type="fixed"><parent link="l{i}"/><child link="l{(i + 1) % 199}"/>'

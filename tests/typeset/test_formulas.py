@@ -1,4 +1,4 @@
-"""Formulas in MathML, from text."""
+"""Formulas in a text are converted to MathML."""
 
 import re
 

@@ -43,9 +43,9 @@ _CACHES = (
 
 @dataclass(frozen=True)
 class Attack:
-    """One request: its entry point, the exercise in its path, and its body.
+    """A request: its entry point, the exercise in its path, and its body.
 
-    Each time an attempt is sent, it has a new learner.
+    Whenever an attempt is sent, it belongs to a new learner.
     """
 
     entry: str

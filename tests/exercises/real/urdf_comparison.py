@@ -19,8 +19,8 @@ POSES = 100
 class Difference:
     """The largest differences of the poses, and the distances of the bases and of the tools in mm.
 
-    Before the poses are compared, those of the file are multiplied by two constant transforms, one
-    at the base and one at the tool, that fit best.
+    Before the comparison, the poses of the file are multiplied by two constant transforms that fit
+    best, one at the base and one at the tool.
     """
 
     millimetres: float
@@ -146,7 +146,7 @@ def fitted(reference: Numbers, poses: Numbers) -> tuple[Numbers, Numbers, Number
 
 
 def turning_axes(poses: Numbers) -> Numbers:
-    """Return the axis of each turn, as long as twice the sine of its angle."""
+    """Return the axis of each turn; its length is twice the sine of the turn's angle."""
     r = poses[:, :3, :3]
     return np.stack(
         [r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]], axis=1

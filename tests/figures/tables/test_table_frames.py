@@ -1,4 +1,4 @@
-"""The frames of students' tables, right or wrong."""
+"""The frames of students' tables, correct or wrong."""
 
 import numpy as np
 import pytest
@@ -41,7 +41,7 @@ def test_the_frames_of_an_elbow_are_those_computed_by_hand() -> None:
 
 
 def test_frames_follow_the_convention_and_the_angle_unit() -> None:
-    """In the modified convention, a and α come before d and θ, so the arm is another one."""
+    """In the modified convention, a and α come before d and θ, which gives another arm."""
     found = framed(ELBOW, "RR", [[0, 0]], MODIFIED, d1=0.5, a2=2)
     assert found.frames[0, 2, :3, 3] == pytest.approx([2, -0.5, 0])
     scope = free_scope("R")

@@ -44,7 +44,7 @@ def symbol_values(exercise: Exercise, rng: np.random.Generator) -> dict[str, flo
 
 
 def tip(exercise: Exercise, values: dict[str, float]) -> np.ndarray:
-    """Return the pose of the tool by the table: the product of its links, in plain sines."""
+    """Return the tool pose from the table: the product of the link transforms, in plain sines."""
     reached = np.eye(4)
     for row in exercise.robot.tables[exercise.robot.convention].rows:
         a, alpha, d, theta = (
@@ -106,7 +106,7 @@ def form(exercise: Exercise) -> tuple[object, ...]:
 
 
 def share(exercise: Exercise, answer: object) -> float:
-    """Return the share of its points that an answer earns."""
+    """Return the share of the exercise's points that an answer earns."""
     report = grade(exercise, Submission({"table": answer}))
     return report.points / report.max_points
 

@@ -35,7 +35,7 @@ DIGEST = "bb8280642a5d676c"
 
 
 def digest() -> str:
-    """Return the digest of all that students see of the first robots, and of their tables."""
+    """Return one digest of what students see of the first robots, and of the robots' tables."""
     seen = [
         (each.id, each.version, each.statement, each.summary, str(each.view))
         for level in LEVELS
