@@ -1,4 +1,4 @@
-"""The misconceptions that explain wrong answers. All files are imported to register them."""
+"""The misconceptions that explain wrong answers. Importing this package registers all of them."""
 
 from importlib import import_module
 from pkgutil import walk_packages

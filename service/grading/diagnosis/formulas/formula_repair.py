@@ -29,9 +29,9 @@ MAX_TEXT = 200
 class Rewritten(Repaired[Node]):
     """The student's formula without the misconception.
 
-    The formula explains the entry if the formula is right. Unless ``signed``, a formula that has
-    only the wrong sign explains the entry, too. ``WrongEntry`` adds sign and correction to the
-    finding.
+    The rewritten formula explains the entry if the rewritten formula is correct. Unless ``signed``,
+    it also explains the entry if only its sign is wrong. ``WrongEntry`` then adds the sign and the
+    correction to the finding.
     """
 
     signed: bool = False
@@ -39,9 +39,10 @@ class Rewritten(Repaired[Node]):
 
 @dataclass(frozen=True, kw_only=True)
 class WrongEntry(WrongValue):
-    """A wrong entry of a matrix or a list. ``turning`` maps joint numbers to turning joints.
+    """A wrong entry of a matrix or a list.
 
-    If ``only_compared``, the formula of the entry is not rewritten.
+    ``turning`` maps the number of each turning joint to the symbol of its angle. If
+    ``only_compared``, the formula of the entry is not rewritten.
     """
 
     turning: Mapping[int, Symbol]
@@ -77,10 +78,10 @@ class WrongEntry(WrongValue):
                 yield self._completed(hypothesis, sign)
 
     def _sign(self, rewritten: Rewritten) -> int | None:
-        """Return the sign that makes the rewritten formula right, or None.
+        """Return the sign, 1 or -1, that makes the rewritten formula correct, or None.
 
-        A formula that is right at one point is evaluated at all samples. A formula with the same
-        value as the student's explains nothing.
+        Only a formula that is correct at one point is evaluated at all samples. A rewritten formula
+        that has the same value as the student's formula explains nothing.
         """
         tree = rewritten.answer
         if tree is self.tree:

@@ -110,9 +110,10 @@ def without_degrees(node: Node) -> Node:
 
 
 def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
-    """Return a rewriting of the sine or cosine of one joint angle.
+    """Return a rewriting of the sine or cosine of a single joint angle.
 
-    The angle becomes the sum of the angles from joint ``first`` up to this joint: c12 for c2.
+    The angle of joint ``k`` becomes the sum of the angles from joint ``first`` to joint ``k``: c2
+    becomes c12.
     """
 
     def rewrite(node: Node) -> Node:
@@ -163,7 +164,7 @@ def _joints_in(call: Call) -> set[int]:
 
 
 def _joint_of(node: Node) -> int | None:
-    """Return the turning joint whose angle alone is the node, or None."""
+    """Return the joint number if the node is only the angle of a turning joint, else None."""
     if isinstance(node, SymbolNode) and node.symbol.kind == "angle":
         return node.symbol.joint
     return None
@@ -270,7 +271,7 @@ def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]
 
 
 def _products(tree: Node) -> Iterator[list[Node]]:
-    """Yield the factors of each product that is not itself a factor of a product."""
+    """Yield the factors of each product that is not a factor of a larger product."""
     pending = [tree]
     while pending:
         node = pending.pop()

@@ -49,7 +49,7 @@ NOT_RIGHT = say("This angle is not right: check which two directions it is measu
 
 
 class WrongAngle(WrongValue):
-    """The class for the records of wrong angles. The cases themselves are plain WrongValues."""
+    """The class that records of wrong angles name; the wrong angles are plain WrongValues."""
 
 
 @misconception(
@@ -168,7 +168,7 @@ def lost_sign(case: WrongValue) -> Hypotheses:
     unlike="[theta6, theta5, theta4]",
 )
 def half_turn(case: WrongValue) -> Hypotheses:
-    """The angle is off by half a turn (180°)."""
+    """The angle differs by half a turn (180°) from the correct angle."""
     finding = finding_on(
         case,
         say(
@@ -192,7 +192,7 @@ def half_turn(case: WrongValue) -> Hypotheses:
 def swapped_atan2(case: WrongValue) -> Hypotheses:
     """The arguments of atan2 were exchanged, so the result is 90° minus the angle.
 
-    A constant without an arctangent is more likely to be off by a quarter turn.
+    If the angle is a constant without an arctangent, a wrong quarter turn is more likely.
     """
     if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
         yield Written(np.pi / 2 - case.expected, finding_on(case, ARGUMENTS_SWAPPED))
@@ -225,7 +225,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
 
 @check(of=WrongAngle, rank=200)
 def of_sum(case: WrongValue) -> Explained | None:
-    """The right angle is a sum of angles, and the student's sum has a slip (``angle_sum``)."""
+    """The correct angle is a sum of angles, and the student's sum has a slip (``angle_sum``)."""
     return explanation(case, WrongSum.of(case))
 
 

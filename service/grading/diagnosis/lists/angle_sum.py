@@ -18,7 +18,7 @@ MAX_ADDENDS = 6
 
 
 def addends(case: WrongValue) -> dict[str, int]:
-    """Return the count of each symbol in the right angle; empty if the angle is not a sum."""
+    """Return the count of each symbol in the correct angle; empty if the angle is not a sum."""
     names = list(case.samples.values)
     columns = [case.samples.values[name] for name in names]
     system = np.stack([*columns, np.ones_like(case.expected)], axis=1)
@@ -52,18 +52,18 @@ def _sum_of(case: WrongValue, counts: Mapping[str, int]) -> Numbers:
 
 @dataclass(frozen=True, slots=True)
 class WrongSum:
-    """A wrong angle, and the count of each symbol in the right angle."""
+    """A wrong angle, and the count of each symbol in the correct angle."""
 
     case: WrongValue
     counts: Mapping[str, int]
 
     @classmethod
     def of(cls, case: WrongValue) -> "WrongSum":
-        """Return the case of a wrong angle."""
+        """Return the wrong angle with the counts of the symbols in the correct angle."""
         return cls(case, addends(case))
 
     def named(self, names: Iterable[str]) -> str:
-        """Return the symbols in the student's names."""
+        """Return the symbols, listed by the names that the student uses."""
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:
@@ -192,7 +192,7 @@ def added(wrong: WrongSum) -> Hypotheses:
     unlike={"3/1": "0"},
 )
 def of_another_joint(wrong: WrongSum) -> Hypotheses:
-    """The sum contains another joint's angle in place of the right one."""
+    """The sum contains the angle of a wrong joint in place of the correct angle."""
     for other, value in wrong.others():
         for name, count in wrong.counts.items():
             hint = say(

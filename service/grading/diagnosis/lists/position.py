@@ -55,7 +55,7 @@ class WrongPosition(WrongNumbers):
     unlike="[a1 s1 - a2 s12, a1 c1 + a2 c12]",
 )
 def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
-    """The coordinates are right, but in each other's places."""
+    """The coordinates are correct, but in the wrong order."""
     names = ", ".join("xyz"[axis] for axis in case.axes)
     finding = says(
         say("These coordinates are in the wrong order: it must be {order}.", order=names)
@@ -113,7 +113,7 @@ def length_unit(case: WrongPosition) -> Hypotheses:
 def other_pose(case: WrongPosition) -> Hypotheses:
     """The position belongs to another pose of the chain.
 
-    A constant position, such as the origin itself, does not show its pose.
+    A constant position, such as the origin itself, does not show which pose it belongs to.
     """
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]

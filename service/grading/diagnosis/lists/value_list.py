@@ -1,4 +1,4 @@
-"""Slips in a list of single values, each with a quantity of its own."""
+"""Slips in a list of single values; each value is a length, an angle or a number."""
 
 import numpy as np
 
@@ -46,8 +46,8 @@ def slips_of(
 ) -> dict[tuple[int, int], Finding]:
     """Return the findings on wrong readable values, as far as the work budget allows.
 
-    The key of a finding is ``(place, 0)``. ``answers`` are the answers that changed symbols lead
-    to.
+    The key of a finding is ``(place, 0)``. ``answers`` are the answers that follow if the values of
+    symbols change.
     """
     student, scales = compared.student, compared.scales(grading)
     requirements = answers and Requirements(

@@ -144,7 +144,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     unlike={"4/2": "1"},
 )
 def moment_sign(product: Exponentials) -> Hypotheses:
-    """Every turning joint has v = ω × q."""
+    """For every turning joint, v has the wrong sign: v = ω × q."""
     finding = says(
         say(
             "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "

@@ -73,6 +73,6 @@ def _numbers(indices: list[int]) -> str:
 
 
 def _parts(indices: list[int]) -> str:
-    """Return the names of the axes of a frame, and of its position."""
+    """Return the names of the columns or rows: axes of a frame, or the position vector."""
     names = [*(say("{letter} axis", letter=letter) for letter in "xyz"), say("position vector")]
     return listed([names[i] for i in indices])

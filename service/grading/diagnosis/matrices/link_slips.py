@@ -1,4 +1,4 @@
-"""Slips in a link transform: angles or factors of earlier links are in it."""
+"""Slips in a link transform that contains angles or factors of earlier links."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -29,8 +29,8 @@ from service.translations import say
 class LinkAmongOthers:
     """A link transform and the links before it.
 
-    ``links`` ``(k, samples, 4, 4)`` are right; the last one is the link itself. ``angles``
-    ``(j, samples)`` are the joint angles of the links before it.
+    ``links`` ``(k, samples, 4, 4)`` are the correct transforms; the last one is the link itself.
+    ``angles`` ``(j, samples)`` are the joint angles of the links before it.
     """
 
     links: Matrices
@@ -46,9 +46,9 @@ class LinkAmongOthers:
         convention: Convention,
         count: int,
     ) -> "LinkAmongOthers":
-        """Return the case of the last of ``links`` ``(k, SAMPLES, 4, 4)``.
+        """Return the last of ``links`` ``(k, SAMPLES, 4, 4)`` with the links before it.
 
-        It has ``count`` samples of each half.
+        The result has the first ``count`` samples of each half.
         """
         turning = [joint.variable for joint in joints[: len(links) - 1] if not joint.prismatic]
         values = samples.subset(count).values
@@ -107,7 +107,7 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     unlike={"A1.3/2": "1"},
 )
 def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
-    """The product of all links up to this one was handed in."""
+    """The student submitted the product of all links up to this link."""
     finding = says(
         say(
             "This is the product of all link transforms up to this one. A link transform leads "

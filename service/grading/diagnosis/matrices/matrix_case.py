@@ -24,13 +24,13 @@ BOTTOM_ROW: Block = (slice(3, 4), slice(None))
 
 @dataclass(frozen=True)
 class MatrixCase(WrongNumbers):
-    """A wrong matrix: ``(rows, columns, SAMPLES)``, NaN if unreadable.
+    """A wrong matrix ``(rows, columns, SAMPLES)``; unreadable entries are NaN.
 
     ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` is
-    True for a transform (4×4) or a rotation (3×3). ``chains`` holds the links whose product the
-    matrix is; it is empty for other matrices. ``motion`` holds the single motions in the formulas
-    of the exercise. ``slips`` compares the matrix with the answers that slips of the table lead to,
-    or is None if there are no such answers.
+    True for a transform (4×4) or a rotation (3×3). If the matrix is a product of links, ``chains``
+    holds these links, else it is empty. ``motion`` holds the single motions in the formulas of the
+    exercise. ``slips`` compares the matrix with the answers that slips of the table lead to, or is
+    None if there are no such answers.
     """
 
     wrong: Mask

@@ -247,7 +247,7 @@ def angle_too_many(case: WrongEntry) -> Formulas:
 
 
 def _joint_angles(case: WrongEntry) -> list[Symbol]:
-    """Return the joint angles if the formula has a sine or cosine, or else none."""
+    """Return all joint angles if the formula contains a sine or cosine, else an empty list."""
     return [case.turning[k] for k in sorted(case.turning)] if case.sines_and_cosines else []
 
 
@@ -283,7 +283,10 @@ def term_sign(case: WrongEntry) -> Formulas:
 
 
 def diagnose(case: WrongEntry, required: Required | None = None) -> Finding:
-    """Return the finding on a wrong entry; ``required`` is None if unknown."""
+    """Return the finding on a wrong entry.
+
+    ``required`` are the symbols that the correct entry depends on, or None if they are unknown.
+    """
     return diagnosed(case) or _unexplained(case, required)
 
 
@@ -295,7 +298,8 @@ def diagnose_entries(
 ) -> dict[tuple[int, int], Finding]:
     """Return the findings on the wrong entries, as far as the submission's budget ``affords``.
 
-    ``work_budget`` is the budget of the matrix. When it is used up, formulas are not rewritten.
+    ``work_budget`` is the budget of the matrix. When this budget is used up, formulas are no longer
+    rewritten.
     """
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():

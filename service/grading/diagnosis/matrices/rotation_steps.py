@@ -22,7 +22,7 @@ MAX_STEPS = 4
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A turn: axis "X", "Y" or "Z", rotation ``(SAMPLES, 3, 3)``, and True if the axis is fixed."""
+    """A turn: axis "X", "Y" or "Z", rotation ``(SAMPLES, 3, 3)``, and whether the axis is fixed."""
 
     axis: str
     rotation: Matrices
@@ -222,7 +222,7 @@ def another_order(steps: Sequence[Step]) -> Hypotheses:
 
 
 def _about(axis: str, step: Step) -> Matrices:
-    """Return the turn of a step about another axis."""
+    """Return the turn of a step by the same angle, but about ``axis``."""
     shift = (ord(axis) - ord(step.axis)) % 3
     return np.roll(step.rotation, (shift, shift), axis=(1, 2))
 

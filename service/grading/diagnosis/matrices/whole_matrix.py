@@ -281,7 +281,7 @@ def bottom_row(case: MatrixCase) -> Explained | None:
 class WrongAxes:
     """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix.
 
-    ``codes`` are the codes of the findings on its entries.
+    ``codes`` are the codes of the findings on the entries of the rotation.
     """
 
     rotation: Numbers

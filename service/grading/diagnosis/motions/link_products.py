@@ -1,8 +1,8 @@
 """Slips in a product of link transforms.
 
-Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the pose, its
-rotation or its position. Therefore a finding has only the name of the pose and advice. ``named``
-puts both into a sentence: "This matrix is …", "The position comes from …".
+Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may submit the pose, its
+rotation or its position. Therefore a finding contains only the name of the pose, and advice.
+``named`` puts both into a sentence: "This matrix is …", "The position comes from …".
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -25,7 +25,7 @@ LinkPose = Written[Matrices]
 
 @dataclass(frozen=True)
 class Chain:
-    """The links of the reference.
+    """The links of the reference robot.
 
     ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame before each row, then the last
     frame.
@@ -42,12 +42,12 @@ class Chain:
 
     @cached_property
     def from_base(self) -> Matrices:
-        """The pose of the frame after each row in the base frame: A_1, A_1 A_2 and so on."""
+        """For each row, the pose of the next frame in the base frame: A_1, A_1 A_2 and so on."""
         return _running_products(self.links)
 
     @cached_property
     def to_end(self) -> Matrices:
-        """The pose of the last frame in the frame before each row: A_1 … A_n first, A_n last."""
+        """For each row, the last frame's pose in the previous frame: A_1 … A_n first, A_n last."""
         turned = np.swapaxes(self.links[::-1], -1, -2)
         return np.swapaxes(_running_products(turned), -1, -2)[::-1]
 
@@ -149,7 +149,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     unlike={"3/1": "-c5*s6"},
 )
 def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
-    """The pose of a frame before the last one was handed in."""
+    """The student submitted the pose of a frame before the last one."""
     last = len(chain.links)
     for k in reversed(range(1, last)):
         finding = _other_pose(
@@ -170,7 +170,7 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/1": "0"},
 )
 def wrong_base(chain: Chain) -> Iterator[LinkPose]:
-    """The pose was described in a frame after the base frame."""
+    """The pose was described in a later frame instead of the base frame."""
     for k in range(1, len(chain.links)):
         finding = _other_pose(
             say("the pose seen from frame {frame}", frame=chain.frame(k)),

@@ -132,7 +132,7 @@ def missing_displacement(motion: GivenMotion) -> Hypotheses:
     unlike="[0, 0, 0]",
 )
 def lone_displacement(motion: GivenMotion) -> Hypotheses:
-    """The answer is the displacement of one motion alone, in any of the frames."""
+    """The answer is the displacement of one motion alone, described in any of the frames."""
     found = motion.displacements
     for i, each in enumerate(found) if len(found) > 1 else ():
         if _are_numbered(found):
@@ -144,7 +144,11 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
 
 
 def _are_numbered(found: Sequence[Displacement]) -> bool:
-    """True if displacement ``i`` belongs to motion ``i + 1``, after ``i`` turns."""
+    """True if each displacement is turned by one more angle than the displacement before it.
+
+    The first displacement must not be turned. Then displacement ``i``, counted from 0, belongs to
+    motion ``i + 1``.
+    """
     return [len(each.angles) for each in found] == list(range(len(found)))
 
 
@@ -237,7 +241,7 @@ OTHER_ORDER = says(
     unlike={"2/2": "0"},
 )
 def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
-    """The motions were multiplied in reverse order; the last two may be in the right order."""
+    """The motions were multiplied in reverse order; the last two may be in the correct order."""
     steps = motion.steps
     if steps is not None and len(steps) > 2:
         *moved, last = steps
@@ -265,11 +269,11 @@ def motion_of_rows(case: MatrixCase) -> Hypotheses:
 
 @misconception(of=RotationBlock, rank=90)
 def turns_of_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation is composed of other turns."""
+    """The rotation is composed of other turns than the formulas say."""
     return _in_matrix(case, TurnsOfMotion, ROTATION_BLOCK)
 
 
 @misconception(of=PositionBlock, rank=90)
 def displacements_of_position(case: MatrixCase) -> Hypotheses:
-    """The position is a sum of other displacements."""
+    """The position is a sum of other displacements than the formulas say."""
     return _in_matrix(case, Displacements, POSITION_BLOCK)

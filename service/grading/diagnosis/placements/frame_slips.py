@@ -15,7 +15,7 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class WrongPlacement:
-    """A wrong cell of a placed frame. ``slack`` is how far a rule may be missed."""
+    """A wrong cell of a placed frame. ``slack`` is the largest accepted deviation from a rule."""
 
     convention: Convention
     place: RightPlace
@@ -27,16 +27,16 @@ class WrongPlacement:
 
     @property
     def is_standard(self) -> bool:
-        """True if x must cross the z axis of the frame before.
+        """True if x must cross the z axis of the previous frame.
 
-        Otherwise x must cross the z axis of the frame after.
+        Otherwise x must cross the z axis of the next frame.
         """
         return self.convention is Convention.STANDARD
 
 
 @dataclass(frozen=True)
 class WrongJointAxis(WrongPlacement):
-    """A wrong joint number of a frame; ``right`` is the frame's own joint."""
+    """A wrong joint number of a frame; ``right`` is the number of the correct joint."""
 
     chosen: int
     right: int
@@ -58,7 +58,7 @@ class WrongFrameOrigin(WrongPlacement):
 
 @dataclass(frozen=True)
 class WrongFrameX(WrongPlacement):
-    """A unit x direction ``(SAMPLES, 3)`` that is not right."""
+    """A unit vector ``(SAMPLES, 3)`` that is a wrong x direction."""
 
     x: Numbers
 
@@ -80,7 +80,7 @@ _FRAMES = "stanford-arm-frames"
     unlike={"2/axis": "5"},
 )
 def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
-    """The joint would be right in the other convention."""
+    """The joint number would be correct in the other convention."""
     step = -1 if case.is_standard else 1
     if case.chosen != case.right + step:
         return None
@@ -107,7 +107,7 @@ def axis_of_other_convention(case: WrongJointAxis) -> Finding | None:
     unlike={"2/axis": "2"},
 )
 def wrong_joint_axis(case: WrongJointAxis) -> Finding | None:
-    """The frame has the number of any other wrong joint."""
+    """The joint number is wrong in both conventions."""
     return says(
         say("z of this frame belongs on the axis of another joint: count the joints again."),
         say("Put z along the axis of joint {joint}.", joint=case.right),
@@ -143,7 +143,7 @@ def z_not_along_axis(_: WrongFrameZ) -> Finding | None:
     unlike={"5/origin_z": "d2"},
 )
 def origin_off_axis(case: WrongFrameOrigin) -> Finding | None:
-    """The origin is beside the axis."""
+    """The origin is not on the joint axis."""
     if case.place.own.distance(case.origin) <= case.slack:
         return None
     return says(say("The origin is not on the joint axis along which z lies."))
@@ -159,7 +159,7 @@ def origin_off_axis(case: WrongFrameOrigin) -> Finding | None:
     unlike={"5/origin_x": "d2"},
 )
 def origin_not_at_intersection(case: WrongFrameOrigin) -> Finding | None:
-    """The axes cross, and the origin is not at the crossing."""
+    """The axes cross, but the origin is not at their intersection."""
     if case.place.relation is not AxisPosition.CROSSING:
         return None
     if case.is_standard:
@@ -187,7 +187,7 @@ def origin_not_at_intersection(case: WrongFrameOrigin) -> Finding | None:
     unlike={"1/origin_x": "L1"},
 )
 def origin_not_on_normal(case: WrongFrameOrigin) -> Finding | None:
-    """The axes are skew, and the origin is not at the foot of their common normal."""
+    """The axes are skew, but the origin is not at the foot of their common normal."""
     if case.place.relation is not AxisPosition.SKEW:
         return None
     if case.is_standard:

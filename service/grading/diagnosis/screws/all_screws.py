@@ -19,10 +19,11 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True)
 class WrongScrews(WrongNumbers):
-    """Screw axes that are not the expected ones, ``(joints, 6, SAMPLES)`` each.
+    """The screw axes in the answer and the expected axes, ``(joints, 6, SAMPLES)`` each.
 
-    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``elsewhere`` holds all axes in the other
-    frame, and ``frame`` is "space" or "body", as in ``WrongScrew``.
+    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``frame`` is the frame that is asked for,
+    "space" or "body". ``elsewhere`` holds the correct axes in the other frame, or None if they are
+    unknown.
     """
 
     wrong: Mask
@@ -36,11 +37,11 @@ class WrongScrews(WrongNumbers):
 
     @property
     def axes(self) -> list[WrongScrew]:
-        """All axes, each as a case of its own."""
+        """A ``WrongScrew`` for each of the axes."""
         return [self.axis(i) for i in range(len(self.expected))]
 
     def axis(self, i: int) -> WrongScrew:
-        """Return axis ``i`` as a case of its own."""
+        """Return the ``WrongScrew`` of axis ``i``."""
         elsewhere = None if self.elsewhere is None else self.elsewhere[i]
         return WrongScrew(self.actual[i], self.expected[i], self.scale, elsewhere, self.frame)
 
@@ -89,7 +90,7 @@ def axes_reversed(case: WrongScrews) -> Hypotheses:
     unlike={"2/4": "0", "2/6": "1"},
 )
 def moment_signs(case: WrongScrews) -> Hypotheses:
-    """Every turning joint has v = ω × q."""
+    """For every turning joint, v has the wrong sign: v = ω × q."""
     axes = [
         axis.with_velocity(axis.pitch * axis.direction - axis.moment) if axis.turns else right
         for axis, right in zip(case.axes, case.expected, strict=True)
@@ -119,8 +120,8 @@ def other_frame(case: WrongScrews) -> Hypotheses:
 def explain_screws(case: WrongScrews) -> Finding | None:
     """Return the finding that explains all wrong axes, or None.
 
-    Return None, too, if an axis could not be read. If only one axis is wrong, only the order of its
-    halves is checked.
+    Also return None if an axis could not be read. If only one axis is wrong, only the order of the
+    halves ω and v is checked.
     """
     if not np.isfinite(case.actual).all():
         return None

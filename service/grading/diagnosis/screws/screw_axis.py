@@ -18,8 +18,8 @@ from service.translations import say
 class WrongScrew(WrongNumbers):
     """A wrong screw axis and the expected one, each ``(6, SAMPLES)``.
 
-    ``frame`` is the frame that is asked for, "space" or "body". ``elsewhere`` is the right axis in
-    the other frame, or None if it is unknown.
+    ``frame`` is the frame that is asked for, "space" or "body". ``elsewhere`` is the correct axis
+    in the other frame, or None if that axis is unknown.
     """
 
     elsewhere: Numbers | None
@@ -68,7 +68,7 @@ MOMENT_SIGN = says(
 
 
 def seen_from_elsewhere(frame: str) -> Finding:
-    """Return the finding that an axis is described in the other frame than ``frame``."""
+    """Return the finding that an axis is described in the wrong frame instead of in ``frame``."""
     if frame == "space":
         return Finding(
             "body_for_space",
@@ -149,7 +149,7 @@ def other_frame(case: WrongScrew) -> Hypotheses:
     unlike={"1/5": "1"},
 )
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
-    """A sliding joint was written as a turning one; it needs ω = 0 (infinite pitch)."""
+    """A sliding joint, which has ω = 0 (infinite pitch), was written as a turning joint."""
     finding = says(
         say("This joint slides and does not turn: check which of ω and v holds its direction."),
         say("ω is 0, and v is the unit vector of the direction."),
@@ -169,7 +169,7 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     unlike={"1/3": "0", "1/5": "1"},
 )
 def turning_as_sliding(case: WrongScrew) -> Hypotheses:
-    """The axis of a turning joint was written as v."""
+    """The direction of a turning joint's axis was written as v, as for a sliding joint."""
     finding = says(
         say("This joint turns and does not slide: check which of ω and v holds its direction."),
         say("ω is the unit vector along the axis, and v = −ω × q."),

@@ -1,4 +1,4 @@
-"""Slips in the joint variables of a single table cell, or in its quantity."""
+"""Slips in the joint variables of a single table cell, or in its kind (length or angle)."""
 
 import re
 from collections.abc import Callable
@@ -83,10 +83,10 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """Return a name in the cell that the robot does not have, and the joint with this number.
+    """Return a name in the cell that the robot does not have, and the joint with its number.
 
-    The name is "" if the robot has all names. The joint is None if no joint has the number of the
-    name.
+    The name is "" if the robot has all names in the cell. The joint is None if no joint has the
+    number in the name.
     """
     absent = sorted(case.samples.absent_names([case.expression]))
     if not absent:
@@ -271,7 +271,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     unlike={"2/d": "d6"},
 )
 def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """The cell contains a joint variable that must not change it."""
+    """The cell contains the variable of a joint that must not change the cell."""
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None

@@ -79,7 +79,8 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
 def _suits(table: StudentTable, grading: Grading) -> bool:
     """True if all cells obviously suit their own columns.
 
-    This is a fast test: for most wrong tables it saves reading the cells as another quantity.
+    This test is fast. Most wrong tables pass it, so that their lengths need not be read as angles
+    and their angles not as lengths.
     """
     sliding = _sliding(grading.exercise.joints)
     known = grading.exercise.vocabulary.by_name
@@ -113,7 +114,7 @@ def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    """Return how many cells of each written column do not suit each column, ``(4, 4)``."""
+    """Count, for each written column, the cells that do not suit a, α, d and θ: ``(4, 4)``."""
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):
@@ -134,7 +135,7 @@ def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) 
 def _reordered(order: Order, table: StudentTable, other: StudentTable) -> StudentTable:
     """Return the table with its columns read in this order.
 
-    ``other`` is the table with each column read as the other quantity.
+    ``other`` is the same table with lengths read as angles and angles read as lengths.
     """
     rows = tuple(
         _reordered_row(order, one, two) for one, two in zip(table.rows, other.rows, strict=True)

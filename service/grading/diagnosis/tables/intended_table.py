@@ -30,10 +30,11 @@ class IntendedTable(NamedTuple):
 def with_exchanged_row(
     table: StudentTable, convention: Convention | None, grading: Grading
 ) -> IntendedTable | None:
-    """Return the table with a and d exchanged in one row, if that gives the reference's row.
+    """Return the table with a and d exchanged in one row, if they then agree with the reference.
 
-    Return None unless exactly one row becomes right in this way. Without this reading another row
-    may be blamed: before a sliding joint, a wrong ``a`` can look like a choice of frames.
+    Return None unless exactly one row becomes correct in this way. Without this repair, the report
+    might blame a correct row: before a sliding joint, a wrong ``a`` can look like a choice of
+    frames.
     """
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)

@@ -47,7 +47,7 @@ _NUMBERED_BY_KIND = register(
 def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:
     """Return the table with its joint variables renumbered, or None.
 
-    None if no other numbering gives each row the variable of its own joint.
+    Return None if no other numbering gives each row the variable of its own joint.
     """
     joints = grading.exercise.joints
     vocabulary = with_absent_variables(grading.exercise.vocabulary)
@@ -98,7 +98,7 @@ def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joi
 
 
 def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[Finding, Meanings]]:
-    """Yield the other numberings, each with its finding and the meanings of names."""
+    """Yield, for each other numbering, a finding and a map from names to joint variables."""
     first = joints[0].index
     by_index = {joint.index: joint for joint in joints}
     for start in {0, 1} - {first}:

@@ -47,7 +47,8 @@ def in_other_length_unit(
 ) -> IntendedTable | None:
     """Return the table with its lengths in the unit of the exercise, or None.
 
-    The size of the lengths tells the unit. Joint variables keep their unit.
+    The size of the lengths shows in which unit they were written. Joint variables are not
+    converted.
     """
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)
@@ -75,7 +76,7 @@ def in_other_length_unit(
 
 
 def _times(largest: float, right: float) -> float | None:
-    """Return how many times too large the lengths are, a power of ten; None if they fit."""
+    """Return the power of ten by which the lengths are too large, or None."""
     for times in UNIT_FACTORS:
         if right / _HALFWAY < largest / times < right * _HALFWAY:
             return times

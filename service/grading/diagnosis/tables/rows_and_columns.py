@@ -1,6 +1,7 @@
 """Slips in whole rows or columns of the robot's table that lead to a wrong answer.
 
-These slips change the numbers of the table but no symbols. So they are the same in any frames.
+These slips change the numbers of the table but no symbols. So they are the same whatever frames are
+chosen.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -34,11 +35,12 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class TableRows:
-    """The rows of a table: ``constants`` ``(rows, 4)`` at home, at one sample.
+    """The rows of a table, with their ``constants`` ``(rows, 4)`` at one sample.
 
-    ``joints`` belong to the first rows; ``labels`` are the labels of all rows. At ``home`` no joint
-    moves. ``multiplied`` is True if the answer is the product of the links, False if it is the
-    links themselves.
+    The constants are the cells with all joint variables 0. ``joints`` belong to the first rows;
+    ``labels`` are the labels of all rows. ``home`` is True if the answer is for the home position,
+    so that no joint moves. ``multiplied`` is True if the answer is the product of the links, False
+    if it is the links themselves.
     """
 
     constants: Numbers
@@ -67,9 +69,9 @@ def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
 def exchanged_in_row(
     row: int, label: str, constants: Sequence[float], *, slides: bool
 ) -> Iterator[Slip]:
-    """Yield the slips: a and d are exchanged in one row.
+    """Yield the slips in which a and d are exchanged in one row.
 
-    If the joint of the row ``slides``, the last slip also moves its variable to the other column.
+    If the joint of the row ``slides``, the last slip also moves the joint variable from d to a.
     """
 
     def words(_: Names) -> SlipWords:
@@ -113,7 +115,10 @@ def _exchanged(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
 
 
 def negated_columns(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips: one parameter has the wrong sign in all rows, with or without variables."""
+    """Yield the slips in which one column has the wrong sign in all rows.
+
+    The joint variables keep their signs, or change them, too.
+    """
     for column in range(len(COLUMNS)):
         cells = rows.constants[:, column]
         sizes = np.sin(cells) if IS_ANGLE[column] else cells
@@ -138,8 +143,8 @@ def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
 def other_table(rows: TableRows) -> Iterator[Slip]:
     """Yield the slips of a table in the other convention: a and α are in a neighbouring row.
 
-    A standard table begins on the axis of the first joint. The last row of a modified table, from
-    the last joint to the end effector, may be missing.
+    A standard table has no a and α before the axis of the first joint. In a modified table, the
+    last row, from the last joint to the end effector, may be missing.
     """
     last = len(rows.constants) - 1
     cells: list[CellChange] = []
@@ -196,7 +201,7 @@ def _standard_table_multiplied(_: Names) -> SlipWords:
 
 
 def other_formula(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slip of a table multiplied with the link transform of the other convention.
+    """Yield the slip in which the links are computed with the formula of the other convention.
 
     If a standard table has no twists, this slip is ``translation_not_turned`` (``link_slips``).
     """
@@ -288,7 +293,7 @@ def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, 
 
 
 def missing_links(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips of one inner row that is missing in the product.
+    """Yield the slips in which one inner row is missing in the product.
 
     A report names this slip only together with exchanged rows, so it has no advice.
     """

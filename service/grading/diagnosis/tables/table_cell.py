@@ -180,7 +180,7 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
     unlike={"2/theta": "theta2 + pi"},
 )
 def quarter_turn(case: WrongCell) -> Hypotheses:
-    """The angle is off by 90°."""
+    """The angle differs by 90° from the correct angle."""
     finding = finding_on(
         case,
         _compare_axes(case),
@@ -269,7 +269,7 @@ def _too_large(case: WrongCell) -> str:
 
 
 def _in_symbols(case: WrongCell) -> str:
-    """Return advice to use symbols if a number was written for a length, or ""."""
+    """Return the advice to use symbols if a number was written for a length, else ""."""
     expected = case.constants[1]
     if case.angle or case.expression.symbols:
         return ""

@@ -43,8 +43,8 @@ TABLE_SAMPLES = 3
 class _Intended:
     """A table without the slips: ``(rows, 4, SAMPLES)``, or None if it needs other rows.
 
-    ``changed`` ``(rows, 4)`` marks the cells that differ from the student's table. ``departures``
-    is the cost of the frames of the table without the slips.
+    ``changed`` ``(rows, 4)`` marks the cells that differ from the student's table. The table
+    without the slips has frames of its own; ``departures`` is the cost of these frames.
     """
 
     findings: tuple[Finding, ...]
@@ -64,10 +64,11 @@ def explained(
 ) -> tuple[tuple[Finding, ...], Judgement]:
     """Return the findings that explain a whole wrong table, and a judgement that fits them.
 
-    An explanation must not contradict the findings on single cells. It is accepted in two cases.
-    In the first case, it changes exactly the cells that were found wrong. In the second case, its
-    table is nearer to the reference's frames than the judgement's table; for the other convention,
-    equally near is enough. In the second case the cells are judged again by the nearer table.
+    An explanation must not contradict the findings on single cells. It is accepted in two cases. In
+    the first case, the explanation changes exactly the cells that were found wrong. In the second
+    case, the table without the slip has frames that are nearer to the reference frames than those
+    of the judgement; for the other convention, equally near is enough. In the second case, the
+    cells are judged again by the nearer table.
     """
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
@@ -101,7 +102,10 @@ def explained(
 
 
 def _is_other_convention(intended: _Intended, judgement: Judgement) -> bool:
-    """True if the slip is the other convention, in frames at least as near as the judgement's."""
+    """True if the only slip is the other convention, and the frames are near enough.
+
+    They must be at least as near to the reference frames as the frames of the judgement are.
+    """
     codes = [finding.code for finding in intended.findings]
     return codes == ["other_convention"] and intended.departures <= judgement.departures
 
@@ -130,7 +134,7 @@ def _wrong_table(
 def _exchanges(
     judgement: Judgement, roles: Sequence[Role], grading: Grading
 ) -> Iterator[tuple[str, str, Table]]:
-    """Yield pairs of lengths in wrong cells, and how their exchange changes the table."""
+    """Yield two lengths in wrong cells, and the change of the table if they are exchanged."""
     by_name = grading.exercise.vocabulary.by_name
     lengths: set[str] = set()
     for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():

@@ -75,9 +75,9 @@ def lost_freedom(
     """Return the findings on joints that share an axis or depend on each other.
 
     ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``. There is no finding
-    if the table contains NaN (an unreadable cell) or an extremely large length, or if a joint's
-    variable is missing: its cell has the finding. ``joint_rows`` gives the row of each joint of the
-    robot; joints with None are left out.
+    if the table contains NaN (an unreadable cell) or an extremely large length, or if a joint
+    variable is missing: then the cell of the joint variable has a finding. ``joint_rows`` gives the
+    row of each joint of the robot; joints with None are left out.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
@@ -108,7 +108,7 @@ def _arm(
 
 
 def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """Return a finding for each axis that joints share here but not in the reference."""
+    """Return a finding for each axis that joints share in this table but not in the reference."""
     joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
     findings, done = [], set[int]()
     for i, others in enumerate(joined):

@@ -39,7 +39,7 @@ _OF_LINK = slice(A, ALPHA + 1)
 
 @dataclass(frozen=True, slots=True)
 class WrongTable:
-    """A wrong table at all samples, and at a subset that is enough to compare it.
+    """A wrong table at all samples, and at a subset of samples that is enough for comparisons.
 
     ``valid`` returns a mask ``(T,)`` of tables ``(T, rows, 4, samples)`` at the subset: True for a
     table that describes the robot.
@@ -79,8 +79,9 @@ class WrongTable:
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     """The columns a and α, or one of them, are one row too early or too late.
 
-    Undoing the shift leaves the cells of the first or last row open. They get the numbers from the
-    other end of the table. If those are 0, the numbers of the reference are tried, too.
+    Undoing the shift leaves the cells of the first or last row open. These cells get the numbers
+    from the other end of the table. If those numbers are 0, the numbers of the reference are tried,
+    too.
     """
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
@@ -101,7 +102,10 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
 
 
 def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
-    """Return the finding on shifted columns; in the ``other`` convention their places are right."""
+    """Return the finding on shifted columns.
+
+    ``other`` is the convention in which the columns are in the correct place, or None.
+    """
     in_other = ""
     if other is Convention.STANDARD:
         in_other = say("In the standard convention they stand there.")
@@ -130,7 +134,7 @@ def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
 )
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
-    """One kind of parameter has the wrong sign in all rows."""
+    """One of the columns has the wrong sign in all rows."""
     for column in range(len(COLUMNS)):
         if table.constants[:, column].any():
             constants = table.constants.copy()
@@ -152,7 +156,7 @@ def _turned_sign(column: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
-    """A parameter on x was exchanged with the same kind on z: a with d, or α with θ.
+    """A parameter of the x axis was exchanged with one of the z axis: a with d, or α with θ.
 
     The exchange is in all rows or in one, with or without the joint variables.
     """
