@@ -28,8 +28,8 @@ EXPECTED = "expected"
 class Finding:
     """A hint where to look, and the correction. The hint never contains the right value.
 
-    ``code`` is stable, so that mistakes of a class can be counted. ``correction`` is a formula, an
-    instruction in words, or empty. ``values`` is a counterexample. ``reading`` is true for a
+    ``code`` is stable, so that mistakes can be counted by their codes. ``correction`` is a formula,
+    an instruction in words, or empty. ``values`` is a counterexample. ``reading`` is true for a
     finding on how a text was read; it reveals nothing and is visible at every level. ``suggestion``
     is the repaired form of an unreadable text. ``rule`` is the rule that a hint explains.
     """
@@ -172,9 +172,10 @@ def _has_unexplained_cells(part: PartReport) -> bool:
 
 
 def _without_rows(report: PartReport) -> PartReport:
-    """Return the mark of a part without rows, but with all messages on unreadable cells.
+    """Return the report on a part without its rows, but with the messages on unreadable cells.
 
-    Those messages reveal nothing, and students need them. Lost points have no places.
+    These messages reveal nothing, and students need them. The lost points are one sum, which does
+    not say where they were lost.
     """
     reading = tuple(
         replace(message, places=(Place(row.label, cell.label),))
@@ -197,8 +198,9 @@ _Said = tuple[str, str, str | None]
 def with_shared_messages(report: PartReport) -> PartReport:
     """Replace equal messages on several cells by one message on the part, with all their places.
 
-    Messages are equal if their code, sentence and repaired text are. The first counterexample is
-    kept. A message with a span stays with its cell, unless it is one of ``_WORDS_ENOUGH``.
+    Messages are equal if they have the same code, sentence and repaired text. The first
+    counterexample is kept. A message with a span stays with its cell, unless ``_WORDS_ENOUGH``
+    contains its code.
     """
     in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
     for row in report.rows:
@@ -243,7 +245,7 @@ def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
 
 
 def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
-    """Return the messages on a part, joining equal ones into one with all their places."""
+    """Return the messages on a part; equal messages become one message with all their places."""
     found: dict[object, Feedback] = {}
     for i, message in enumerate(messages):
         is_placed = message.places is not None and message.span is None

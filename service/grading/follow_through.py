@@ -49,7 +49,7 @@ def can_carry(chain: StudentChain, grading: Grading) -> bool:
 
 
 def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
-    """Return the axes of all joints, ``(HALF, 6, joints)``, in the exercise's typical length.
+    """Return the axes of all joints, ``(HALF, 6, joints)``; the unit is the typical length.
 
     Return None if a joint does not turn about, or slide along, one axis.
     """
@@ -88,8 +88,9 @@ def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool
 def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> bool:
     """True if no joint moves any entry ``(rows, columns, SAMPLES)`` of an answer.
 
-    ``quantities`` are those of the columns, or of all entries. An answer with an unreadable entry,
-    which is NaN, may move. An empty entry cannot move: the caller writes 0 for it.
+    ``quantities`` are the quantities of the columns, or the quantity of all entries. An answer with
+    an unreadable entry (NaN) counts as moving. An empty entry cannot move: the caller writes 0 for
+    it.
     """
     scales = np.where(np.array(quantities) == "length", grading.exercise.length_scale, 1.0)
     motion = np.abs(changes(values)).max(axis=-1)

@@ -21,14 +21,14 @@ _Term = tuple[int, Node]
 
 
 def spelled(formula: Node, spelling: Spelling) -> Correction:
-    """Return a right formula in the student's spelling."""
+    """Return a correct formula as the student would write it."""
     return Correction(to_text(formula, spelling), to_latex(spelling.renamed(formula)))
 
 
 def value_formula(
     values: Numbers, angle: bool, exercise: Exercise, samples: Samples, spelling: Spelling
 ) -> Correction | None:
-    """Return ``values`` ``(SAMPLES,)`` as a sum of multiples of letters and a constant.
+    """Return ``values`` ``(SAMPLES,)`` as the sum of a constant and multiples of letters.
 
     Table cells have this form: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Return None if the values
     have another form.

@@ -25,7 +25,7 @@ from service.version import VERSION
 class Submission:
     """The submitted answers: one JSON value for each answered part.
 
-    ``feedback`` is the level of the report. With ``echo`` it shows how each cell was read.
+    ``feedback`` is the level of the report. With ``echo``, the report shows how each cell was read.
     """
 
     answers: Mapping[str, object]
@@ -135,8 +135,8 @@ class _Graded:
     def carries(self, share: float, grading: Grading) -> bool:
         """True if a later part may follow from the answer.
 
-        The answer must have earned ``share`` of the points by content, in any marking. It must be
-        an arm with the robot's joints.
+        The answer must have earned ``share`` of the points in the marking "content", even if the
+        part has another marking. The answer must be an arm with the robot's joints (``can_carry``).
         """
         if (
             self.judged is None

@@ -61,7 +61,7 @@ def change_every_sign(column: int) -> Sentence:
 
 
 def other_length_unit(times: float) -> Finding:
-    """Return the message that all lengths are ``times`` as large as they should be."""
+    """Return the message that all lengths are wrong by the factor ``times``."""
     if times > 1:
         return says(
             say(

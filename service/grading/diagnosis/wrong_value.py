@@ -33,11 +33,11 @@ Hypotheses = Iterator[Hypothesis[Numbers]]
 
 @dataclass(frozen=True, kw_only=True)
 class WrongValue:
-    """A value that was handed in and is not the expected one.
+    """A submitted value that differs from the expected value.
 
-    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the right
-    answer in the student's ``spelling``; it is None if no formula is known or if ``corrects`` is
-    False: then the report must not contain it.
+    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the correct
+    answer in the student's ``spelling``. It is None if no formula is known, or if ``corrects`` is
+    False, which means that the report must not contain corrections.
     """
 
     expression: Expression
@@ -98,10 +98,10 @@ class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
     ``contained`` maps each joint to the count of its variable in the student's cell, or is None if
-    the cell is not linear in the variables; ``required`` maps it to the count in the expected cell.
-    If ``shared``, the joint's axis has a parallel neighbour, so that offsets along it add up.
-    ``joints`` are all joints of the robot. ``label`` is the label of the row, "" if there is only
-    one row.
+    the cell is not linear in the variables. ``required`` maps each joint to the count in the
+    expected cell. If ``shared``, the joint's axis has a parallel neighbour, so that offsets along
+    it add up. ``joints`` are all joints of the robot. ``label`` is the label of the row, "" if
+    there is only one row.
     """
 
     column: int
@@ -151,7 +151,7 @@ class WrongCell(WrongValue):
 
 @dataclass(frozen=True)
 class WrongNumbers:
-    """Numbers that were handed in and are not the expected ones, ``(..., SAMPLES)`` each.
+    """Submitted numbers and the expected numbers, ``(..., SAMPLES)`` each, which differ.
 
     ``scale`` ``(...)`` is the size that the error of each number is compared with.
     """
@@ -199,7 +199,7 @@ UNEXPLAINED = "value"
     unlike={"6/d": "0"},
 )
 def undefined(case: WrongValue) -> Finding | None:
-    """The formula has no value at a pose of the robot: 1/0, √−1, or a number too large."""
+    """The formula has no value at some pose of the robot: 1/0, √−1, or too large a number."""
     bad = np.flatnonzero(~np.isfinite(case.actual))
     if not bad.size:
         return None
@@ -239,7 +239,7 @@ def differs(case: WrongValue, hint: str) -> Finding:
 
 
 def _at_printed(case: WrongValue) -> float:
-    """Return the entry's value at the printed numbers of sample 0."""
+    """Return the value of the entry, computed from the printed numbers of sample 0."""
     samples, names = case.samples, case.expression.symbols
     printed = {
         name: np.array([math.radians(number) if name in samples.in_degrees else number])

@@ -1,8 +1,8 @@
 """The content of a right answer: the cells that need knowledge and therefore earn marks.
 
-Most cells of a DH table are 0, and every row has its joint variable in the usual place. Writing
-only that, the lazy answer, needs no geometry. So only those cells of the right answer that differ
-from the lazy one are content cells.
+Most cells of a DH table are 0, and every row has its joint variable in the usual place. An answer
+with nothing else is called lazy; it needs no geometry. So the content cells are those cells of the
+correct answer that differ from the lazy answer.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ def known_cells(
 ) -> KnownCells:
     """Return a mask ``(...)`` of the cells in which ``right`` ``(..., samples)`` is not ``lazy``.
 
-    ``scale`` and ``angle`` have the meaning that they have in ``comparison.matches``.
+    ``scale`` is the unit of the tolerance; ``angle`` is true for angles.
     """
     error = np.abs(difference(right, np.asarray(lazy), angle)).max(axis=-1)
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
@@ -110,7 +110,8 @@ def of_links(
 ) -> Content:
     """Return the content of link transforms ``(links, samples, 4, 4)``, with four rows each.
 
-    The lazy link of a joint is its motion alone. ``reference`` has the links of the reference.
+    The lazy link transform of a joint contains only the joint's motion. ``reference`` are the link
+    transforms that the reference gives.
     """
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)

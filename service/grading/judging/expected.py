@@ -47,8 +47,8 @@ def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matr
 def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
     """Return the expected pose ``(SAMPLES, 4, 4)``, from the student's chain or from the robot.
 
-    The student's chain is used if the grading follows it, if it has both frames that the part asks
-    for, and if the part does not ask for the home pose.
+    The student's chain is used if the part is judged by the student's earlier answer, if the chain
+    has both frames that the part asks for, and if the part does not ask for the home pose.
     """
     chain = grading.student_chain
     if chain is None or not grading.following or part.home:

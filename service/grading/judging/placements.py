@@ -55,7 +55,10 @@ class FramesAtHome:
 
 @dataclass(frozen=True, slots=True)
 class PlacedFrame:
-    """A frame in numbers, each with its rounding error. What was not read is None or NaN."""
+    """A placed frame in numbers, with the rounding errors of z, origin and x.
+
+    A value that was not read is None or NaN.
+    """
 
     axis: int | None
     z: Numbers | None
@@ -73,7 +76,7 @@ class PlacedFrame:
 
 @dataclass(frozen=True, slots=True)
 class JudgedFrames:
-    """The right places of the frames, and the Match of each cell ``(frames, 6)``.
+    """The correct places of the frames, and the Match of each cell ``(frames, 6)``.
 
     A cell that was not read has the Match UNDEFINED.
     """
@@ -157,11 +160,11 @@ def ways_to_judge(
 ) -> list[JudgedFrames]:
     """Judge frames in all sensible ways, each frame relative to its neighbour as placed.
 
-    The axis of a sliding joint has no fixed place. The first way puts each sliding axis through
-    the origin that the student chose, if the rules allow that. If cells are then wrong, the other
-    ways leave some sliding axes where the figure draws them, or put one where the frames beside it
-    need it. So one wrong origin need not make another frame wrong.
-    ``written`` are the entries, which may be rounded.
+    The axis of a sliding joint has no fixed place. The first way puts each sliding axis through the
+    origin that the student chose, if the rules allow that. If cells are then wrong, the other ways
+    leave some sliding axes where the figure draws them, or put one sliding axis where the
+    neighbouring frames need it. So one wrong origin need not make another frame wrong. ``written``
+    are the entries of the student, which may be rounded.
     """
     everywhere = (True,) * len(robot.asked)
     first = _judged(robot, placed, written, home, everywhere)
@@ -189,10 +192,11 @@ def _axis_by_others(
 ) -> AxisLine | None:
     """Return the axis of a sliding joint, moved to where the student's x axes meet it.
 
-    A sliding joint determines only the direction of its axis. The x axis of each frame that has
-    this axis as its neighbour must cross the sliding axis. The x axis of the joint's own frame must
-    cross both the sliding axis and the neighbouring axis. Return None if the frame is on the axis
-    as drawn, or if no x axis is written.
+    A sliding joint determines only the direction of its axis. If another frame has the sliding axis
+    as its neighbouring axis, the x axis of that frame must cross the sliding axis. The x axis of
+    the joint's own frame must cross both the sliding axis and the neighbouring axis. Return None if
+    the origin of the joint's frame is on the sliding axis as drawn, or if no line determines the
+    place of the sliding axis.
     """
     asked, own = robot.asked[i], placed[i]
     if not asked.slides or own.point is None:
@@ -242,7 +246,7 @@ def _judged(
 
 
 def x_error(x: Numbers, place: RightPlace) -> float:
-    """Return the sine of the angle between a unit x and the nearest right x direction."""
+    """Return the sine of the angle between a unit vector x and the nearest correct x direction."""
     if place.x is None:
         return float(np.nan_to_num(np.abs((x * place.own.direction).sum(axis=-1)), nan=1).max())
     return largest(cross(x, place.x))
@@ -255,14 +259,14 @@ def _match(error: float, slack: float) -> int:
 
 
 def lazy_frames(robot: FramesAtHome) -> list[PlacedFrame]:
-    """Return frames at the base frame, on the right axes: they need no knowledge of the robot."""
+    """Return frames at the base frame with the correct joint numbers: they need no geometry."""
     count = len(robot.base)
     z, x = (np.tile(np.eye(3)[i], (count, 1)) for i in (2, 0))
     return [PlacedFrame(joint, z, 0.0, np.zeros((3, count)), 0.0, x, 0.0) for joint in robot.joints]
 
 
 def known_frames(robot: FramesAtHome, home: Samples) -> NDArray[np.bool_]:
-    """Return a mask ``(frames, 6)`` of the content cells: the lazy frames are wrong there."""
+    """Return a mask ``(frames, 6)`` of the content cells, in which the lazy frames are wrong."""
     everywhere = (True,) * len(robot.asked)
     judged = _judged(robot, lazy_frames(robot), None, home, everywhere)
     return np.asarray(judged.found == Match.DIFFERENT)
@@ -271,7 +275,7 @@ def known_frames(robot: FramesAtHome, home: Samples) -> NDArray[np.bool_]:
 def table_of_frames(
     robot: FramesAtHome, placed: Sequence[PlacedFrame], exercise: Exercise, samples: Samples
 ) -> Table:
-    """Return the DH table ``(rows, 4, samples)`` that follows from right frames.
+    """Return the DH table ``(rows, 4, samples)`` that follows from correct frames.
 
     If the z axis of a frame is opposite to its joint's axis, the joint variable has a minus sign.
     """

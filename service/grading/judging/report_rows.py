@@ -28,7 +28,7 @@ def entry_rows(
     labels: Sequence[str] | None = None,
     remarks: Mapping[int, Finding] | None = None,
 ) -> tuple[RowReport, ...]:
-    """Return report rows of entries; ``found`` is the Match of each, ``(rows, columns)``.
+    """Return report rows of entries; ``found`` is each entry's Match, ``(rows, columns)``.
 
     Rows and columns have the labels "1", "2" …, unless ``labels`` are given for the rows.
     ``remarks`` are findings on whole rows.
@@ -55,7 +55,7 @@ def entry_rows(
 def value_rows(
     student: StudentValues, found: NDArray[np.int_], slips: Slips, grading: Grading
 ) -> tuple[RowReport, ...]:
-    """Return report rows of one value each; ``found`` is the Match of each, ``(n,)``."""
+    """Return a report row for each value; ``found`` is the Match of each value, ``(n,)``."""
     column = [[entry] for entry in student.entries]
     return entry_rows(column, found[:, None], slips, grading)
 
@@ -67,7 +67,7 @@ def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
 
 @lru_cache(maxsize=64)
 def _right(column: str) -> CellReport:
-    """Return the report on a right entry without a message."""
+    """Return the report on a correct entry, without a message."""
     return CellReport(column, Verdict.CORRECT)
 
 
@@ -78,7 +78,7 @@ def right_row(label: str, columns: tuple[str, ...]) -> RowReport:
 
 
 def is_right_throughout(entries: Sequence[Entry], found: list[int], grading: Grading) -> bool:
-    """True if a row is right and has no messages; ``found`` are its Matches."""
+    """True if a row is correct and has no messages; ``found`` are the Matches of its entries."""
     if grading.echo or found.count(_EXACT) < len(found):
         return False
     return all(entry.expression is not None and not entry.findings for entry in entries)
@@ -87,9 +87,10 @@ def is_right_throughout(entries: Sequence[Entry], found: list[int], grading: Gra
 def cell_report(
     entry: Entry, column: str, match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
-    """Return the report on an entry in its column.
+    """Return the report on an entry; ``column`` is the label of the cell.
 
-    ``match`` is its Match. If a wrong entry has no ``slip``, a message on the part explains it.
+    ``match`` is the Match of the entry. If a wrong entry has no ``slip``, a message on the part
+    explains it.
     """
     verdict, findings = entry.verdict, entry.findings
     if match == _EXACT and not findings and entry.expression is not None and not grading.echo:

@@ -105,7 +105,7 @@ def _compared(row: int, judged: JudgedRow) -> Sentence:
 
 
 def missing_row(judged: JudgedRow) -> Finding:
-    """The finding on a row that is not there."""
+    """Return the finding on a missing row."""
     if judged.joint is not None:
         return _MISSING_ROW.finding(
             say("There is no row for joint {joint}.", joint=judged.joint.index)
@@ -116,7 +116,7 @@ def missing_row(judged: JudgedRow) -> Finding:
 
 
 def row_too_many(i: int) -> Finding:
-    """The finding on a fixed row that the arm does not need."""
+    """Return the finding on a fixed row that the arm does not need."""
     return _ROW_TOO_MANY.finding(
         say(
             "Row {row} of your table belongs to no joint and not to the end effector: check "
@@ -128,7 +128,7 @@ def row_too_many(i: int) -> Finding:
 
 
 def extra_row(i: int) -> Finding:
-    """The finding on a row that belongs neither to a joint nor to the end effector."""
+    """Return the finding on a row that belongs neither to a joint nor to the end effector."""
     return EXTRA_ROW.finding(
         say(
             "Row {row} of your table belongs to no joint and not to the end effector: leave it "

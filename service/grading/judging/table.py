@@ -50,9 +50,10 @@ _ARE_ANGLES: Final = tuple(IS_ANGLE.tolist())
 
 @dataclass(frozen=True, slots=True)
 class JudgedRow:
-    """A submitted row (None if missing), and its right values ``(4, SAMPLES)``.
+    """A submitted row (None if missing), and its correct values ``(4, SAMPLES)``.
 
-    ``shared`` is true if its axis has a parallel neighbour, so that offsets along both add up.
+    ``shared`` is true if the axis of the row is parallel to a neighbouring axis, so that offsets
+    along both axes add up.
     """
 
     label: str
@@ -64,7 +65,7 @@ class JudgedRow:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A table compared with the right one, in the frames that it is judged in.
+    """A submitted table compared with the correct table, in the frames in which it is judged.
 
     ``matches`` is the Match of each cell, ``(rows, 4)``; no cell of a missing row matches.
     ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures`` is
@@ -186,7 +187,7 @@ def _judged_by_reference(
 def _paired(
     rows: tuple[StudentRow, ...], expected: Table, grading: Grading
 ) -> list[tuple[int | None, int | None]]:
-    """Pair submitted rows with expected rows; in order if their numbers are equal."""
+    """Pair submitted rows with expected rows, in order if there are equally many of both."""
     if len(rows) == len(expected):
         return [(i, i) for i in range(len(rows))]
     actual = values_of(rows)[:, None]

@@ -34,13 +34,19 @@ def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Gradi
 
 
 def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) -> StudentTable:
-    """Return the table with numbers that are wrong in any frames in ``cells`` ``(rows, 4)``."""
+    """Return the table with given-up ``cells`` ``(rows, 4)``.
+
+    The numbers in these cells are wrong whatever frames are chosen.
+    """
     numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
     return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
 
 
 def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
-    """Return the table with ``more`` rows at its end, of numbers that are wrong in any frames."""
+    """Return the table with ``more`` given-up rows at its end.
+
+    The numbers in these rows are wrong whatever frames are chosen.
+    """
     rows = len(answer.rows)
     numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
     values = np.repeat(numbers, SAMPLES, axis=-1)
@@ -58,8 +64,8 @@ def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:
 def written_content(answer: StudentTable, given: Sequence[bool], grading: Grading) -> int:
     """Return the number of cells that the student wrote and that are not lazy.
 
-    Lazy are 0, a joint variable with either sign, and an empty cell. ``given`` marks the rows that
-    the exercise gives.
+    A lazy cell is 0, a joint variable with either sign, or empty. ``given`` marks the rows that the
+    exercise gives.
     """
     values = answer.values[..., None, :: SAMPLES - 1]
     variables = [grading.samples.values[joint.variable] for joint in grading.exercise.joints]
@@ -73,7 +79,10 @@ def written_content(answer: StudentTable, given: Sequence[bool], grading: Gradin
 
 
 def with_zeros(answer: StudentTable) -> Table:
-    """Return the numbers of the table, with 0 in empty cells: joints of empty cells do not move."""
+    """Return the numbers of the table, with 0 in empty cells.
+
+    So a joint does not move if its cell is empty.
+    """
     return np.where(empty_cells(answer)[..., None], 0.0, answer.values)
 
 

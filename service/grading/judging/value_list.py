@@ -1,4 +1,4 @@
-"""Compare a list of single values, each with its own quantity, with the expected list."""
+"""Compare a list of lengths, angles and numbers with the expected list."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ from service.kinematics.transforms import Numbers
 class ComparedValues:
     """A list as read and the expected values, ``(n, SAMPLES)``.
 
-    ``corrections`` are the expected values as formulas, None if the formula is unknown. Only the
-    diagnosis needs them.
+    ``corrections`` are the expected values as formulas, None for an unknown formula. Only the
+    diagnosis needs the corrections.
     """
 
     student: StudentValues

@@ -42,8 +42,8 @@ def explain_links(
     """Return the finding that explains all wrong link transforms at once, or None.
 
     ``written``, the numbers of the ``matrices``, and ``right`` are ``(rows, SAMPLES, 4, 4)``,
-    ``scale`` is ``(4, 4)``. Return None, too, if the right link transforms follow from the
-    student's own answer.
+    ``scale`` is ``(4, 4)``. Also return None if the correct link transforms follow from an earlier
+    answer of the student.
     """
     wrong = _wrong(written, right, scale)
     if grading.following or not wrong.any() or not grading.affords(LINKS_WORK):

@@ -19,7 +19,8 @@ MAX_LENGTHS = 12
 def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
     """Yield the slips in these lengths.
 
-    If a length is ``alone`` in its cell, its sign and its omission are slips of the cell.
+    If a length is ``alone`` in its cell, a wrong sign or an omission is not yielded here, because
+    it is a slip of the cell.
     """
     in_cells = set(alone)
     for length in lengths:

@@ -27,9 +27,9 @@ NOT_ZERO = say("This must not be 0: check which lengths have a part here.")
 
 @dataclass(frozen=True, slots=True)
 class Required:
-    """The symbols that the right entry depends on, and how it grows when all ``lengths`` double.
+    """The symbols that the correct entry depends on, and how it grows if all ``lengths`` double.
 
-    ``grows`` is 1 if the entry doubles, too, 0 if it stays the same, None for anything else.
+    ``grows`` is 1 if the entry also doubles, 0 if the entry stays the same, None for anything else.
     ``lengths`` includes the variables of sliding joints. ``joints`` are the variables of all
     joints.
     """
@@ -93,7 +93,10 @@ class Requirements:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A wrong entry and the symbols that the right one depends on; None if they are unknown."""
+    """A wrong entry.
+
+    ``required`` are the symbols that the correct entry depends on, or None if they are unknown.
+    """
 
     case: WrongEntry
     required: Required | None
@@ -220,7 +223,7 @@ def missing_joints(entry: Dependence) -> Finding | None:
     unlike={"A2.3/4": "1"},
 )
 def extra_joints(entry: Dependence) -> Finding | None:
-    """The entry contains variables of joints that must not change it."""
+    """The entry contains the variables of joints that must not change the entry."""
     case, required = entry.case, entry.required
     assert required is not None
     few = case.samples.subset(1)
@@ -276,7 +279,7 @@ def unexplained(entry: Dependence) -> Finding:
 
 
 def _is_whole(case: WrongEntry, name: str) -> bool:
-    """True if the right entry is this symbol alone, so that its name would give the entry away."""
+    """True if the correct entry is just this symbol, so that the name would give the entry away."""
     return _same(case, np.abs(case.expected), np.abs(case.samples.values[name]))
 
 

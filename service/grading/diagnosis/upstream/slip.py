@@ -1,8 +1,8 @@
 """A slip made before the answer is computed: in the robot's table, joints or lengths.
 
-Other misconceptions are formulas for the wrong answer. A slip changes the input of the right answer
-instead. Many slips are tried at once: one computation of the right answer takes the changed numbers
-of all slips.
+Other misconceptions are formulas for the wrong answer. A slip instead changes the input from which
+the correct answer is computed. Many slips are tried at once: a single computation takes the changed
+inputs of all slips.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,9 +31,9 @@ class SymbolChange:
 class CellChange:
     """A change of the constant part of a cell.
 
-    It becomes ``factor`` times the constant part of a source cell, plus ``offset``.
-    ``source`` is the row and column of the source cell; without it, the cell is its own source.
-    With ``moving``, the joint variables in the cells change along with their constants.
+    The new constant part is ``factor`` times the constant part of a source cell, plus ``offset``.
+    ``source`` is the row and column of the source cell; if it is None, the changed cell is the
+    source. With ``moving``, the joint variables in the cells change along with the constants.
     """
 
     row: int
@@ -58,9 +58,10 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names of symbols in a message: ``name`` returns the student's name of a symbol.
+    """The names of symbols in a message.
 
-    ``gives_away`` is True for a symbol whose name would give an entry away.
+    ``name`` returns the name that the student uses for a symbol. ``gives_away`` is True for a
+    symbol whose name would give an entry away.
     """
 
     name: Callable[[str], str]
@@ -88,7 +89,7 @@ class SlipWords:
 class Slip(Change):
     """A slip of some kind (``slip_kinds``), with the change that it makes.
 
-    ``words`` returns the sentences about it, with the student's names of symbols.
+    ``words`` returns the sentences about the slip; they contain the names that the student uses.
     """
 
     kind: Record
@@ -96,12 +97,12 @@ class Slip(Change):
 
     @property
     def code(self) -> str:
-        """The code of the slip's kind, or the name of a kind that is only listed with others."""
+        """The code of the slip's kind; a kind without a code has a name instead."""
         return self.kind.name
 
 
 def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
-    """Return the values ``(K · samples,)`` of each symbol under K changes.
+    """Return the values ``(K · samples,)`` of each symbol after each of K changes.
 
     The samples of one change are consecutive.
     """
@@ -128,9 +129,9 @@ def change_cells(
     constants: Table,
     first_row: int = 0,
 ) -> None:
-    """Apply K changes to ``tables`` ``(rows, 4, K, count)``, in place.
+    """Apply each of K changes to its own table in ``tables`` ``(rows, 4, K, count)``, in place.
 
-    ``right`` ``(rows, 4, count)`` is the right table, ``constants`` the same table with all joint
+    ``right`` ``(rows, 4, count)`` is the correct table, ``constants`` the same table with all joint
     variables 0. All three arrays begin with row ``first_row`` of the whole table.
     """
     cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]

@@ -38,8 +38,8 @@ class SlipSearch:
 
     ``actual`` and ``expected`` are ``(..., L)`` at the first samples of each half of ``samples``,
     NaN if unreadable; ``wrong`` ``(...)`` marks the wrong entries. ``scale`` broadcasts to
-    ``(...)``, ``angle`` to ``(..., 1)``. ``name`` returns the student's name of a symbol;
-    ``unwritten`` are the constants that the student did not write.
+    ``(...)``, ``angle`` to ``(..., 1)``. ``name`` returns the name that the student uses for a
+    symbol; ``unwritten`` are the constants that the student did not write.
     """
 
     answers: SlippedAnswers
@@ -94,11 +94,11 @@ class SlipSearch:
 
     @cached_property
     def _at_two_samples(self) -> tuple[Mask, Mask]:
-        """Masks of all slips, compared at two samples only: a test that few wrong slips pass."""
+        """The masks of ``_compared`` for all slips at two samples, which few wrong slips pass."""
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
-        """Return masks ``(K, ...)``: the entries that K slips explain, and those they change."""
+        """Return masks ``(K, ...)`` of the entries that a slip explains, and of those changed."""
         samples = self.samples if count == HALF else self.samples.subset(count)
         half = self.actual.shape[-1] // 2
         some = [*range(count), *range(half, half + count)]
@@ -109,10 +109,10 @@ class SlipSearch:
 
 
 def _certain(slips: list[Slip]) -> list[Slip]:
-    """Return the slips except each slip that includes another one of the slips.
+    """Return the slips without those that include another of the slips as a part.
 
-    A missing link is listed only together with exchanged rows. Otherwise ``link_products`` reports
-    the missing link.
+    A missing link is kept only if the only other code is that of exchanged rows. Otherwise
+    ``link_products`` reports the missing link.
     """
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}

@@ -30,8 +30,8 @@ AnswersAt = Callable[[Sequence[Change], Samples], Numbers]
 class SlippedAnswers:
     """The wrong answers that ``slips`` lead to.
 
-    ``at`` returns the answers ``(K, ..., samples)`` under K changes. ``by_symbols`` is True if the
-    answers follow changes of every symbol, False if only of joint variables.
+    ``at`` returns the answers ``(K, ..., samples)`` that K changes lead to. ``by_symbols`` is True
+    if every symbol can be changed, False if only joint variables can be changed.
     """
 
     slips: tuple[Slip, ...]
@@ -48,9 +48,9 @@ class SlippedAnswers:
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
     """Return the wrong answers to a part, or None if they cannot be computed.
 
-    They are poses ``(K, 4, 4, samples)`` of the robot, or ``(K, rows, columns, samples)`` if the
-    part has formulas of its own. Return None if the part has neither, or if it is judged by the
-    student's earlier answer.
+    If the part has formulas of its own, the answers are ``(K, rows, columns, samples)``; otherwise
+    they are poses ``(K, 4, 4, samples)`` of the robot. Return None if there are neither formulas
+    nor poses, or if the part is judged by the student's earlier answer.
     """
     exercise = grading.exercise
     if grading.following:
@@ -89,7 +89,7 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 def slipped_tables(
     table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """Return the tables ``(rows, 4, K, count)`` under K changes, with rows added as needed."""
+    """Return the tables ``(rows, 4, K, count)`` after K changes; rows are added as needed."""
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
     right = table.values(values, count)
@@ -126,7 +126,7 @@ def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> Slippe
 
 
 def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
-    """Return a function that computes ``answer`` at the changed values of all slips at once."""
+    """Return a function that computes ``answer`` for all changes at once."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         values = changed_values(changes, samples.values)

@@ -1,4 +1,4 @@
-"""The link transforms that slips in their own row lead to, in any frames."""
+"""The link transforms that slips in their own row lead to, whatever frames are chosen."""
 
 from collections.abc import Sequence
 
@@ -36,8 +36,8 @@ def slipped_link(
 ) -> SlippedAnswers | None:
     """Return the transforms ``(K, 4, 4, samples)`` that slips in one row lead to.
 
-    ``right`` is the right transform ``(SAMPLES, 4, 4)``. Return None if ``right`` follows from the
-    student's own answer.
+    ``right`` is the correct transform ``(SAMPLES, 4, 4)``. Return None if ``right`` follows from an
+    earlier answer of the student.
     """
     if grading.following:
         return None

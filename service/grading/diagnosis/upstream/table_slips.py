@@ -45,8 +45,8 @@ QUARTER = np.pi / 2
 class Cell:
     """A cell of a table, and the words about it.
 
-    With ``own_frames``, the right value of the cell may differ from ``table``: the frames are the
-    student's.
+    With ``own_frames``, the student has chosen other frames, so that the correct value of the cell
+    may differ from ``table``.
     """
 
     table: ReferenceTable
@@ -83,7 +83,7 @@ class Cell:
         return _parameter(self.table, self.row, self.column)
 
     def name(self, names: Names) -> str:
-        """Return the student's name of the only constant in the cell, or a, α, d or θ."""
+        """Return the name that the student uses for the cell's only constant, or a, α, d or θ."""
         letters = _letters(self.table, self.row, self.column)
         if len(letters) == 1 and not self.own_frames:
             return names.shown(min(letters)) or SYMBOLS[self.column]
@@ -98,10 +98,11 @@ def table_slips(
     home: bool = False,
     whole: bool = True,
 ) -> Iterator[Slip]:
-    """Yield all single slips; ``constants`` ``(rows, 4, samples)`` is the table at home.
+    """Yield all single slips.
 
-    If the answer is for the ``home`` position, only constants can be wrong. Slips of whole rows and
-    columns are tried only if the answer follows from the ``whole`` table.
+    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0. If the answer is
+    for the ``home`` position, only constants can be wrong. Slips of whole rows and columns are
+    tried only if the answer follows from the ``whole`` table.
     """
     if not home:
         yield from joint_slips(table.joints, table.joints, axis)
@@ -115,7 +116,7 @@ def table_slips(
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """Return the lengths of the table in order, and those that are in one cell only, alone."""
+    """Return all lengths of the table in order, and those that are alone in their only cell."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
     once = [name for name in names if sum(name in cell for cell in cells) == 1]
@@ -131,9 +132,11 @@ def row_slips(
     own_frames: bool = False,
     home: bool = False,
 ) -> Iterator[Slip]:
-    """Yield the slips in the ``constants`` of one row: its cells at home, at one sample.
+    """Yield the slips in one row.
 
-    With ``own_frames``, the cells are not those of the table. At ``home`` no joint moves.
+    ``constants`` are the cells of the row at one sample, with all joint variables 0. With
+    ``own_frames``, they are not the cells of ``table``. ``home`` is True if the answer is for the
+    home position, so that no joint moves.
     """
     joint = table.joints[row] if row < len(table.joints) and not home else None
     for column in (A, ALPHA, D, THETA):

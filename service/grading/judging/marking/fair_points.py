@@ -1,9 +1,9 @@
 """Make sure that an empty row or cell of a table never earns more than anything written there.
 
-A wrong row can hide the frames in which all other rows are right; an empty one cannot. So a wrong
-table earns at least as much as with one of its wrong rows given up: with numbers that are wrong in
-any frames. A table with empty cells earns at most as much as the same table with such numbers in
-these cells.
+A wrong row can hide the frames in which all other rows are correct; an empty row cannot. A row is
+given up by writing numbers into it that are wrong whatever frames are chosen. So a wrong table
+earns at least as much as the same table with one wrong row given up. A table with empty cells earns
+at most as much as the same table with such numbers in these cells.
 """
 
 from collections.abc import Callable
@@ -139,17 +139,17 @@ def _counts_wrong(judged: Judged) -> list[int]:
 
 
 def _has_given_ends(part: DhTableSpec, judged: Judged) -> bool:
-    """True if base, tool and directions are given, and the table has no row too many."""
+    """True if base, tool and directions are given, and the table has no extra row."""
     return freedom_of(part) == FrameFreedom() and judged.at_most is None
 
 
 def _content_in_any_frames(
     part: DhTableSpec, answer: StudentTable, rows: list[int], grading: Grading
 ) -> list[tuple[int, int]]:
-    """Return the rows, each with the number of its cells that are content cells in any frames.
+    """Return the rows, each with the number of its content cells that no choice of frames avoids.
 
     A row has at most two such cells: the angle between its two axes, unless the axes are parallel;
-    and the distance of the axes, unless one of them only has a direction.
+    and the distance between the axes, unless one axis only has a direction.
     """
     convention = _convention_of(part, answer)
     table = grading.exercise.robot.tables.get(convention) if convention else None

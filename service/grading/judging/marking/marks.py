@@ -94,10 +94,10 @@ def unjudged_report(
 
 
 def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
-    """True if an answer has earned at least ``share`` (0 to 1) of the points by content.
+    """True if an answer has earned ``share`` (0 to 1) of the points in the marking "content".
 
-    For a rotation with a position, the answer must have earned more than ``share``, because later
-    parts that need only a right rotation are easy.
+    A rotation with a position must have earned more than ``share``, because later parts that need
+    only a correct rotation are easy.
     """
     marks = _marks(judged, "content", part.points)
     earned, least = marks.worth.total - marks.lost, share * marks.worth.total
@@ -190,7 +190,8 @@ def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[in
 
     A group of cells cannot lose more than it is worth. A wrong, empty or unreadable content cell
     costs a unit. So does any other cell that is wrong or empty. All other unreadable cells of a row
-    cost a fifth together; so do the cells of the bottom row of a homogeneous matrix.
+    together cost a fifth of a unit. The cells in the bottom row of a homogeneous matrix also cost a
+    fifth of a unit together.
     """
     if marking == "rows":
         pairs = zip(worth.rows, verdicts, strict=True)

@@ -58,7 +58,7 @@ class CellWorth:
 
     @cached_property
     def groups(self) -> dict[int, int]:
-        """The most that each group of cells can lose, at least a step."""
+        """The largest number of steps that each group of cells can lose, at least 1."""
         if self.is_fixed:
             counts = _counts(self.content)
             return {g: max(1, n * self.unit + self.least_besides) for g, n in counts.items()}
@@ -86,7 +86,7 @@ class CellWorth:
         return units
 
     def fifth(self, group: int) -> int:
-        """Return the common cost of a row's unread cells in ``group`` that need no knowledge."""
+        """Return the cost of all unread cells of a row in ``group`` that need no knowledge."""
         return max(1, round(self.units[group] * BESIDES))
 
     def points(self, steps: int) -> float:
@@ -175,8 +175,9 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
 def _unit(cells: int, groups: int, total: int) -> int:
     """Return the worth of a content cell if each group is also worth something besides its cells.
 
-    The groups share the rest, which a lazy answer earns. So the worth is rounded so that the rest
-    is at most a quarter of all steps and, if possible, at least one step for each group.
+    The groups share the remaining steps, which a lazy answer earns. The worth is rounded so that
+    the remaining steps are at most a quarter of all steps and, if possible, at least one for each
+    group.
     """
     if not cells:
         return total
