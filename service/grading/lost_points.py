@@ -41,7 +41,7 @@ _MOST_OF_ZEROS: Final = 0.125
 
 
 def lost_points(code: str, points: float) -> LostPoints:
-    """Return points that the answer has lost as a whole."""
+    """Return points that the answer has lost as a whole, not in one row."""
     return LostPoints(code, rounded_points(points), say(_SENTENCES[code]))
 
 
@@ -51,7 +51,7 @@ def without_places(lost: Sequence[LostPoints]) -> tuple[LostPoints, ...]:
 
 
 def lost_in_row(row: RowReport, points: float) -> LostPoints:
-    """Return points that a row has lost by its cells that are not right."""
+    """Return the points that a row has lost, and its cells that are not correct."""
     cells = tuple(cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT)
     if cells == (row.label,) and row.label in _SINGLE:
         message = say(_SINGLE[row.label])

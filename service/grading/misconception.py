@@ -17,8 +17,8 @@ hypotheses: numbers to compare with the answer, each with the words of its messa
 
 A check is for a slip without numbers to compare, such as a formula without a value or a left-handed
 frame. It has a record, too, and returns a finding or None. If several records explain an answer,
-the one of the lowest rank counts; the order of imports has no effect. The pages of docs that list
-codes are generated from the records. ``tests/grading/diagnosis/test_diagnosis.py`` hands in the
+the record of the lowest rank counts; the order of imports has no effect. The pages of docs that
+list codes are generated from the records. ``tests/grading/diagnosis/test_diagnosis.py`` submits the
 examples.
 """
 
@@ -53,8 +53,9 @@ class Record:
     unless they name another of the codes. ``rule`` is the rule of DH or of kinematics that the
     hints explain. ``means`` is the text in docs: one text for all codes, or one for each code.
     ``example`` is an answer that the record explains, ``unlike`` an answer to the same part that
-    the record does not explain. Either is what a student sends, or the changed cells of the model
-    answer: ``{"2/alpha": "0"}``. A record without a code passes on the findings of other records.
+    the record does not explain. Both are either what a student sends, or the changed cells of the
+    model answer: ``{"2/alpha": "0"}``. A record without a code passes on the findings of other
+    records.
     """
 
     of: type
@@ -189,9 +190,10 @@ class Hypothesis(Generic[Answer]):
 
 @dataclass(slots=True)
 class Written(Hypothesis[Answer]):
-    """The answer of a student with the misconception; it explains an answer that equals it.
+    """The answer of a student with the misconception.
 
-    ``tolerance`` replaces the usual tolerance of that comparison.
+    The hypothesis explains every submitted answer that equals this answer. ``tolerance`` replaces
+    the usual tolerance of the comparison.
     """
 
     tolerance: float | None = None
@@ -241,7 +243,8 @@ def explanation(
 
     A misconception takes ``source``, for example the links whose product a matrix is; without a
     ``source`` it takes ``case``. The records of the class ``of`` are tried until one of them
-    explains ``case``. By default, ``of`` is the class of what the misconception takes.
+    explains ``case``. By default, ``of`` is the class of ``source``, or of ``case`` without a
+    ``source``.
     """
     start = case if source is None else source
     for record in records_of(of or type(start)):

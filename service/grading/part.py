@@ -103,7 +103,7 @@ class Grading:
     def unwritten(self, entries: Iterable[Entry]) -> frozenset[str]:
         """Return the constants of the exercise that no entry contains.
 
-        A hint must not name these constants, because the missing one may be the whole answer.
+        A hint must not name these constants, because a missing constant may be the whole answer.
         """
         read = (each.expression.symbols for each in entries if each.expression is not None)
         joints = (joint.variable for joint in self.exercise.joints)
@@ -133,7 +133,7 @@ def _no_chain() -> StudentChain | None:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The content cells of a right answer: those that need knowledge and therefore earn marks.
+    """The content cells of a correct answer: the cells that need knowledge and so earn points.
 
     ``known`` and ``groups`` are ``(rows, cells)``, like the rows of the report. ``known`` marks the
     content cells. ``groups`` has the number of each cell's group; a group cannot lose more than it
@@ -169,18 +169,17 @@ class Content:
 class Judged:
     """The judgement of an answer: its rows, and the messages on the part as a whole.
 
-    The rows have no points yet; ``content`` has the worth of their cells. ``slips`` is the number
-    of slips that no cell shows, such as an extra row. ``whole_cost`` is the share of the points
-    that a slip of the whole answer costs, if such a slip explains all wrong cells. Cells that are
-    also wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is true if
-    no joint moves an answer that must move. The points of ``at_most`` are an upper limit for this
-    judgement, the points of ``at_least`` a lower limit. With ``needs_all``, the answer needs more
-    rows than ``at_most`` has: because of the upper limit, its wrong cells lose at most a unit each.
-    ``lost`` is an upper limit of the lost units of content. ``written`` is the number of cells that
-    the student wrote and that are not lazy, or None if unknown; a wrong answer earns at most a unit
-    for each of these cells.
-    ``chain`` returns the answer as a chain, or None; this function is called only if another part
-    follows this part.
+    The rows have no points yet; ``content`` determines the worth of the cells. ``slips`` is the
+    number of slips that no cell shows, such as an extra row. ``whole_cost`` is the share of the
+    points that a slip of the whole answer costs, if such a slip explains all wrong cells. Cells
+    that are also wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is
+    true if no joint moves an answer that must move. The points of ``at_most`` are an upper limit
+    for this judgement, the points of ``at_least`` a lower limit. With ``needs_all``, the answer
+    needs more rows than ``at_most`` has: because of the upper limit, the wrong cells of the answer
+    lose at most a unit each. ``lost`` is an upper limit of the lost units of content. ``written``
+    is the number of cells that the student wrote and that are not lazy, or None if unknown; a wrong
+    answer earns at most a unit for each of these cells. ``chain`` returns the answer as a chain, or
+    None; this function is called only if another part follows this part.
     """
 
     rows: tuple[RowReport, ...]

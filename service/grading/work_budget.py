@@ -54,9 +54,9 @@ class WorkBudget:
     characters that may still be cut into cells. ``explanations`` is the work left for explaining
     mistakes, on which no verdict depends. ``searches`` is the work left for finding the intended
     table: values of unread cells, other column orders. ``printed`` is the number of characters of
-    formulas that a preview may still print. ``answers`` is the whole submission; work for reading
-    its later parts is reserved. ``has_left_out`` is true if an explanation was too expensive.
-    ``unreadable`` are the texts that could not be read.
+    formulas that a preview may still print. ``answers`` is the whole submission; the work for
+    reading its later parts is reserved. ``has_left_out`` is true if an explanation was too
+    expensive. ``unreadable`` are the texts that could not be read.
     """
 
     symbols: int = MAX_SYMBOLS
@@ -91,7 +91,10 @@ class WorkBudget:
         return MAX_WORK - read - (MAX_SEARCHES - self.searches)
 
     def affords(self, work: float) -> bool:
-        """Take ``work`` for an explanation, even if not enough is left; return True if it was."""
+        """Take ``work`` for an explanation; return True if enough work was left.
+
+        The work is also taken if too little is left.
+        """
         checkpoint()
         self.explanations -= work
         left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))

@@ -1,7 +1,7 @@
 """Answer kind ``euler_angles``: three angles that describe a rotation.
 
-Every triple of the expected rotation is right. A wrong triple is compared with the nearest right
-one, so that a single slip costs a single angle.
+Every triple of angles that gives the expected rotation is correct. A wrong triple is compared with
+the nearest correct triple, so that a single slip costs a single angle.
 """
 
 from collections.abc import Sequence
@@ -85,7 +85,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
     """Return the content: the angles that are not 0.
 
-    No more angles count than in the simplest triple of the rotation.
+    At most as many angles count as differ from 0 in the simplest triple of the rotation.
     """
     fixed = part.axes == "fixed"
     simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)
@@ -107,7 +107,7 @@ def _found(
     part: EulerAnglesSpec,
     grading: Grading,
 ) -> NDArray[np.int_]:
-    """Return the Match of each angle, ``(3,)``; all are right if they describe the rotation."""
+    """Return the Match of each angle, ``(3,)``; angles that give the rotation all match."""
     angles = student.values
     found = entry_matches(student.expressions, angles, expected, 1.0, grading.samples, angle=True)
     if np.isfinite(angles).all():
@@ -148,8 +148,8 @@ def nearest_triple(
 ) -> Numbers:
     """Return the triple ``(3, SAMPLES)`` of ``rotation`` that is nearest to ``angles``.
 
-    The nearest triple has the fewest angles that differ by more than ``slack``, the rounding error
-    of each. A NaN does not count as different.
+    The nearest triple has the fewest angles that differ by more than their rounding error
+    ``slack``. A NaN does not count as different.
     """
     if fixed:
         return nearest_triple(angles[::-1], rotation, sequence[::-1], slack=slack[::-1])[::-1]
@@ -166,10 +166,10 @@ def nearest_triple(
 def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
     """Return which of the two triples of a rotation is intended at each sample, ``(SAMPLES,)``.
 
-    ``off`` is the distance of each angle from the angle of the triple, ``hit`` a mask of equal
-    angles, both ``(2, SAMPLES, 3)``. Samples may belong to different triples: atan2 always gives
-    the same triple, but an angle of the robot itself may be in either. The choice makes the most
-    angles right at all samples; a single sample decides nothing.
+    For each of the two triples, ``off`` is the distance of each angle from the triple's angle,
+    ``hit`` a mask of equal angles, both ``(2, SAMPLES, 3)``. Samples may belong to different
+    triples: atan2 always gives the same triple, but an angle of the robot itself may belong to
+    either triple. The choice makes as many angles as possible correct at all samples.
     """
     total, samples = off.sum(axis=-1), np.arange(off.shape[1])
     for count in (3, 2, 1):
@@ -183,7 +183,7 @@ def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
 
 
 def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence: str) -> Numbers:
-    """Return the triple of a singular rotation with the first angle as written."""
+    """Return the triple of a singular rotation that has the first angle as the student wrote it."""
     first = np.where(np.isfinite(angles[0]), angles[0], one[:, 0])
     last = last_angle(sequence, np.stack([first, one[:, 1]], axis=-1), rotation)
     if not np.isfinite(angles[0]).all():
@@ -199,7 +199,7 @@ def _arctangents(entries: Sequence[Entry]) -> list[bool]:
 def _explained(
     found: NDArray[np.int_], explained: Explained | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
-    """Return the matches, the slips of single angles, and the findings on all three together."""
+    """Return the Matches, the findings on single angles, and the findings on the whole triple."""
     if explained is None:
         return found, {}, ()
     slipped = explained.entries

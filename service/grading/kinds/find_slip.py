@@ -1,4 +1,4 @@
-"""Answer kind ``find_slip``: the slip in a given table, marked and mended."""
+"""Answer kind ``find_slip``: mark the slip in a given table, and correct the table."""
 
 import re
 from collections.abc import Mapping
@@ -48,10 +48,10 @@ _MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.I
 
 @dataclass(frozen=True, slots=True)
 class FoundSlip:
-    """An answer: the marked cells and the mended table.
+    """An answer: the marked cells and the corrected table.
 
     ``table`` is None if the table is missing or cannot be read at all. ``unread`` is the reason why
-    it cannot be read.
+    the table cannot be read.
     """
 
     marked: MarkedCells
@@ -60,7 +60,7 @@ class FoundSlip:
 
 
 def read(part: FindSlipSpec, answer: object, grading: Grading) -> FoundSlip | None:
-    """Read the marks and the table; return None if both are empty."""
+    """Read the marked cells and the table; return None if both are empty."""
     marks, table = _split(answer)
     marked = read_marks(marks, grading.exercise.robot.tables[part.convention].labels)
     unread = None
@@ -80,7 +80,7 @@ def read(part: FindSlipSpec, answer: object, grading: Grading) -> FoundSlip | No
 
 
 def _split(answer: object) -> tuple[object, object]:
-    """Return the marks and the table of an answer. Raises UnreadableAnswerError."""
+    """Return the marked cells and the table of an answer. Raises UnreadableAnswerError."""
     if isinstance(answer, str):
         first, _, rest = answer.strip().partition("\n")
         if found := _MARK_LINE.fullmatch(first):
@@ -94,10 +94,10 @@ def _split(answer: object) -> tuple[object, object]:
 
 
 def judge(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
-    """Judge the marks and the mended table.
+    """Judge the marked cells and the corrected table.
 
-    Unless the mark is right, the report does not say which cells of a wrong table are wrong:
-    handing in the given table would find the slip.
+    If the marked cells are wrong, the report does not say which cells of the table are wrong.
+    Otherwise a student could find the slip by submitting the given table.
     """
     drawn = slip_of(part, grading.exercise)
     is_found = _is_found(answer.marked.cells, drawn)
@@ -140,7 +140,7 @@ def _marked_row(
 def _hidden_table(
     answer: FoundSlip, table: Judged | None, grading: Grading, *, is_found: bool
 ) -> RowReport:
-    """Return a row for a table that is not right as a whole, without its cells."""
+    """Return a row for a table that is not correct, without the cells of the table."""
     verdict, findings = Verdict.MISSING, tuple[Finding, ...]()
     if answer.unread is not None:
         verdict, findings = Verdict.UNREADABLE, (answer.unread,)
@@ -160,7 +160,7 @@ def _on_reading(table: Judged | None) -> tuple[Feedback, ...]:
 
 
 def _is_found(marked: frozenset[CellIndex], drawn: DrawnSlip) -> bool:
-    """True if the marks are one of the places of the slip.
+    """True if the marked cells are one of the places of the slip.
 
     A whole row or column may be marked if at least two of its cells are wrong.
     """
@@ -179,10 +179,10 @@ def _covers(marked: frozenset[CellIndex], wrong: frozenset[CellIndex]) -> bool:
 
 
 def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
-    """Return the content: the mark is one half, and the mended table the other.
+    """Return the content: the marked cells are one half, and the corrected table the other.
 
-    In a right table, the cells of the slip share the half of the table. In any other table, all
-    cells that are not right share it, so that such a table earns nothing for mending.
+    In a correct table, the cells of the slip share the half of the table. In any other table, all
+    cells that are not correct share this half, so that the table earns nothing.
     """
     wrong = [[cell.verdict is not Verdict.CORRECT for cell in row.cells] for row in rows]
     if not any(map(any, wrong)):
@@ -202,8 +202,8 @@ def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
 def slip_of(part: FindSlipSpec, exercise: Exercise) -> DrawnSlip:
     """Return the given table and its slip.
 
-    If the wanted slip does not fit the robot, the table has another slip; ``exercises check``
-    reports that.
+    If the slip that the part asks for does not fit the robot, the table has another slip;
+    ``exercises check`` reports this.
     """
     return _slip_of(_Asked(exercise.version, part.id, part, exercise))
 
@@ -244,9 +244,9 @@ def _slip_of(asked: _Asked) -> DrawnSlip:
 def blame(
     part: FindSlipSpec, exercise: Exercise, texts: TableTexts, turn: int = 0
 ) -> TableBlame | None:
-    """Return what is wrong in a table; None if it is right, or a cell cannot be read.
+    """Return what is wrong in a table; None if it is correct, or a cell cannot be read.
 
-    Each ``turn`` has other samples.
+    Another ``turn`` draws other samples.
     """
     answer = {"rows": as_rows(texts)}
     samples = draw(exercise, [answer, turn] if turn else answer)
@@ -279,7 +279,7 @@ def blame(
 
 @cache
 def _meaning(slip: str) -> str:
-    """Return the meaning of a code in a table's cells, or in the whole table."""
+    """Return the meaning of the code of a slip in a table cell or in a whole table."""
     return next(
         record.meaning(slip)
         for record in all_records()

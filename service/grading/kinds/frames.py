@@ -203,7 +203,7 @@ def _plain_cell(
 def _length_text(
     values: Numbers, spelling: Spelling, home: Samples, grading: Grading
 ) -> Correction | None:
-    """Return a coordinate ``(SAMPLES,)`` as a formula of the constants; None if it has none."""
+    """Return a coordinate ``(SAMPLES,)`` as a formula of the constants, or None."""
     exercise = grading.exercise
     none = (0,) * len(exercise.joints)
     found = sum_formula(values, none, False, exercise, home, spelling)
@@ -260,7 +260,7 @@ def _is_other_convention(
 def _table_at(
     part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading, at: Samples
 ) -> Table:
-    """Return the table of right frames at the samples ``at``."""
+    """Return the DH table that follows from correct frames, at the samples ``at``."""
     exercise = grading.exercise
     home = home_samples(exercise, at)
     robot = home_robot(exercise, part.convention, at)
@@ -269,7 +269,7 @@ def _table_at(
 
 
 def _chain(part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading) -> StudentChain:
-    """Return right frames as a chain."""
+    """Return correct frames as a chain."""
     table = _table_at(part, answer, grading, grading.samples)
 
     def tool_at(samples: Samples) -> Matrices:
@@ -281,7 +281,7 @@ def _chain(part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading) -
 def _table_told(
     part: FramesSpec, robot: FramesAtHome, placed: Sequence[PlacedFrame], grading: Grading
 ) -> tuple[Finding, ...]:
-    """Return the message with the table of right frames, unless a later part asks for it."""
+    """Return the message with the table of correct frames, unless a later part asks for it."""
     exercise = grading.exercise
     if not grading.corrects or any(each.follows == part.id for each in exercise.parts):
         return ()
@@ -295,7 +295,7 @@ def _table_told(
 def frames_table(
     robot: FramesAtHome, placed: Sequence[PlacedFrame], grading: Grading
 ) -> list[list[str]] | None:
-    """Return the cells of the DH table of right frames; None if a cell has no formula."""
+    """Return the cells of the DH table of correct frames; None if a cell has no formula."""
     exercise, samples = grading.exercise, grading.samples
     table = table_of_frames(robot, placed, exercise, samples)
     at_home = table_of_frames(robot, placed, exercise, home_samples(exercise, samples))
@@ -312,8 +312,8 @@ def frames_table(
 def _cell_text(values: Numbers, constant: Numbers, angle: bool, grading: Grading) -> str | None:
     """Return a cell of the table as text; None if it has no formula.
 
-    ``constant`` is its value at home. Numbers have so many figures that they do not count as
-    rounded.
+    ``constant`` is the value of the cell with all joint variables 0. Numbers have enough figures
+    not to count as rounded.
     """
     exercise, samples = grading.exercise, grading.samples
     value = float(np.degrees(constant[0]) if angle else constant[0])

@@ -106,7 +106,7 @@ def entry_matches(
 ) -> NDArray[np.int_]:
     """Return the Match of each entry ``(...)``, also testing inexact ones for rounding.
 
-    ``expressions`` are those of the entries in order, None for an unreadable entry.
+    ``expressions`` are the expressions of the entries in order, None for an unreadable entry.
     """
     found = matches(actual, expected, scale, angle)
     different = np.flatnonzero(found == Match.DIFFERENT).tolist()
@@ -184,8 +184,8 @@ def nearly_equal(
     """Return a mask ``(...)`` of the values ``(..., samples)`` that are equal except for rounding.
 
     Use this for guesses, such as which slip explains an answer, but never for a verdict. ``slack``
-    is a known rounding error. The tolerance is at least a thousandth of the values' size, or of the
-    robot's largest numbers if the values are larger.
+    is a known rounding error. The tolerance is at least a thousandth of the size of the values, or
+    of the robot's largest numbers if the values are larger.
     """
     error = np.abs(difference(one, other, angle)).max(axis=-1)
     size = np.sqrt(np.mean(other * other, axis=-1))
@@ -338,7 +338,7 @@ class SharedDecimals:
 
 
 def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
-    """Return unknowns with the same effect whose shifts are within bounds, if there are any.
+    """Return unknowns with the same effect, but with shifts within bounds if possible.
 
     ``bounds`` ``(2, count)`` are the lower and upper bounds of the shifts. ``determined`` ``(N,
     N)`` projects unknowns on those with an effect. If only the sum of two decimals has an effect,

@@ -38,8 +38,9 @@ def joint_counts(
 ) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
     """Return whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
 
-    ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Return the counts ``(cells,
-    joints)`` and a mask ``(cells,)`` of the cells that have this form (angles up to whole turns).
+    The q_j are the joint variables. ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``.
+    Return the counts ``(cells, joints)`` and a mask ``(cells,)`` of the cells that have this form
+    (angles up to whole turns).
 
     All cells are one least-squares problem, because the two halves of the samples differ only in
     the joints.

@@ -1,6 +1,7 @@
 """All tolerances of grading, with their reasons; tolerances of poses are in kinematics.
 
-Lengths are in the exercise's typical length, angles in radians, unless stated otherwise.
+Unless stated otherwise, lengths are in units of the exercise's typical length, and angles are in
+radians.
 """
 
 from typing import Final

@@ -147,7 +147,7 @@ class Reader:
             return None
 
     def _hidden_notes(self, expression: Expression) -> frozenset[str]:
-        """Return the codes of the notes that are not shown on a cell of a table."""
+        """Return the codes of the notes that are not shown if the expression is in a table cell."""
         known = with_absent_variables(self.vocabulary).by_name
         joints = [known[name].joint for name in expression.symbols]
         return EXPECTED_IN_TABLES if len(joints) - joints.count(None) < 2 else frozenset()
@@ -169,7 +169,7 @@ def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: 
 
 @lru_cache(maxsize=256)
 def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
-    """Return the largest absolute value of each quantity, ``(quantities, 1)``."""
+    """Return the largest absolute value that each quantity may have, ``(quantities, 1)``."""
     return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
 

@@ -55,7 +55,7 @@ def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
 
 
 def _prepared(text: str, reader: Reader) -> str:
-    """Return the text with one reading of its indices and decimal commas."""
+    """Return the text with decimal points for decimal commas, and with unambiguous indices."""
     if reader.vocabulary.decimal_comma:
         text = with_points(text)
     return _with_indices_from_one(text, reader)
@@ -64,9 +64,9 @@ def _prepared(text: str, reader: Reader) -> str:
 def _with_indices_from_one(text: str, reader: Reader) -> str:
     """Return the text with theta(1) for theta[1] if its indices count from 1, as in Maple.
 
-    They count from 0 if a joint variable has the index 0, and from 1 if one has the number of the
-    last joint. Raises GridError for other indices, because they have two readings. Every character
-    keeps its place.
+    The indices count from 0 if a joint variable has the index 0, and from 1 if a joint variable has
+    the number of the last joint as its index. Raises GridError for other indices, because they are
+    ambiguous. Every character keeps its place.
     """
     found = [each for each in _INDEX.finditer(text) if each[1].rstrip("_") in _JOINT_VARIABLES]
     numbers = {int(each[2]) for each in found}

@@ -43,9 +43,9 @@ class CellPreview:
 
     ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
     the column's number. ``span`` is the cell's [from, to) in the pasted text, and ``typed`` the
-    text there. ``entry`` has the same meaning when it is typed into a single field; it differs from
-    ``typed`` if the column's header has a unit. An empty cell has neither a reading nor a problem.
-    A cell beyond the work budget has no LaTeX and no MathML.
+    text there. ``entry`` is the text that means the same if a person types it into a single field;
+    it differs from ``typed`` if the column's header has a unit. An empty cell has neither a reading
+    nor a problem. A cell beyond the work budget has no LaTeX and no MathML.
     """
 
     row: str
@@ -110,8 +110,8 @@ def preview_entries(
 ) -> tuple[CellPreview, ...]:
     """Read single entries of a part; each is a text and the quantity expected there.
 
-    They share one work budget, as the entries of a submission do. The previews have empty labels.
-    Raises LookupError for a part that does not exist.
+    The entries share one work budget, as in a submission. The previews have empty labels. Raises
+    LookupError for a part that does not exist.
     """
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, part), angle_unit)
@@ -172,7 +172,7 @@ def _table(text: str, reader: Reader) -> PastedPreview:
 
 
 def _alone(cell: CellPreview, header: Header, reader: Reader) -> str:
-    """Return the text that alone has the meaning of the cell below a header with a unit."""
+    """Return the text that means, without the header, what the cell means below the header."""
     if cell.problem and _DECIMAL_COMMA.fullmatch(cell.typed):
         # The repair of 135,0 would lose the unit.
         if header.angle_unit and header.angle_unit != reader.angle_unit:

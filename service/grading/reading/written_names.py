@@ -46,7 +46,7 @@ def name_of(value: object, vocabulary: Vocabulary) -> LeftSide | None:
 def arranged(
     values: Sequence[object], labels: Sequence[str], places_of: PlacesOf, vocabulary: Vocabulary
 ) -> Arrangement | None:
-    """Return the arrangement of values by their names; None if no name contradicts its place.
+    """Return the arrangement of values by their names; None if no name is in a wrong place.
 
     ``labels`` are the expected names, one for each value.
     """

@@ -107,7 +107,7 @@ def _missing_at_end(
 
 
 def _convention_of(part: DhTableSpec, answer: StudentTable) -> Convention | None:
-    """Return the convention in which a table is judged; None if it is open."""
+    """Return the convention in which a table is judged; None if the convention is open."""
     return answer.convention if part.convention == "either" else part.convention
 
 

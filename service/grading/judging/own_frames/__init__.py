@@ -9,15 +9,15 @@ In the order in which they are used:
 
   - ``few_cells``: the table as written, or with one or two repaired cells, if base, tool and
     directions are given; ``slip_likelihood`` chooses the likeliest of several repairs
-  - ``written_table``: the intended table, if the convention or the unit is mistaken
+  - ``written_table``: the intended table, if the student mistook the convention or the unit
   - ``base_frame``: the table as written, from the student's base
   - ``one_cell``: the table with one repaired cell, if base, tool or directions are free
-  - ``kinematics.frame_choice``: a search row by row; ``constants`` separates constants and joint
-    variables for it, ``validity`` lists the targets of its rows
+  - ``kinematics.frame_choice``: a search row by row; for this search, ``constants`` separates
+    constants and joint variables, and ``validity`` lists the targets of the rows
 
 - ``best_roles``: choose the pairing of rows and joints with the nearest valid table
-- ``remarks``: messages on valid frames that are not the reference's
+- ``remarks``: messages on valid frames that differ from the reference frames
 
-``reference`` has the reference in the forms that the other modules need. ``validity`` also tests
-many tables at once.
+``reference`` converts the reference table to the forms that the other modules need. ``validity``
+also tests many tables at once.
 """

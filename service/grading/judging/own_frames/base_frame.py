@@ -26,12 +26,12 @@ def possible_bases(
     mechanism: Mechanism,
     freedom: FrameFreedom,
 ) -> Iterator[Matrices | None]:
-    """Yield possible poses ``(L, 4, 4)`` of frame 0 in the reference's frame 0; None for identity.
+    """Yield possible poses ``(L, 4, 4)`` of frame 0 in the reference frame 0; None is the identity.
 
     ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of a table. ``joint_signs`` ``(rows +
     1,)`` has the sign of the joint variable that each row starts from. A given tool allows one
-    pose. Otherwise the joint axes must lie on the reference's axes, in the directions that the
-    signs give, or in either direction if the directions are free.
+    pose. Otherwise the joint axes must lie on the joint axes of the reference, in the directions
+    that the signs give, or in either direction if the directions are free.
     """
     if not freedom.base:
         yield None

@@ -31,7 +31,7 @@ def best_roles(
 def _best_as_written(
     rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """Return the best roles and nearest table without adjusting the right cells for rounding."""
+    """Return the best roles and nearest table; its correct cells are not adjusted for rounding."""
     joints = grading.exercise.robot.joints
     roles = roles_in(rows, convention, grading)
     roles = with_true_numbers(roles, convention, freedom, grading)
@@ -101,8 +101,8 @@ def rows_of_mechanism(
 ) -> list[int]:
     """Return the indices of the joints' rows and of the first tool rows, up to the usual number.
 
-    Only the joint variables decide: if a student writes several guesses at a row, the right one is
-    not preferred.
+    Only the joint variables decide. So if a student writes several guesses at a row, the correct
+    guess is not preferred.
     """
     usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
     if len(rows) <= usual:

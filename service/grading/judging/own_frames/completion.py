@@ -1,9 +1,9 @@
-"""Search values for the unread cells of a table that make it valid.
+"""Search for values of the unread cells of a table that make the table valid.
 
-If such values exist, no readable cell is wrong. The search uses one set of link lengths, so that
-each unread cell is a constant, plus or minus its joint's variable. The tool must agree with the
-reference's at all joint values. The method is Newton's with damping (Levenberg and Marquardt), from
-many starts at once.
+If such values exist, no readable cell is wrong. The search uses one set of link lengths. So an
+unread cell is a constant, or a constant plus or minus the joint variable that belongs in the cell.
+The tool frame must agree with the reference tool frame at all joint values. The method is Newton's
+with damping (Levenberg and Marquardt), from many starts at once.
 
 Shapes: S starts, L joint values, U unread cells and twists of a free base or tool.
 """
@@ -52,8 +52,8 @@ class _Case:
     """A table with unread cells at one set of link lengths; the unit is the typical length.
 
     ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells ``(U, 2)``. ``variables`` ``(U,
-    L)`` is the joint variable that belongs in each unread cell. ``target`` ``(L, 4, 4)`` has the
-    reference's tool frames.
+    L)`` is the joint variable that belongs in each unread cell. ``target`` ``(L, 4, 4)`` are the
+    tool frames of the reference.
     """
 
     table: Table
@@ -83,8 +83,8 @@ def completed(
 ) -> NearestTable | None:
     """Return the submitted table if some values in its unread cells make it valid, else None.
 
-    These values are not unique, so the result has 0 in the unread cells, and the reference's
-    frames. Directions count as given.
+    These values are not unique, so the result has 0 in the unread cells, and its frames are those
+    of the reference. The directions of the joint axes count as given.
     """
     if any(role.row is None for role in roles):
         return None
@@ -119,7 +119,7 @@ def _case(
 
 
 def _of_one_robot(samples: Samples, joints: Sequence[str]) -> Samples:
-    """Return the samples with all joint values, but always the first link lengths."""
+    """Return the samples with all joint values, but with the first link lengths at every sample."""
     return Samples(
         {
             name: values if name in joints else np.full_like(values, values[0])
@@ -197,8 +197,9 @@ def _linearised(
 ) -> tuple[Numbers, Numbers]:
     """Return the error of the tool, ``(S, 6 L)``, and its derivative ``(S, U, …)``.
 
-    The error is the rotation vector and the displacement to the reference's tool. A cell turns all
-    later frames about its axis, ω and ω × (p - point), or moves them along the axis.
+    The error is the rotation vector and the displacement from the tool at p to the reference tool.
+    The derivative for an angle is ω and ω × (p - point): a turn about an axis with direction ω
+    through the point. The derivative for a length is a shift along the axis.
     """
     starts, postures = len(constants), len(case.target)
     table = np.repeat(case.table[:, :, None], starts, axis=2)
@@ -251,7 +252,7 @@ def _step(error: Numbers, columns: Numbers, damping: Numbers) -> Numbers:
 
 
 def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
-    """Return the share of the squared error ``(S,)`` that the step removes in a linear model."""
+    """Return the share ``(S,)`` of the squared error that a step removes in a linear model."""
     undone = (change * (columns @ error[..., None])[..., 0]).sum(axis=-1)
     return np.asarray(undone / (error**2).sum(axis=-1))
 

@@ -26,9 +26,9 @@ from service.kinematics.transforms import Numbers
 def row_constants(
     roles: tuple[Role, ...], joints: tuple[Joint, ...], convention: Convention, samples: Samples
 ) -> list[RowConstants]:
-    """Return the constants of a table, regrouped as the rows that lead from target to target.
+    """Return the constants of a table, regrouped into rows that lead from target to target.
 
-    A cell that does not change as its joint variable does is wrong in any frames.
+    A cell that depends wrongly on the joint variables is wrong whatever frames are chosen.
     """
     cells = handed_in_values(roles)
     is_gradable = np.array(
@@ -66,8 +66,8 @@ def without_variables(
 ) -> tuple[Numbers, NDArray[np.int_]]:
     """Return the constants of tables ``(T, rows, 4, samples)`` and the signs of their variables.
 
-    The constants are ``(T, rows, 4, samples / 2)``, NaN for a cell that does not change as its
-    joint variable does. The signs are ``(T, rows)``.
+    The constants are ``(T, rows, 4, samples / 2)``, with NaN for a cell that depends wrongly on the
+    joint variables. The signs are ``(T, rows)``.
     """
     tables = tables.copy()
     signs = np.zeros(tables.shape[:2], dtype=np.int_)

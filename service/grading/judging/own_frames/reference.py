@@ -20,12 +20,12 @@ _Cell = TypeVar("_Cell", bound=np.generic)
 
 @dataclass(frozen=True, slots=True)
 class Mechanism:
-    """The reference's constants, at the first half of the samples (L of them).
+    """The constants of the reference robot, at the first half of the samples (L of them).
 
-    ``joints`` ``(n, L, 4, 4)`` is the transform from the previous joint's frame to each joint's.
-    ``fixed`` are the frames of the fixed rows and ``tool`` is the end effector's, ``(L, 4, 4)``
-    each, in the last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is the screw Z of the constants in
-    each joint's d and θ.
+    ``joints`` ``(n, L, 4, 4)`` are the poses of the joint frames, each in the frame of the previous
+    joint. ``fixed`` are the frames of the fixed rows and ``tool`` is the end-effector frame, ``(L,
+    4, 4)`` each, in the last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is, for each joint, the
+    transform Z that consists of the constants in d and θ.
     """
 
     joints: Matrices
@@ -35,7 +35,7 @@ class Mechanism:
 
 
 def mechanism_at(exercise: Exercise, samples: Samples) -> Mechanism:
-    """Return the mechanism that the exercise's reference describes."""
+    """Return the mechanism that the reference table of the exercise describes."""
     return samples.cached("mechanism", lambda: _mechanism(exercise, samples))
 
 
@@ -86,9 +86,9 @@ def frames_on_axes(
     """Return the student's frames on the joint axes, as seen from the reference's frames.
 
     The shape is ``(joints, ..., 4, 4)``. ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are the
-    relative poses of the frames before each joint's Z. ``links`` ``(rows + 1, 4, ...)`` are the
-    regrouped constants. The frame on a joint axis is the frame before Z in the standard convention,
-    and the frame after Z in the modified convention.
+    relative poses of the frames before each joint's transform Z, which consists of d and θ.
+    ``links`` ``(rows + 1, 4, ...)`` are the regrouped constants. The frame on a joint axis is the
+    frame before Z in the standard convention, and the frame after Z in the modified convention.
     """
     places = [i for i, _ in joint_cells(roles)]
     on_axes = relative_poses[places]
@@ -107,9 +107,11 @@ def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
 
 
 def regrouped(cells: NDArray[_Cell], convention: Convention) -> NDArray[_Cell]:
-    """Regroup the rows of a table as the products Z X that lead from each target to the next.
+    """Regroup the cells of a table into rows that each lead from one target to the next.
 
-    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros for cells that the table lacks.
+    Each new row is a product Z X: first the motion along z by d and θ, then the motion along x by a
+    and α. ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros for cells that the table
+    lacks.
     """
     none = np.zeros_like(cells[:1])
     z = np.concatenate([none, cells])

@@ -27,8 +27,8 @@ def remarks_on(
 
     ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes, as
     seen from the reference's frames. ``rows_right`` ``(joints, 2)`` says, for each axis, whether
-    the rows before and after it are right. Neighbouring frames that differ are one choice. There
-    are no findings on a choice that a wrong row implies.
+    the rows before and after it are right. Neighbouring frames that differ count as one choice.
+    There are no findings on a choice that a wrong row implies.
     """
     error = np.abs(relative_poses - np.eye(4)).max(axis=1)
     error[:, :3, 3] /= exercise.length_scale
@@ -47,7 +47,7 @@ def remarks_on(
 
 
 def _chosen(departs: NDArray[np.bool_], rows_right: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the frames that differ, without runs of such frames beside a wrong row."""
+    """Return a mask of the differing frames, without runs of such frames beside a wrong row."""
     runs = np.cumsum(~departs)
     implied = runs[departs & ~rows_right.all(axis=1)]
     return departs & ~np.isin(runs, implied)

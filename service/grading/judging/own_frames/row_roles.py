@@ -63,7 +63,10 @@ def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
 
 
 def joint_variables(joints: Sequence[Joint | None], samples: Samples) -> Table:
-    """Return the joint variable, or 0, in each cell of the joints' rows; None is a fixed row."""
+    """Return the joint variable, or 0, of each cell in the rows of ``joints``.
+
+    A fixed row has the joint None.
+    """
     variables = np.zeros((len(joints), len(COLUMNS), samples.count))
     for row, joint in zip(variables, joints, strict=True):
         if joint is not None:
@@ -83,8 +86,8 @@ def roles_of(
 
     If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
     Otherwise the joint variables decide: the pairing in order with the most matching variables is
-    taken, and the remaining rows are fixed. But if some joint's variable is in no cell of its
-    column, and the number of rows is the expected one, the joints' rows come first.
+    taken, and the remaining rows are fixed. But if the variable of some joint is in no cell of its
+    usual column, and the number of rows is the expected number, the joints' rows come first.
     """
     one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
     if len(rows) == len(joints) if in_order is None else in_order:
@@ -105,10 +108,10 @@ def roles_of(
 
 
 def pair_in_order(scores: Numbers) -> list[tuple[int | None, int | None]]:
-    """Pair handed-in rows with expected rows, in order, so that the sum of scores is the largest.
+    """Pair submitted rows with expected rows, in order, so that the sum of scores is the largest.
 
-    ``scores`` is ``(submitted, expected)``. A row without partner is paired with None: (None, j) is
-    a missing row, (i, None) an extra one. For equal sums, the last rows have no partner.
+    ``scores`` is ``(submitted, expected)``. A row without a partner is paired with None: (None, j)
+    is a missing row, (i, None) an extra row. For equal sums, the last rows have no partner.
 
     The method is the weighted recurrence of the longest common subsequence.
     """

@@ -1,4 +1,4 @@
-"""Test which of many tables describe the robot in any valid frames."""
+"""Test which of many tables describe the robot, whatever valid frames they use."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +31,10 @@ def valid_tables(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(T,)`` of the tables that describe the mechanism in any valid frames.
+    """Return a mask ``(T,)`` of the tables that describe the mechanism in some valid frames.
 
-    ``tables`` is ``(T, rows, 4, samples)``; all have the same ``roles``. A free base counts as
-    given here.
+    ``tables`` is ``(T, rows, 4, samples)``; all tables have the same ``roles``. The base counts as
+    given, even if it is free.
     """
     if not (freedom.tool or freedom.directions):
         return _valid_by_pose(tables, roles, convention, exercise, samples, tolerance)

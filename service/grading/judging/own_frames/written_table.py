@@ -18,7 +18,7 @@ from service.translations import say, template
 class Rereadable:
     """A table that may have been written in the other convention or in the other angle unit.
 
-    A student may hold one of these misconceptions and make another slip, or hold two at once.
+    A student may have one of these misconceptions and make another slip, or have both at once.
     """
 
 
@@ -39,7 +39,7 @@ class WrittenTable(Rereadable):
 
     @property
     def values(self) -> Table:
-        """The table as it was handed in."""
+        """The table as it was submitted."""
         return self.constants + self.motion
 
     def subset(self, count: int) -> "WrittenTable":

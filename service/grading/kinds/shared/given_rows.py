@@ -68,7 +68,7 @@ def _in_places(
     count: int,
     grading: Grading,
 ) -> list[StudentRow | None] | None:
-    """Return the rows in the places of the table, None for one that was left out.
+    """Return, for each place in the table, its row; None for a row that was left out.
 
     Return None if there are too many rows.
     """
@@ -103,7 +103,7 @@ def _is_taken_over(row: StudentRow, right: StudentRow, grading: Grading) -> bool
 
 
 def _is_changed(row: StudentRow, right: StudentRow, grading: Grading) -> bool:
-    """True if a cell of the row is not empty, and differs from the given one in text and value."""
+    """True if a cell of the row is not empty, and differs from the given cell in text and value."""
     scales = column_scales(grading)
     equal = nearly_equal(row.values, right.values, scales, IS_ANGLE[:, None])
     cells = zip(row.entries, right.entries, equal.tolist(), strict=True)

@@ -80,7 +80,7 @@ def best_reading(
     best = readings.best(table, written)
 
     def judged_again(other: StudentTable) -> Judged:
-        """Judge a table with numbers that are wrong in any frames; only its points count."""
+        """Judge a table with given-up rows or cells; only the points of the judgement count."""
         silent = readings.in_silence()
         return silent.best(other, silent.as_written(other))
 

@@ -1,1 +1,1 @@
-"""Lists of values as handed in -> entries."""
+"""Read submitted lists of values and of frames as entries."""

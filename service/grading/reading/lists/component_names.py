@@ -33,7 +33,7 @@ class ListNames:
     """The names that the values of a list may have.
 
     ``labels`` are the expected names and ``quantities`` the expected quantities, in order.
-    ``places`` maps keys of names to places; ``coordinates`` maps x, y and z to places.
+    ``places`` maps names, joined by ``_key``, to places; ``coordinates`` maps x, y and z to places.
     """
 
     labels: tuple[str, ...]
@@ -167,6 +167,6 @@ def _symbol(name: str, vocabulary: Vocabulary) -> Symbol | None:
 
 
 def _coordinate(words: Sequence[str]) -> str | None:
-    """Return the coordinate in a name, x for p_x and x_e; None unless there is exactly one."""
+    """Return the coordinate in a name, such as x for p_x and x_e; None unless there is just one."""
     found = [match[1] or match[2] for word in words if (match := _COORDINATE.fullmatch(word))]
     return found[0] if len(found) == 1 else None

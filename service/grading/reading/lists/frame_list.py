@@ -65,7 +65,10 @@ _READ: Final = Entry(None)
 
 @dataclass(frozen=True, slots=True)
 class JointNumber:
-    """The number of a joint axis as read; None with the reason if it is not a whole number."""
+    """The number of a joint axis as read.
+
+    If the cell does not contain a whole number, ``number`` is None, and ``entry`` has the reason.
+    """
 
     number: int | None
     entry: Entry = _READ
@@ -210,7 +213,7 @@ def _pasted_frame(cells: Sequence[GridCell], reader: Reader) -> StudentFrame:
 
 
 def _whole(entry: Entry, cell: GridCell) -> Entry:
-    """Return the entry with the whole cell as the place of its findings."""
+    """Return the entry; each of its findings refers to the whole cell."""
     findings = tuple(replace(each, span=cell.whole) for each in entry.findings)
     return replace(entry, findings=findings)
 

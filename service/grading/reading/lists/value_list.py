@@ -66,7 +66,8 @@ def read_list(
 def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
     """Return the values of an object such as {"x": …, "y": …} in the expected order.
 
-    Raises UnreadableAnswerError unless each key has exactly one place, all different.
+    Raises UnreadableAnswerError unless each key means exactly one place, and no two keys mean the
+    same place.
     """
     count = len(names.quantities)
     if not 0 < len(answer) <= count:
@@ -130,7 +131,7 @@ def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Ta
 def _left_aside(
     values: Sequence[object], count: int, reader: Reader, tails: Sequence[Tail]
 ) -> Tail:
-    """Return the one of ``tails`` that follows the first ``count`` values, or an empty tail."""
+    """Return which of ``tails`` follows the first ``count`` values, or an empty tail."""
     following = values[count:]
     for tail in tails:
         if len(tail) == len(following) and all(map(partial(_is_figure, reader), following, tail)):
@@ -177,9 +178,9 @@ def _in_round_brackets(text: str) -> str:
 
 
 def _as_written_out(text: str) -> str:
-    """Return a list without its code fence, its name and a T that transposes it.
+    """Return the text of a list without its code fence, its name, and a T that transposes it.
 
-    A row and a column are the same list. Removed text becomes blanks, so that places stay valid.
+    A transposed list is the same list. Removed text becomes blanks, so that spans stay valid.
     """
     for pattern in (_FENCE, _FENCE_AFTER):
         text = pattern.sub(lambda found: _LETTER.sub(" ", found[0]), text, count=1)

@@ -31,8 +31,8 @@ def read_matrices(
 ) -> list[StudentMatrix]:
     """Read the matrices of a pasted text, one for each label; absent ones have missing entries.
 
-    Matrices are identified by their names, if they have any. An unreadable one affects only itself.
-    Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
+    Matrices are identified by their names, if they have any. An unreadable matrix affects only
+    itself. Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
     """
     if not text.strip():
         return [matrix_of_entries([], quantities, reader) for _ in labels]

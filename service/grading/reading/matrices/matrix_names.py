@@ -30,7 +30,7 @@ _Place = int | None
 
 
 def indices_of(name: str) -> Indices:
-    r"""Return the numbers in a name and the letters for the last frame: "1" and "2" for ^1T_2."""
+    r"""Return the indices in a name: "1" and "2" for ^1T_2, "0" and "e" for ^0T_e."""
     return tuple(_INDEX.findall(_COMMAND.sub(" ", _ARGUMENTS.sub(" ", name))))
 
 
@@ -51,8 +51,8 @@ def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...],
     The note is a template for the names of the ``matrices``; it is empty for usual counting.
 
     A name has the number of the link, or the two frames that the link connects. There are several
-    ways to count: A0 may be the first link, and 12 the twelfth or the one between frames 1 and 2.
-    The way that gives the most places is chosen.
+    ways to count: A0 may be the first link, and 12 may be the twelfth link or the link between
+    frames 1 and 2. The way that gives the most places is chosen.
     """
     readings = [
         (tuple(_valid(way(name, count), count) for name in names), unusual)
@@ -70,7 +70,7 @@ def _number(index: str, count: int) -> int:
 
 
 def _by_number(name: Indices, count: int) -> _Place:
-    """Return the place of A_2, which has the link's number, or T^1_2, which has its two frames."""
+    """Return the place of a name with the link's number (A_2) or the link's two frames (T^1_2)."""
     numbers = [_number(index, count) for index in name]
     if len(numbers) == 1 and (len(name[0]) == 1 or name[0][0] != "0"):
         return numbers[0]
@@ -80,7 +80,7 @@ def _by_number(name: Indices, count: int) -> _Place:
 
 
 def _by_frames(name: Indices, count: int) -> _Place:
-    """Return the place of T_{12}, which has the frames on either side in one number."""
+    """Return the place of a name with the link's two frames in one number: T_{12}."""
     if len(name) == 1 and len(name[0]) == 2 and name[0].isdigit():
         return _by_number(tuple(name[0]), count)
     return _by_number(name, count)
@@ -99,7 +99,7 @@ def _from_frame_one(name: Indices, count: int) -> _Place:
 
 
 def _by_last_frame(name: Indices, count: int) -> _Place:
-    """Return the place of a name if all names count from frame 0: T_{02} is the second one."""
+    """Return the place of a name if all names start from frame 0: T_{02} is the second matrix."""
     pair = tuple(name[0]) if len(name) == 1 else name
     return _number(pair[1], count) if len(pair) == 2 and pair[0] == "0" else None
 

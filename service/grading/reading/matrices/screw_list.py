@@ -218,7 +218,11 @@ def _placed(
 
 
 def _places(names: Sequence[str], count: int) -> list[int] | None:
-    """Return the place of each name from 0, by its number; in the given order if all are empty."""
+    """Return the place of each name, counted from 0, by the number in the name.
+
+    If all names are empty, the places are in the given order. Return None if a place is unknown or
+    taken.
+    """
     if not names or len(names) > count:
         return None
     if not any(names):
@@ -229,7 +233,7 @@ def _places(names: Sequence[str], count: int) -> list[int] | None:
 
 
 def _half(name: str) -> int | None:
-    r"""Return 0 for a name of ω, 1 for one of v (\hat{\omega}_1, w2, v_3), None for any other."""
+    r"""Return 0 for a name of ω (\hat{\omega}_1, w2), 1 for a name of v (v_3), else None."""
     plain = _STYLE.sub("", name).lstrip("{ $").lower()
     if _OMEGA.match(plain):
         return 0

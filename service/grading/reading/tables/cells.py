@@ -134,7 +134,7 @@ def _are_numbered(rows: list[object]) -> bool:
 
 
 def _number(cell: object) -> int | None:
-    """Return the number of a row. None for 0, and for a length such as l1."""
+    """Return the row number that a cell contains; None for 0, and for a length such as l1."""
     place = _place(cell)
     return place if place == LAST or (place and str(cell).strip().isdecimal()) else None
 
@@ -174,7 +174,7 @@ def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Rea
 
 
 def _header(name: object, names: dict[str, Header | None]) -> Header | None:
-    """Return the header with this name; ``names`` memoizes those of earlier rows."""
+    """Return the header with this name; ``names`` memoizes the headers of earlier rows."""
     if not isinstance(name, str):
         return None
     if name not in names:
@@ -299,7 +299,7 @@ _NO_SAMPLES: Final = Samples({})
 def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
     """Read the cells of row ``number``, which is None if unknown.
 
-    A cell is a JSON value, or the finding why it is unreadable.
+    A cell is a JSON value, or the finding that says why the cell is unreadable.
     """
     found = arranged_row(cells, reader.vocabulary)
     ordered = [cells[i] for i in found.order] if found else cells

@@ -50,7 +50,7 @@ def columns_in_comments(text: str) -> tuple[Header, ...] | None:
 
 
 def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption names a unit, but does not say of which columns.
+    """Raise GridError if a comment or a caption names a unit, but not the columns with that unit.
 
     Units of angles are ignored if a header has one, and so are units of lengths. The reader's own
     units and comments with numbers are ignored, too.

@@ -67,7 +67,8 @@ class Header:
     """The meaning of a header.
 
     ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored. ``unit`` is
-    in small letters. ``shifted`` is true if the index is one less than the row's, as in a_{i-1}.
+    in small letters. ``shifted`` is true if the index in the header is one less than the row
+    number, as in a_{i-1}.
     """
 
     column: str

@@ -40,8 +40,9 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    A row of the wrong length has a ``problem``, and the same cell in all four places. ``named`` is
-    the arrangement of the cells by their names, None if no name contradicts its column.
+    A row of the wrong length has a ``problem``, and one cell is repeated in all four places.
+    ``named`` is the arrangement of the cells by their names, None if no name contradicts its
+    column.
     """
 
     cells: tuple[GridCell, ...]

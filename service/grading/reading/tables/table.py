@@ -76,7 +76,7 @@ class StudentRow:
 
     @property
     def is_given_up(self) -> bool:
-        """True if some cell is ``GIVEN_UP``: its number is wrong in any frames."""
+        """True if some cell is ``GIVEN_UP``: its number is wrong whatever frames are chosen."""
         return any(entry is GIVEN_UP for entry in self.entries)
 
     @property
@@ -126,9 +126,9 @@ Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTable:
     """Return the table without empty rows after the rows of all joints, as if they were absent.
 
-    A table that is right in the other convention may have one row less than the form; without its
-    empty row it is recognized. A table with more rows than ``asked`` is unchanged: an extra empty
-    row costs as much as an extra wrong row.
+    A table that is correct in the other convention may have one row fewer than the form. Such a
+    table is recognized only without the empty row at its end. A table with more rows than ``asked``
+    is unchanged: an extra empty row costs as much as an extra wrong row.
     """
     if len(table.rows) > asked:
         return table
@@ -183,7 +183,7 @@ def read_table(
 
 
 def _under_other_names(row: object, other: Sequence[str]) -> object:
-    """Return the row with its values, in the order a, α, d, θ, under the names in ``other``."""
+    """Return the row with the names in ``other`` for its values in the order a, α, d, θ."""
     if not isinstance(row, Mapping):
         return row
     return {name: row.get(column) for name, column in zip(other, COLUMNS, strict=True)}
@@ -229,7 +229,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
 
 
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:
-    """Return the row with one and the same entry for all empty cells and dashes."""
+    """Return the row with the same entry in all empty cells and cells with a dash."""
     if all(entry.readable for entry in row):
         return row
     empty = [entry.verdict is Verdict.MISSING or _is_dash(entry) for entry in row]

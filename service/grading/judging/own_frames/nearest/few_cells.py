@@ -49,12 +49,12 @@ UNREAD = WRONG_CELL / 10
 
 @dataclass(frozen=True, slots=True)
 class NearestTable:
-    """The valid table nearest to a handed-in one: ``expected`` is ``(rows, 4, SAMPLES)``.
+    """The valid table nearest to a submitted table: ``expected`` is ``(rows, 4, SAMPLES)``.
 
-    ``frames`` ``(joints, samples, 4, 4)`` are its frames on the joint axes as seen from the
-    reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1, the handed-in
-    table is valid. ``lost`` is the number of units of marks that the wrong cells lose, compared
-    with the valid table for which they lose the fewest (not always this table); infinite if
+    ``frames`` ``(joints, samples, 4, 4)`` are the frames of the valid table on the joint axes, as
+    seen from the reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1,
+    the submitted table is valid. ``lost`` is the loss of points for the wrong cells, in units. It
+    is computed for the valid table with the smallest loss (not always this table), and infinite if
     unknown.
     """
 
@@ -207,10 +207,10 @@ def _in_one_row(repair: CellRepair) -> bool:
 def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
     """Return the table after the repair of the likeliest slip.
 
-    A repair is cheap if it has few cells, if these are in one row, and if its frames are near the
-    reference's. Repairs are tried in the order of this cost. The search ends when this cost alone
-    is at least the full cost of the best repair so far, which includes the unlikelihood of
-    its slips.
+    A repair is cheap if it has few cells, if these are in one row, and if it leads to frames near
+    the reference's frames. Repairs are tried in the order of this cost. The search ends when this
+    cost alone is at least the full cost of the best repair so far, which includes the unlikelihood
+    of its slips.
     """
     tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
     for k, repair in enumerate(repairs):
@@ -236,7 +236,7 @@ def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | Non
 
 
 def _lost(repair: CellRepair, case: _Case) -> float:
-    """Return the units of marks that the cells of a repair lose."""
+    """Return the loss of points for the cells of a repair, in units."""
     if len(repair.cells) == 1:
         return WRONG_CELL
     repaired = case.table[..., SUBSET_SAMPLES].copy()
@@ -265,9 +265,9 @@ def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
 
 
 def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
-    """Return the constant in ``values`` of a cell: without the joint variable, of either sign.
+    """Return the constant part of the ``values`` of a cell.
 
-    ``values`` must change with the joints as the cell should.
+    The values must be this constant, plus or minus the joint variable that belongs in the cell.
     """
     variable: Numbers = case.variables[cell]
     error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))

@@ -80,7 +80,7 @@ def _as_intended(
     """Return the intended table if correcting the convention or angle unit makes the table valid.
 
     A wrong convention or unit makes most cells wrong at once. But the intended table is known, and
-    so is the right value of each cell.
+    therefore the correct value of each cell.
     """
     values = handed_in_values(roles)
     if not np.isfinite(values).all():
@@ -173,10 +173,10 @@ def _searched(
     freedom: FrameFreedom,
     scale: float,
 ) -> ChainMatch:
-    """Search the nearest valid table, from the base, or from the tool if only the tool is given.
+    """Search for the nearest valid table, from the base, or from the tool if only that is given.
 
-    If both are free, the search moves the base for each row. So if the search finds nothing wrong
-    except rounding, it is repeated from each possible base.
+    If base and tool are both free, the search moves the base for each row. So if the search finds
+    nothing wrong except rounding, the search is repeated from each possible base.
     """
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions

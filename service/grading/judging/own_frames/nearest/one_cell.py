@@ -2,8 +2,9 @@
 
 ``few_cells`` compares poses at all joint values. That is impossible if the student chooses base,
 tool or directions. So this module compares constants, as ``validity`` does: with all joints at 0,
-the joint axes must lie on the reference's. The axes give the value that each cell would need if it
-alone were wrong (``kinematics.axis_repairs``). All repaired tables are then tested at once.
+the joint axes must lie on the joint axes of the reference. The axes give the value that each cell
+would need if no other cell were wrong (``kinematics.axis_repairs``). All repaired tables are then
+tested at once.
 """
 
 from collections.abc import Iterator, Sequence, Set
@@ -47,10 +48,10 @@ SUBSET = 2
 
 @dataclass(frozen=True, slots=True)
 class _Repair:
-    """Another constant ``(L,)`` of a cell, and the pose of one end of the chain that it implies.
+    """A new constant ``(L,)`` for a cell, and the pose of one end of the chain that it implies.
 
-    The end is frame 0 or the last frame, ``(L, 4, 4)``, in the reference's frame 0. ``attempt`` is
-    the index of the underlying assumption in ``_ends``.
+    The end is frame 0, or the last frame if ``is_last``; its pose ``(L, 4, 4)`` is in the
+    reference's frame 0. ``attempt`` is the index of the underlying assumption in ``_ends``.
     """
 
     cell: CellIndex
@@ -62,11 +63,11 @@ class _Repair:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """The factors of a table, from one end, and the reference's axes in the same order.
+    """A table as a product of factors, from one end, and the reference's axes in the same order.
 
-    ``joints`` ``(n,)`` are the factors along whose z the joints act. ``axes`` ``(n, L, 4, 4)`` are
-    the right poses of these axes in the reference's frame 0. ``is_reversed`` is true if the factors
-    start from the last frame.
+    ``joints`` ``(n,)`` are the indices of the factors along whose z the joints act. ``axes`` ``(n,
+    L, 4, 4)`` are the correct poses of the joint axes in the reference's frame 0. ``is_reversed``
+    is true if the factors start from the last frame.
     """
 
     factors: Factors
@@ -101,8 +102,8 @@ class _Body:
 class _Case:
     """A table to be repaired: its constants ``(rows, 4, L)`` and those of the mechanism.
 
-    ``wrong`` are the cells that are wrong in any frames. ``joint_signs`` ``(rows + 1,)`` are the
-    signs of the variables, 0 if irrelevant, as in RowConstants.
+    ``wrong`` are the cells that are wrong whatever frames are chosen. ``joint_signs`` ``(rows +
+    1,)`` are the signs of the variables, 0 if irrelevant, as in RowConstants.
     """
 
     table: Table
@@ -131,7 +132,7 @@ class _Case:
 
 @dataclass(frozen=True, slots=True)
 class _Repaired:
-    """T repairs that make the table valid, with the ``links`` ``(T, rows + 1, 4, L)`` they give.
+    """T repairs that make the table valid, and the repaired ``links`` ``(T, rows + 1, 4, L)``.
 
     ``poses`` ``(rows + 1, T, L, 4, 4)`` are the relative poses of the repaired tables.
     """
@@ -180,7 +181,10 @@ def one_cell_match(
 
 
 def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
-    """Return the cheapest repair: its frames are near the reference's, and its slip is likely."""
+    """Return the cheapest repair.
+
+    A repair is cheap if it leads to frames near the reference's frames, and if its slip is likely.
+    """
     links = np.moveaxis(found.links, 0, 2)
     frames = frames_on_axes(found.poses, links, case.roles, case.convention, case.mechanism)
     departures = departure(frames.reshape(-1, *frames.shape[2:]), case.length_scale)
@@ -231,7 +235,7 @@ def _starts(repairs: Sequence[_Repair], tables: Numbers, convention: Convention)
 def _repairs(
     case: _Case, samples: int, attempts: Set[tuple[int, CellIndex]] | None = None
 ) -> Iterator[_Repair]:
-    """Yield the values that single cells would need if they alone were wrong.
+    """Yield, for single cells, the value that the cell would need if no other cell were wrong.
 
     The values are at the first ``samples``. If ``attempts`` are given, yield only the repairs of
     these attempts and cells.

@@ -1,8 +1,8 @@
 """Find the likeliest of several slips that each explain a wrong table.
 
 On parallel axes, and around prismatic joints, a slip can often be repaired in several cells. A
-repair is likely if the right value is simple, and if students often make the slip: a wrong sign, a
-forgotten value, a quarter turn, an extra term, a missing or misplaced joint variable.
+repair is likely if the correct value is simple, and if students often make the slip: a wrong sign,
+a forgotten value, a quarter turn, an extra term, a missing or misplaced joint variable.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Estimate the units of marks that wrong cells lose (``judging.marking`` computes the marks)."""
+"""Estimate the loss of points for wrong cells (``judging.marking`` computes the points)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,14 @@ from service.kinematics.chain import Table
 def units_lost(
     expected: Table, variables: Table, wrong: NDArray[np.bool_], length_scale: float
 ) -> float:
-    """Return the units that the ``wrong`` cells ``(rows, 4)`` lose.
+    """Return the loss for the ``wrong`` cells ``(rows, 4)`` in units, the cost of one wrong cell.
 
-    Each wrong cell loses a unit, but several in one row lose no more than the row is worth. A
-    single wrong cell in a row of zeros also loses a unit: the mistake may be the sign of a joint
-    variable, and a table of zeros with wrong axes must lose enough.
+    Several wrong cells in one row lose no more than the row is worth. A single wrong cell always
+    loses a whole unit, even in a row of zeros, which is worth less: the mistake may be the sign of
+    a joint variable, and a table of zeros with wrong axes must lose enough.
 
-    ``expected`` ``(rows, 4, samples)`` is the right table; ``variables`` has the joint variable
-    alone in each cell.
+    ``expected`` ``(rows, 4, samples)`` is the correct table. ``variables`` is the joint variable
+    that belongs in each cell, or 0.
     """
     either = np.array([expected - variables, expected + variables])
     error = np.abs(difference(either, np.zeros(1), IS_ANGLE[:, None])).max(axis=-1).min(axis=0)

@@ -54,8 +54,9 @@ def known_angles(
 ) -> NDArray[np.bool_]:
     """Return a mask ``(rows, 4)`` of the rounded angles whose exact values are known.
 
-    These are all rounded angles if each one agrees with a multiple of the step, otherwise none: if
-    one angle of a table is not a multiple, another may look like one by chance.
+    The mask contains all rounded angles if each of them agrees with a multiple of the step,
+    otherwise none: if one angle of a table is not a multiple, another angle may look like a
+    multiple by chance.
     """
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
@@ -68,7 +69,10 @@ def known_angles(
 def _slack_of_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> Numbers | None:
-    """Return the slack of the rounded angles; None if there is none or angles are arbitrary."""
+    """Return the slack of the rounded angles, or None.
+
+    Return None if no angle is rounded, or if the angles of the robot are arbitrary.
+    """
     if not any(role.row.has_decimal for role in roles if role.row):
         return None
     slack = slack_of_cells(roles, samples, IS_ANGLE)
@@ -89,9 +93,10 @@ def slack_of_cells(
 
 
 def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:
-    """Return how far rounding moved each cell ``(rows, 4, SAMPLES)`` off a multiple of the step.
+    """Return how far rounding moved each cell ``(rows, 4, SAMPLES)`` from a multiple of the step.
 
-    NaN for a cell that is further off, or that is not a constant plus its joint variable.
+    The result is NaN for a cell if the distance is more than rounding can cause, or if the cell is
+    not a constant plus or minus its joint variable.
     """
     signs = np.sign((changes(values) * changes(variables)).sum(axis=-1))
     constants = values - signs[..., None] * variables

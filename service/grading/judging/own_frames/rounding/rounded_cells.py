@@ -98,7 +98,7 @@ class _Chain:
         return misfits(poses, self.targets, self.length_scale)
 
     def _twisted(self, twist: Numbers) -> Matrices:
-        """Return the base ``(K, L, 4, 4)`` after a small ``twist`` ``(K, 6, L)``."""
+        """Return the base ``(K, L, 4, 4)`` after small motions ``twist`` ``(K, 6, L)``."""
         assert self.base is not None
         about_x, about_y, about_z = np.moveaxis(SMALL * twist[:, :3], 1, 0)
         turn = rot_x(about_x) @ rot_y(about_y) @ rot_z(about_z)
@@ -168,10 +168,10 @@ def with_true_numbers(
 def with_rounded_cells(
     nearest: NearestTable, convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the nearest table of a wrong table, computed from the exact numbers of its decimals.
+    """Return the valid table nearest to a wrong table, computed from the exact numbers.
 
-    ``nearest`` was computed from the rounded numbers, so that even its right cells differ slightly
-    from the written ones.
+    ``nearest`` was computed from the rounded decimals, so that even its correct cells differ
+    slightly from the written cells.
     """
     roles = nearest.roles
     if nearest.cost < WRONG_CELL or not _has_decimals(roles):
@@ -268,7 +268,7 @@ def _chains(
     grading: Grading,
     unknown: Sequence[CellIndex] = (),
 ) -> list[_Chain]:
-    """Return the table from each possible base; the bases follow from the roles ``based_on``."""
+    """Return a copy of the table for each possible base; the roles ``based_on`` give the bases."""
     exercise, samples = grading.exercise, grading.samples
     mechanism = mechanism_at(exercise, samples)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
