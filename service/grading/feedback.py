@@ -102,7 +102,7 @@ def parts_at_level(
     """Return the parts with the messages that are visible at the level, without repetitions.
 
     ``left_out`` is the message that explanations are incomplete, or None. This function does not
-    remove corrections: at lower levels, messages are made without them.
+    remove corrections: at lower levels, messages are made without corrections.
     """
     has_hints = level in _LEVELS_WITH_HINTS
     visible = _with_hints if has_hints else _on_reading
@@ -150,7 +150,7 @@ def _unmarked(message: Feedback) -> Feedback:
 
 
 def _with_left_out(parts: list[PartReport], left_out: Feedback) -> list[PartReport]:
-    """Return the parts, with the message ``left_out`` on the first that has an unexplained cell."""
+    """Return the parts; the first part with an unexplained cell gets the message ``left_out``."""
     for i, part in enumerate(parts):
         if _has_unexplained_cells(part):
             told = replace(part, feedback=(*part.feedback, left_out))

@@ -1,8 +1,8 @@
-"""Marks for an answer that follows from the student's own earlier answer.
+"""Points for an answer that follows from an earlier answer of the student.
 
 One early slip must not make every later part wrong. So if a part is wrong by the reference, it is
-also judged by the student's answer to the part that it follows. That answer must be good enough, so
-that a trivial table does not earn easy marks later.
+also judged by the student's answer to the part that it follows. The earlier answer must be good
+enough, so that a trivial table does not earn easy points later.
 """
 
 from collections.abc import Callable, Sequence

@@ -99,7 +99,7 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
 
 
 def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
-    """Grade the answers of a submission for reports at its level and others; see ``grade``."""
+    """Grade the answers of a submission for reports at several levels; see ``grade``."""
     for part_id in submission.answers:
         if exercise.part(part_id) is None:
             raise UnknownPartError(part_id, exercise)
@@ -120,7 +120,8 @@ def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
 class _Graded:
     """A part that was graded; ``judged`` is None if there was no readable answer.
 
-    If the answer follows from the student's earlier answer, it was judged by that earlier answer.
+    If the answer follows from an earlier answer of the student, the part was judged by that earlier
+    answer.
     """
 
     part: PartSpec

@@ -77,7 +77,7 @@ def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
 
 
 def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
-    """Return why right rows of zeros are worth little, or None if there are no such rows.
+    """Return why correct rows of zeros are worth little, or None if there are no such rows.
 
     ``rows`` are the rows without a content cell; ``most`` is the number of points of the part.
     """

@@ -113,7 +113,7 @@ def register(
 ) -> Record:
     """Add a record; ``code`` may be several codes, and ``known`` are other fields of Record.
 
-    A record without a function documents a code that a finding gets elsewhere.
+    A record without a function documents a code that other functions give to a finding.
     """
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)
@@ -203,7 +203,7 @@ class Written(Hypothesis[Answer]):
 class Repaired(Hypothesis[Answer]):
     """The student's answer without the misconception.
 
-    It explains the student's answer if the repaired answer is right.
+    The hypothesis explains the student's answer if the repaired answer is correct.
     """
 
 
@@ -212,13 +212,13 @@ AnyHypothesis = TypeVar("AnyHypothesis", bound=Hypothesis[Any])
 
 
 class WrongAnswer(Protocol):
-    """An answer that is not right, with the data for its diagnosis."""
+    """A wrong answer, with the data for its diagnosis."""
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
         """Return the hypotheses that explain the answer, in their order.
 
-        A ``Written`` hypothesis that is equal to the right answer explains nothing. Neither does a
-        ``Repaired`` one that is equal to the student's answer.
+        A ``Written`` hypothesis that is equal to the correct answer explains nothing. Nor does a
+        ``Repaired`` hypothesis that is equal to the student's answer.
         """
         ...
 

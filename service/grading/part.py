@@ -1,4 +1,7 @@
-"""The interface of an answer kind, which reads and judges answers; each is a file in ``kinds``."""
+"""The interface of an answer kind, which reads and judges answers.
+
+Each kind is a file in ``kinds``.
+"""
 
 import math
 from collections.abc import Callable, Iterable
@@ -89,8 +92,8 @@ class Grading:
     def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
         """Return a function from symbols to their names in the entries of a part.
 
-        On its first call, this function reads the shortest entries: they show the names with the
-        least work.
+        On its first call, the returned function reads the shortest entries: they show the names
+        with the least work.
         """
 
         @cache

@@ -102,7 +102,7 @@ class WorkBudget:
         return left >= 0
 
     def affords_search(self, work: float) -> bool:
-        """Take ``work`` for a search if enough is left; return True if it was taken.
+        """Take ``work`` for a search if enough is left; return True if the work was taken.
 
         The result does not depend on earlier explanations.
         """

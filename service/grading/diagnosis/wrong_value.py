@@ -119,7 +119,7 @@ class WrongCell(WrongValue):
 
     @property
     def axis(self) -> str:
-        """The axis along or about which that parameter is measured: x or z."""
+        """The axis along or about which the parameter in the cell is measured: x or z."""
         return AXES[self.column]
 
     def name(self, joint: Joint) -> str:
@@ -151,7 +151,7 @@ class WrongCell(WrongValue):
 
 @dataclass(frozen=True)
 class WrongNumbers:
-    """Submitted numbers and the expected numbers, ``(..., SAMPLES)`` each, which differ.
+    """Submitted numbers that differ from the expected numbers, ``(..., SAMPLES)`` each.
 
     ``scale`` ``(...)`` is the size that the error of each number is compared with.
     """

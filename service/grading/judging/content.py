@@ -39,7 +39,9 @@ def of_rows(
     most: int | None = None,
     usual: tuple[int, int] | None = None,
 ) -> Content:
-    """Return the content of a table or of screws: each row has a worth besides its cells.
+    """Return the content of a table or of screws.
+
+    Each row is also worth something besides its cells.
 
     ``known`` is ``(rows, cells)``.
     """
@@ -150,7 +152,7 @@ def _rows(known: KnownCells) -> tuple[tuple[bool, ...], ...]:
 
 
 def _all_if_none(known: KnownCells) -> KnownCells:
-    """Return ``known``, or a mask of all cells if the right answer is the lazy one."""
+    """Return ``known``, or a mask of all cells if the correct answer is the lazy answer."""
     return known if known.any() else np.ones_like(known)
 
 

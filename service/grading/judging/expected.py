@@ -1,4 +1,4 @@
-"""The right answer to a part in numbers, from the robot's frames or the part's formulas."""
+"""The correct answer to a part in numbers, from the robot's frames or the part's formulas."""
 
 import numpy as np
 
@@ -14,14 +14,14 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
     """Return the values of the formulas in the part's file, ``(rows, columns, SAMPLES)``.
 
-    Return None if the file has no formulas; the right answer then follows from the robot.
+    Return None if the file has no formulas; the correct answer then follows from the robot.
     """
     grid = grading.exercise.formulas.get(part.id)
     return None if grid is None else grid_values(grid, grading.samples.values, SAMPLES)
 
 
 def given_values(part: PartSpec, grading: Grading) -> Numbers:
-    """Return ``formula_values`` of a part with formulas. Raises LookupError if it has none."""
+    """Return the values of the part's formulas. Raises LookupError if the part has no formulas."""
     values = formula_values(part, grading)
     if values is None:
         raise LookupError(f"part {part.id!r} has no formulas")
@@ -29,7 +29,7 @@ def given_values(part: PartSpec, grading: Grading) -> Numbers:
 
 
 def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matrices:
-    """Return the expected pose ``(SAMPLES, 4, 4)`` of the robot. Raises LookupError."""
+    """Return the expected pose ``(SAMPLES, 4, 4)``. Raises LookupError if there is no robot."""
     robot = exercise.reference
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")

@@ -1,4 +1,4 @@
-"""Compare a matrix with the expected one, entry by entry."""
+"""Compare a matrix with the expected matrix, entry by entry."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True, slots=True)
 class ExpectedMatrix:
-    """The right matrix: its ``values`` ``(rows, columns, SAMPLES)`` and their quantities.
+    """The correct matrix: its ``values`` ``(rows, columns, SAMPLES)`` and their quantities.
 
     ``rigid`` marks a homogeneous transform (4×4) or a rotation (3×3).
     """

@@ -1,8 +1,9 @@
 """Judge a submitted table cell by cell.
 
-If the frames are given, the rows are paired with the reference's. If they are free, the rows are
-paired with the joints, and the valid table nearest to them is found (``own_frames``). The cells are
-then compared with the cells of that table.
+If the frames are given, the submitted rows are paired with the rows of the reference. If the frames
+are free, the submitted rows are paired with the joints, and the valid table nearest to them is
+found (``own_frames``). The submitted cells are then compared with the cells of the reference or of
+the nearest table.
 """
 
 import math
@@ -149,7 +150,7 @@ def judged_table(
 def _plainly_differs(
     rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> bool:
-    """True if the first sample shows that the table is not the reference's own."""
+    """True if the first sample shows that the table differs from the reference table."""
     expected = reference_values(reference, grading.samples)
     if len(rows) != len(expected):
         return False
@@ -263,7 +264,7 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the table by the ``intended`` one, ``(rows, 4, SAMPLES)``; all roles have rows."""
+    """Judge the table by the ``intended`` table ``(rows, 4, SAMPLES)``; all roles have rows."""
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
     judgement = _judged_by(nearest, roles, convention, grading)
@@ -310,9 +311,9 @@ def _judged_by(
 def _rows_right(
     judged: Sequence[JudgedRow], cell_matches: NDArray[np.int_], convention: Convention
 ) -> NDArray[np.bool_]:
-    """Return, for each joint axis, if the rows before and after it are right, ``(joints, 2)``.
+    """Return, for each joint axis, if the rows before and after it are correct: ``(joints, 2)``.
 
-    Beyond the ends of the table, this is true.
+    A row beyond the ends of the table counts as correct.
     """
     right = np.ones(len(cell_matches) + 2, np.bool_)
     right[1:-1] = (cell_matches >= Match.ROUNDED).all(axis=1)
@@ -322,7 +323,7 @@ def _rows_right(
 
 
 def _is_as_written(nearest: NearestTable) -> bool:
-    """True if each number of the nearest table is exactly the written one, without rounding."""
+    """True if each number of the nearest table is exactly the written number, without rounding."""
     rows = [role.row for role in nearest.roles if role.row is not None]
     if len(rows) < len(nearest.roles) or not all(row.is_exact for row in rows):
         return False

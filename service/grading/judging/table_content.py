@@ -118,7 +118,7 @@ def _joints_of_rows(task: _Task) -> list[Joint | None]:
 
 @lru_cache(maxsize=256)
 def _fewest(task: _Task) -> int:
-    """Return the smallest number of cells in which a valid table differs from the lazy one.
+    """Return the smallest number of cells in which a valid table differs from the lazy table.
 
     Along parallel axes, a table may have the sum of two lengths in one cell, or arbitrary numbers
     in other cells that cancel out. Such additional cells have no worth.

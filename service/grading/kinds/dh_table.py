@@ -82,7 +82,7 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
 
 
 def judged_once(part: DhTableSpec, answer: StudentTable, grading: Grading) -> JudgedTable:
-    """Judge the table as written, in its convention. A right table is not diagnosed."""
+    """Judge the table as written, in its convention. A correct table is not diagnosed."""
     convention, judgement, findings = judged_in_convention(part, answer, grading)
     notes = grading.messages((*answer.findings, *findings))
     judge_rows = _judged_wrong if judgement.wrong or judgement.slips else _judged_right
@@ -162,8 +162,8 @@ def _of_the_whole(
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
     """Explain a wrong table as a whole, or find the motion that its arm cannot make.
 
-    Return the judgement, the findings that explain the table, and those on the lost motion. The
-    judgement fits the explanation.
+    Return the judgement, the findings that explain the table, and the findings on the lost motion.
+    The judgement fits the explanation.
     """
     if not judgement.wrong:
         return judgement, (), ()

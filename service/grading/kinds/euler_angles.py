@@ -62,7 +62,7 @@ def read(part: EulerAnglesSpec, answer: object, grading: Grading) -> StudentValu
 
 
 def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Judged:
-    """Judge the angles; the report has one row for each."""
+    """Judge the angles; the report has one row for each angle."""
     turns, fixed = part.turns, part.axes == "fixed"
     angles, rotation = answer.values, _expected_rotation(part, grading)
     slack = [rounding_slack(each, grading.samples) if each else 0.0 for each in answer.expressions]
@@ -85,7 +85,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
     """Return the content: the angles that are not 0.
 
-    At most as many angles count as differ from 0 in the simplest triple of the rotation.
+    The number of angles that count is at most that of the simplest triple of the rotation.
     """
     fixed = part.axes == "fixed"
     simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)

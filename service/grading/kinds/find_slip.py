@@ -209,7 +209,7 @@ def slip_of(part: FindSlipSpec, exercise: Exercise) -> DrawnSlip:
 
 
 def shown_shape(part: PartSpec, exercise: Exercise) -> AnswerShape:
-    """Return the shape of an answer to a part, with the given table if it has one."""
+    """Return the shape of an answer to a part, with the given table if the part has one."""
     shape = part.shape(exercise.reference)
     if not isinstance(part, FindSlipSpec):
         return shape
@@ -219,7 +219,7 @@ def shown_shape(part: PartSpec, exercise: Exercise) -> AnswerShape:
 
 @dataclass(frozen=True, slots=True)
 class _Asked:
-    """A part, as a cache key: the version of its exercise determines its fields."""
+    """A part as a cache key, compared by the exercise version and the part's id."""
 
     version: str
     part_id: str

@@ -97,7 +97,7 @@ def judge(part: FramesSpec, answer: tuple[StudentFrame, ...], grading: Grading) 
 
 @dataclass(frozen=True)
 class _Asked:
-    """The asked frames, as a cache key that does not depend on the samples."""
+    """The frames that a part asks for, as a cache key that does not depend on the samples."""
 
     version: str
     convention: Convention
@@ -239,7 +239,7 @@ def _is_other_convention(
     judged: JudgedFrames,
     grading: Grading,
 ) -> bool:
-    """True if the other convention explains all wrong cells of at least two frames."""
+    """True if the frames, at least two, are all correct in the other convention."""
     other = part.convention.other
     exercise = grading.exercise
     if other not in exercise.robot.tables or (judged.found == Match.UNDEFINED).any():

@@ -126,7 +126,7 @@ def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
 def _by_other_links(
     links: Matrices, part: LinkTransformsSpec, grading: Grading, case: MatrixCase
 ) -> list[Explanation]:
-    """Return explanations of the last of ``links`` by the earlier ones."""
+    """Return explanations of the last of ``links`` by the earlier links."""
     joints, count = grading.exercise.robot.joints, case.actual.shape[-1] // 2
     link = LinkAmongOthers.of(links, joints, grading.samples, part.convention, count)
     return explain_link(link, case)
@@ -146,7 +146,7 @@ def _links_of(values: list[Numbers]) -> Matrices:
 
 
 def _expected(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Matrices:
-    """Return the right matrices, ``(k, SAMPLES, 4, 4)``."""
+    """Return the correct matrices, ``(k, SAMPLES, 4, 4)``."""
     reference = grading.exercise.robot.tables[part.convention]
     chain, wanted = grading.student_chain, len(reference.rows)
     if chain is not None and grading.following and len(chain.frames) == wanted + 1:
@@ -174,7 +174,7 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
 
 
 def _completed(values: Matrices, part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """Return the matrices, with a single unread one computed from the others.
+    """Return the matrices; if only one of them could not be read, it is computed.
 
     A matrix with unread entries is computed from all other matrices and the tool frame.
     """

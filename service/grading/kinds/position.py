@@ -45,7 +45,7 @@ def _tails(coordinates: str) -> tuple[Tail, ...]:
 
 
 def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
-    """Judge the coordinates; the report has one row for each."""
+    """Judge the coordinates; the report has one row for each coordinate."""
     expected = _expected(part, grading)
     compared = ComparedValues(answer, expected, number_corrections(expected, grading))
     found = compared.matches(grading)

@@ -57,7 +57,7 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
 
 
 def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:
-    """Return the right rotation, ``(3, 3, SAMPLES)``."""
+    """Return the correct rotation, ``(3, 3, SAMPLES)``."""
     if steps:
         return as_entries(composed([(step.rotation, step.fixed) for step in steps]))
     given = formula_values(part, grading)

@@ -79,7 +79,7 @@ def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix
 def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:
     """True if a square matrix has the axes in its columns, as in Lynch & Park, "Modern Robotics".
 
-    At least two more columns than rows must be right, because one may be right by chance.
+    At least two more columns than rows must be correct, because one may be correct by chance.
     """
     axes = _expected(part, grading).axes
     senses = (1, -1) if part.directions == "free" else (1,)
@@ -161,7 +161,7 @@ def _explained(
 
 
 def _is_right_at_home(answer: StudentMatrix, case: WrongScrews, grading: Grading) -> bool:
-    """True if the axes are right when all joint variables are 0."""
+    """True if the axes are correct when all joint variables are 0."""
     exercise, samples = grading.exercise, grading.samples
     home = at_home(exercise.joints, samples.values, SAMPLES)
     values = answer.values_at(Samples(home))

@@ -56,7 +56,7 @@ LARGEST_SLACK = 0.01
 
 
 class Match(IntEnum):
-    """The result of comparing a value with the expected one."""
+    """The result of comparing a value with the expected value."""
 
     DIFFERENT = 0
     UNDEFINED = 1
@@ -104,7 +104,7 @@ def entry_matches(
     samples: Samples,
     angle: ArrayLike = False,
 ) -> NDArray[np.int_]:
-    """Return the Match of each entry ``(...)``, also testing inexact ones for rounding.
+    """Return the Match of each entry ``(...)``; inexact entries are also tested for rounding.
 
     ``expressions`` are the expressions of the entries in order, None for an unreadable entry.
     """
@@ -184,8 +184,9 @@ def nearly_equal(
     """Return a mask ``(...)`` of the values ``(..., samples)`` that are equal except for rounding.
 
     Use this for guesses, such as which slip explains an answer, but never for a verdict. ``slack``
-    is a known rounding error. The tolerance is at least a thousandth of the size of the values, or
-    of the robot's largest numbers if the values are larger.
+    is a known rounding error. The tolerance is at least a thousandth of the size of the values. For
+    values that are larger than any number of the robot, it is at least a thousandth of the robot's
+    largest numbers.
     """
     error = np.abs(difference(one, other, angle)).max(axis=-1)
     size = np.sqrt(np.mean(other * other, axis=-1))
@@ -303,7 +304,7 @@ def fitted_unknowns(
 
 
 class SharedDecimals:
-    """The rounded decimals of several entries that can only be right together.
+    """The rounded decimals of several entries that can only be tested together.
 
     ``units`` ``(count,)`` are the units of the decimals. ``count`` is 0 if there are no decimals or
     too many.
@@ -338,13 +339,15 @@ class SharedDecimals:
 
 
 def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
-    """Return unknowns with the same effect, but with shifts within bounds if possible.
+    """Return other unknowns that have the effect of ``unknowns``, with shifts within bounds.
+
+    If that is impossible, some shifts of the result are out of bounds.
 
     ``bounds`` ``(2, count)`` are the lower and upper bounds of the shifts. ``determined`` ``(N,
     N)`` projects unknowns on those with an effect. If only the sum of two decimals has an effect,
-    both may have to share the shift. The unknowns are projected in turn on the set with the same
-    effect and on the set within bounds. These projections converge to the intersection of the sets
-    (von Neumann, Bregman), or end if a plane separates the sets.
+    both decimals may have to share the shift. The unknowns are projected in turn on the set with
+    the same effect and on the set within bounds. These projections converge to the intersection of
+    the sets (von Neumann, Bregman), or end if a plane separates the sets.
     """
     (lower, upper), count = bounds, bounds.shape[1]
     effect = determined @ unknowns

@@ -1,7 +1,7 @@
 """The random values at which answers are compared, drawn for each submission.
 
 The seed is a hash of exercise version and answers. So students cannot predict the values, and a
-regrade uses the same ones to the last bit, on every machine and with every version of numpy.
+regrade uses the same values to the last bit, on every machine and with every version of numpy.
 """
 
 import hashlib
@@ -31,10 +31,10 @@ _T = TypeVar("_T")
 class Samples:
     """Values of every symbol, each of shape ``(SAMPLES,)``.
 
-    Samples 0..15 are drawn freely. Samples 16..31 repeat their link parameters with other joint
-    values, so that changes between the halves are due to the joints alone. ``in_degrees`` are the
-    angles that are shown to the student in degrees. ``bare_count`` is the number of samples if
-    there are no symbols.
+    Samples 0..15 are drawn freely. Samples 16..31 have the same link parameters as samples 0..15
+    but other joint values, so that changes between the halves are due to the joints alone.
+    ``in_degrees`` are the angles that are shown to the student in degrees. ``bare_count`` is the
+    number of samples if there are no symbols.
     """
 
     values: Mapping[str, Numbers]
@@ -85,7 +85,7 @@ class Samples:
         return Samples({**self.values, **more}, self.in_degrees)
 
     def absent_names(self, expressions: Iterable[Expression | None]) -> set[str]:
-        """Return the names in the expressions that have no values here (``absent_variables``)."""
+        """Return the names in the expressions that have no values at these samples."""
         names = (each.symbols for each in expressions if each is not None)
         return set[str]().union(*names).difference(self.values)
 
@@ -131,7 +131,7 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
 
 @dataclass(frozen=True, slots=True)
 class _Symbols:
-    """The symbols of an exercise; equal if the exercise versions are equal."""
+    """The symbols of an exercise. Two instances are equal if the exercise versions are equal."""
 
     version: str
     variables: tuple[Variable, ...] = field(compare=False)

@@ -243,7 +243,7 @@ def _cell(entry: Entry, cell: GridCell, place: tuple[str, str], budget: WorkBudg
 
 
 def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
-    """Return the preview ``empty`` filled with the reading of its cell."""
+    """Return the preview ``empty``, filled with how its cell was read."""
     if not empty.typed:
         return empty
     if entry.expression is None:

@@ -24,7 +24,7 @@ class Arrangement(NamedTuple):
     """The order of named values, or the findings on wrong names.
 
     ``order`` has, for each place, the index of its value. ``misnamed`` maps the index of each value
-    with a wrong name to its finding; it is empty if reordering makes all names right.
+    with a wrong name to its finding; the map is empty if reordering makes all names correct.
     """
 
     order: tuple[int, ...]
@@ -86,7 +86,7 @@ def _is_written(value: object) -> bool:
 
 
 def misnamed_value(name: LeftSide, asked: str) -> Finding:
-    """Return the finding that a value has another name than the expected one."""
+    """Return the finding that a value does not have the expected name."""
     message = say(
         "This is named {name}, but {asked} is asked for here.", name=quoted(name.name), asked=asked
     )

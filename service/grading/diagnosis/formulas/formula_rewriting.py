@@ -72,7 +72,7 @@ def at_sines_and_cosines(tree: Node, rewrite: Rewriting) -> Node:
 
 
 def one_place(node: Node, rewrite: Rewriting) -> Iterator[tuple[Node, Node]]:
-    """Yield trees with ``rewrite`` applied in one place, each with the node that it replaces."""
+    """Yield trees with ``rewrite`` applied in one place, each with the node that was replaced."""
     changed = rewrite(node)
     if changed is not node:
         yield changed, node

@@ -49,7 +49,7 @@ NOT_RIGHT = say("This angle is not right: check which two directions it is measu
 
 
 class WrongAngle(WrongValue):
-    """The class that records of wrong angles name; the wrong angles are plain WrongValues."""
+    """The class under which records on wrong angles are registered; it has no instances."""
 
 
 @misconception(
@@ -134,7 +134,7 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
     unlike="[asind(e1), a]",
 )
 def lost_sign(case: WrongValue) -> Hypotheses:
-    """The angle was computed by acos or asin, so it is right for only half of all directions."""
+    """The angle was computed by acos or asin, so it is correct for only half of all directions."""
     names = {
         "acos": (
             -case.expected,

@@ -24,11 +24,11 @@ from service.translations import Sentence, say
 
 @dataclass(frozen=True)
 class WrongTriple:
-    """Three angles that do not describe the right rotation.
+    """Three angles that do not describe the correct rotation.
 
-    ``angles`` is ``(3, SAMPLES)`` and has a value everywhere. ``rotation`` is the right rotation,
-    ``(SAMPLES, 3, 3)``. ``sequence`` names the axes; they move unless ``fixed``. ``arctangents``
-    says which angles were written with an arctangent.
+    ``angles`` is ``(3, SAMPLES)`` and has a value everywhere. ``rotation`` is the correct rotation,
+    ``(SAMPLES, 3, 3)``. ``sequence`` names the axes; the axes move unless ``fixed``.
+    ``arctangents`` says which angles were written with an arctangent.
     """
 
     angles: Numbers
@@ -44,7 +44,7 @@ class WrongTriple:
         return bool(np.abs(described - self.rotation).max() < ROUNDED_VALUE)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Yield the hypotheses that make the triple right; each is tried on demand."""
+        """Yield the hypotheses that make the triple correct; each is tried on demand."""
         return (hypothesis for hypothesis in hypotheses if hypothesis.answer.is_right)
 
 

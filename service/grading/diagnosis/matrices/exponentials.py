@@ -31,7 +31,7 @@ class Exponentials:
 
     @classmethod
     def of(cls, robot: ScrewRobot, samples: Samples) -> "Exponentials":
-        """Return the factors of the reference robot."""
+        """Return the factors for the reference robot."""
         values, count = samples.values, samples.count
         home = robot.frame("tool", at_home(robot.joints, values, count), count)
         space = robot.screws(values, count)

@@ -29,7 +29,7 @@ def _with_rule(sentence: Sentence) -> Finding:
 
 
 def _parts(case: MatrixCase) -> tuple[Numbers, Numbers]:
-    """Return R ``(3, 3, samples)`` and p ``(3, samples)`` of the inverse of the right transform."""
+    """Return R ``(3, 3, samples)`` and p ``(3, samples)`` of the correct transform's inverse."""
     rotation = np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1)
     return rotation, -_turned(rotation, case.expected[:3, 3])
 

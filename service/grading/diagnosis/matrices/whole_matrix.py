@@ -110,7 +110,7 @@ def _inverted(matrix: Numbers) -> Numbers:
 
 @misconception(of=UpperRows, rank=60)
 def other_pose(case: MatrixCase) -> Hypotheses:
-    """The answer is another pose."""
+    """The answer is another pose than the part asks for."""
     for pose, entries in zip(*case.other_poses, strict=True):
         # Translators: {pose} is a name such as "the pose of frame {2}".
         found = named(pose, template("This matrix is {pose}. {advice}"))
@@ -226,19 +226,19 @@ def _from_other_poses(case: MatrixCase, block: Block, told: str) -> Hypotheses:
 
 @check(of=UpperRows, rank=20)
 def slip_of_rows(case: MatrixCase) -> Explained | None:
-    """A slip of the table explains rotation and position."""
+    """A slip of the table explains the wrong rotation and the wrong position."""
     return _of_slips(case, UPPER_ROWS)
 
 
 @check(of=RotationBlock, rank=20)
 def slip_of_rotation(case: MatrixCase) -> Explained | None:
-    """A slip of the table explains the rotation."""
+    """A slip of the table explains the wrong rotation."""
     return _of_slips(case, ROTATION_BLOCK)
 
 
 @check(of=PositionBlock, rank=20)
 def slip_of_position(case: MatrixCase) -> Explained | None:
-    """A slip of the table explains the position."""
+    """A slip of the table explains the wrong position."""
     return _of_slips(case, POSITION_BLOCK)
 
 

@@ -35,7 +35,7 @@ IN_NUMBERS = Displacement((), ())
 
 @dataclass(frozen=True)
 class GivenMotion:
-    """The formulas of a position (one row), a rotation or a transform, taken apart.
+    """The formulas of a position (one row), a rotation or a transform, split into single motions.
 
     ``values`` are the values of the symbols at ``count`` samples. ``angles`` and ``lengths`` are
     the symbols in the formulas.
@@ -129,7 +129,7 @@ class GivenMotion:
 
     @cached_property
     def _turns(self) -> dict[str, Matrices]:
-        """The turn ``(samples, 3, 3)`` by each angle alone."""
+        """For each angle, the turn ``(samples, 3, 3)`` by only this angle."""
         return {
             angle: np.moveaxis(self.rotation(set(self.angles) - {angle}), -1, 0)
             for angle in self.angles

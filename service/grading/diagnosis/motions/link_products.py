@@ -289,7 +289,7 @@ def row_order(chain: Chain) -> Iterator[LinkPose]:
 
 
 def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
-    """Return the poses that all misconceptions lead to."""
+    """Return all poses that the misconceptions lead to."""
     return [pose for chain in chains for pose in hypotheses_of(chain)]
 
 

@@ -22,7 +22,7 @@ class WrongPlacement:
     slack: float
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return all hypotheses, because none is compared with numbers."""
+        """Return all hypotheses, because hypotheses on placements are not compared with numbers."""
         return hypotheses
 
     @property

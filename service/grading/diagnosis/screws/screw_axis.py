@@ -115,7 +115,7 @@ def axis_reversed(case: WrongScrew) -> Hypotheses:
     unlike="[1, -2, 0, 0, 0, 0]",
 )
 def moment_sign(case: WrongScrew) -> Hypotheses:
-    """The student wrote v = ω × q."""
+    """The vector v has the wrong sign: the student wrote v = ω × q."""
     if case.turns:
         velocity = case.pitch * case.direction - case.moment
         yield Written(case.with_velocity(velocity), MOMENT_SIGN)

@@ -109,7 +109,7 @@ def _suits_column(
 
 
 def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
-    """Return True for the variable of each joint that slides, False for one that turns."""
+    """Return a map from each joint variable to True if the joint slides, False if it turns."""
     return {joint.variable: joint.prismatic for joint in joints}
 
 

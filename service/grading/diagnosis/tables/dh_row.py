@@ -20,7 +20,7 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class WrongRow(WrongNumbers):
-    """A wrong row ``(4, SAMPLES)`` of a ``transform`` ``(SAMPLES, 4, 4)``."""
+    """A wrong DH row ``(4, SAMPLES)`` for a ``transform`` ``(SAMPLES, 4, 4)``."""
 
     transform: Matrices
     convention: Convention

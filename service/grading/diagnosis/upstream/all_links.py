@@ -93,7 +93,7 @@ def _wrong(written: Matrices, right: Matrices, scale: Numbers) -> Mask:
 
 
 def _at_subset(transforms: Matrices) -> Numbers:
-    """Return the entries ``(rows, 4, 4, L)`` of ``(rows, SAMPLES, 4, 4)`` at some samples."""
+    """Return the entries ``(rows, 4, 4, L)`` of the ``transforms`` at a subset of the samples."""
     return Samples.subset_of(np.moveaxis(transforms, 1, -1), SUBSET)
 
 

@@ -42,7 +42,7 @@ class Required:
 
 @dataclass(frozen=True)
 class Requirements:
-    """The symbols that each right entry depends on, found by changing one symbol after another.
+    """The symbols that each correct entry depends on, found by changing one symbol after another.
 
     ``expected`` is ``(..., SAMPLES)``, ``scale`` broadcasts to ``(...)``.
     """
@@ -108,7 +108,7 @@ class Dependence:
 
     @property
     def joints(self) -> list[str]:
-        """The joint variables that the right entry depends on and the student did not write."""
+        """The joint variables that the correct entry depends on but the student did not write."""
         known = self.required
         return (
             [name for name in known.joints if name in known.symbols - self.written] if known else []
@@ -196,7 +196,7 @@ def quantity(entry: Dependence) -> Finding | None:
     unlike={"1/4": "c1 + c12"},
 )
 def missing_joints(entry: Dependence) -> Finding | None:
-    """The entry does not contain the variables of joints that change it."""
+    """The entry does not contain the variables of joints that change the correct entry."""
     case, names = entry.case, entry.joints
     if not names or any(_is_whole(case, name) for name in names):
         return None

@@ -46,7 +46,7 @@ class CellChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A change to the input of the right answer: to symbols, or to cells of the table.
+    """A change to the input of the correct answer: to symbols, or to cells of the table.
 
     With ``misread``, the table is multiplied out with the link transform of the other convention.
     """

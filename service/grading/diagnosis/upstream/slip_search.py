@@ -94,7 +94,7 @@ class SlipSearch:
 
     @cached_property
     def _at_two_samples(self) -> tuple[Mask, Mask]:
-        """The masks of ``_compared`` for all slips at two samples, which few wrong slips pass."""
+        """The masks of ``_compared`` for all slips at only two samples, as a first test."""
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:

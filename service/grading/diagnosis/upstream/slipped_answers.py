@@ -46,7 +46,7 @@ class SlippedAnswers:
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
-    """Return the wrong answers to a part, or None if they cannot be computed.
+    """Return the wrong answers that slips lead to, or None if they cannot be computed.
 
     If the part has formulas of its own, the answers are ``(K, rows, columns, samples)``; otherwise
     they are poses ``(K, 4, 4, samples)`` of the robot. Return None if there are neither formulas
@@ -89,7 +89,10 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 def slipped_tables(
     table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """Return the tables ``(rows, 4, K, count)`` after K changes; rows are added as needed."""
+    """Return one table for each of K changes: ``(rows, 4, K, count)``.
+
+    Rows are added as needed.
+    """
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
     right = table.values(values, count)

@@ -64,7 +64,7 @@ def slipped_link(
 
 
 def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
-    """Return a function for the link transform of a row of the reference."""
+    """Return a function that computes the link transform of a row of the reference."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         tables = slipped_tables(table, changes, samples.values, samples.count)
@@ -76,7 +76,10 @@ def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
 def _in_own_frames(
     row: int, constants: Numbers, senses: Numbers, joint: Joint | None, convention: Convention
 ) -> AnswersAt:
-    """Return a function for the link transform of a row with ``constants`` ``(4, SAMPLES)``."""
+    """Return a function that computes the link transform of a row.
+
+    ``constants`` ``(4, SAMPLES)`` are the constants in the row.
+    """
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         count = samples.count
@@ -94,7 +97,7 @@ def _in_own_frames(
 def constants_and_motion(
     right: Matrices, convention: Convention, joints: Sequence[Joint], samples: Samples
 ) -> tuple[Table, Table]:
-    """Return the constants and the motion of right link transforms ``(rows, SAMPLES, 4, 4)``.
+    """Return the constants and the motion of correct link transforms ``(rows, SAMPLES, 4, 4)``.
 
     Both are tables ``(rows, 4, SAMPLES)``. The motion is the part of each cell that the joints
     change.

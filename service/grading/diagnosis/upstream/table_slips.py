@@ -67,7 +67,7 @@ class Cell:
 
     @property
     def correction(self) -> str:
-        """The right formula in a sentence, or "" if it is unknown."""
+        """A sentence with the correct formula, or "" if the formula is unknown."""
         if self.own_frames:
             return ""
         return say(

@@ -87,7 +87,7 @@ def part_report(part: PartSpec, judged: Judged) -> PartReport:
 def unjudged_report(
     part: PartSpec, verdict: Verdict, feedback: tuple[Feedback, ...] = ()
 ) -> PartReport:
-    """Return the report on a part without an answer, or with an unreadable one."""
+    """Return the report on a part without an answer, or with an unreadable answer."""
     code = NO_ANSWER if verdict is Verdict.MISSING else NOT_READ
     lost = (lost_points(code, part.points),)
     return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback, lost)
@@ -131,7 +131,7 @@ def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
 
 @lru_cache(maxsize=1024)
 def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
-    """Return the marks of a right answer; memoized, because most answers are right."""
+    """Return the marks of a correct answer; memoized, because most answers are correct."""
     worth = worth_of(content, marking, points)
     return _Marks(worth, 0, (), (0,) * len(worth.rows))
 

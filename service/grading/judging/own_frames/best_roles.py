@@ -114,7 +114,7 @@ def rows_of_mechanism(
 
 
 def usual_rows(convention: Convention, grading: Grading) -> int:
-    """Return the number of rows of the reference's table, or of joints if it has no table."""
+    """Return the number of rows of the reference table, or of joints if there is no such table."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)
     return len(robot.joints if reference is None else reference.rows)

@@ -73,7 +73,10 @@ class _Case:
 
     @cached_property
     def slides(self) -> NDArray[np.bool_]:
-        """A mask of the unknowns that are lengths: unread cells, then twists of base and tool."""
+        """A mask of the unknowns that are lengths.
+
+        The unknowns are the unread cells, then the twists of a free base and of a free tool.
+        """
         twists = self.freedom.base + self.freedom.tool
         return np.concatenate([~IS_ANGLE[self.unread[:, 1]], *[np.arange(6) >= 3] * twists])
 

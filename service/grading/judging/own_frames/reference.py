@@ -1,4 +1,7 @@
-"""The reference in the forms that tables in a student's own frames need; regrouping of rows."""
+"""Convert the reference for its comparison with tables in a student's own frames.
+
+For this comparison, the cells of a table are also put into other rows (``regrouped``).
+"""
 
 from dataclasses import dataclass
 from itertools import accumulate

@@ -1,4 +1,4 @@
-"""Remarks on frames that are valid but differ from the reference's."""
+"""Remarks on frames that are valid but differ from the reference frames."""
 
 from itertools import compress
 from typing import Final
@@ -23,11 +23,11 @@ def remarks_on(
     exercise: Exercise,
     rows_right: NDArray[np.bool_] | None = None,
 ) -> tuple[Finding, ...]:
-    """Return one finding for each frame that differs from the reference's.
+    """Return one finding for each frame that differs from the frame of the reference.
 
     ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes, as
     seen from the reference's frames. ``rows_right`` ``(joints, 2)`` says, for each axis, whether
-    the rows before and after it are right. Neighbouring frames that differ count as one choice.
+    the rows before and after it are correct. Neighbouring frames that differ count as one choice.
     There are no findings on a choice that a wrong row implies.
     """
     error = np.abs(relative_poses - np.eye(4)).max(axis=1)

@@ -55,9 +55,10 @@ def _valid_by_pose(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """Return ``valid_tables`` for given base, tool and directions, by the pose (``few_cells``).
+    """Return a mask ``(T,)`` of the valid tables if base, tool and directions are given.
 
-    The tolerance is relative to the reach of the arm.
+    Then a table is valid if its pose is correct and its cells depend correctly on the joints. The
+    tolerance is relative to the reach of the arm.
     """
     moves = moves_with(tables, changes(variables_of(roles, samples)), IS_ANGLE[:, None])
     valid = np.asarray(moves.all(axis=(1, 2)))

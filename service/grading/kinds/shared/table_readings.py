@@ -55,7 +55,7 @@ class _Reading(NamedTuple):
     """Another reading of a table.
 
     The reading counts if at most ``most_wrong`` of its cells are wrong; if ``most_wrong`` is None,
-    it always counts. With ``has_links``, a later part follows from this reading instead of the
+    it always counts. With ``has_links``, a later part follows from this reading instead of from the
     table as written.
     """
 
@@ -121,7 +121,10 @@ class _Readings:
         return self.limited(table, self.judge(self.part, table, self.grading))
 
     def best(self, table: StudentTable, judged: Judged) -> Judged:
-        """Return the judgement of the best reading; ``judged`` is that of the table as written."""
+        """Return the judgement of the best reading.
+
+        ``judged`` is the judgement of the table as written.
+        """
         for reading in self._others(table, judged):
             is_certain = reading.most_wrong is None
             if not is_certain and not self.grading.reader.budget.affords_search(self.work):

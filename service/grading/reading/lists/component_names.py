@@ -33,7 +33,8 @@ class ListNames:
     """The names that the values of a list may have.
 
     ``labels`` are the expected names and ``quantities`` the expected quantities, in order.
-    ``places`` maps names, joined by ``_key``, to places; ``coordinates`` maps x, y and z to places.
+    ``places`` maps the plain form of each name (``_key``) to places; ``coordinates`` maps x, y and
+    z to places.
     """
 
     labels: tuple[str, ...]
@@ -42,7 +43,7 @@ class ListNames:
     coordinates: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     def places_of(self, names: Sequence[LeftSide | None], vocabulary: Vocabulary) -> list[Places]:
-        """Return the places that each name may have; None for a name that does not imply any."""
+        """Return the places that each name may have; None for a name that implies no place."""
         words = [_words(name.name) if name else [] for name in names]
         letters = [letter for each in words if (letter := _coordinate(each))]
         # x_1 and y_1 are coordinates in frame 1, but x_1 and x_2 are numbered values.
@@ -133,7 +134,7 @@ def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
 
 
 def _by_letter(letters: Iterable[str | None]) -> dict[str, tuple[int, ...]]:
-    """Return the places of x, y and z in ``letters``, an empty tuple for an absent one."""
+    """Return the places of x, y and z in ``letters``, an empty tuple for an absent letter."""
     listed = list(letters)
     return {axis: tuple(i for i, each in enumerate(listed) if each == axis) for axis in "xyz"}
 

@@ -46,9 +46,9 @@ def read_list(
 
     A list may also be a column (a list of lists with one value each), a row within a list, or
     pasted text. Omitted values at the end are missing. Values with names, such as y = l1 s1, are
-    ordered by them; a value with the name of another place is unreadable. One of the ``tails`` may
-    follow the values, as in [x, y, 0]; it is ignored, with a note.
-    Raises UnreadableAnswerError if there is no list of the expected length.
+    ordered by their names; a value with the name of another place is unreadable. One of the
+    ``tails`` may follow the values, as in [x, y, 0]; it is ignored, with a note. Raises
+    UnreadableAnswerError if there is no list of the expected length.
     """
     if isinstance(answer, dict):
         answer = _by_keys(answer, names, reader)
@@ -151,7 +151,7 @@ def _is_figure(reader: Reader, raw: object, figure: str) -> bool:
 def _with_notes(
     entries: Sequence[Entry], left_aside: Sequence[tuple[str, tuple[int, int] | None]]
 ) -> list[Entry]:
-    """Return the entries; the last one gets notes on the ignored figures that follow it."""
+    """Return the entries; the last entry gets notes on the ignored values that follow it."""
     *before, last = entries
     notes = [replace(_LEFT_ASIDE[figure], span=span) for figure, span in left_aside]
     return [*before, replace(last, findings=(*last.findings, *notes))]
@@ -232,7 +232,7 @@ def _split_values(
 ) -> list[Entry] | None:
     """Read the values of a text, one on each line or separated by semicolons or commas.
 
-    Return None if their number is not the expected one, or none of them can be read.
+    Return None if the number of values is not the expected number, or if no value can be read.
     """
     count = len(names.quantities)
     for pieces in (_lines(text), _split(text, ";"), _split(text, ",")):
@@ -366,7 +366,7 @@ def _wrong_shape(count: int, found: int) -> Finding:
 
 
 def _from_grid_error(error: GridError, count: int) -> Finding:
-    """Return the finding that a pasted text is not a list; it does not mention rows and columns."""
+    """Return the finding that a pasted text is not a list, without mention of rows and columns."""
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding

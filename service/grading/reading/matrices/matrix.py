@@ -109,7 +109,7 @@ def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[En
 
 
 def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:
-    """Return the entry in a place; unreadable if it has the name of another place."""
+    """Return the entry in a place; an entry with the name of another place is unreadable."""
     i, j = place
     entry = reader.read(raw, quantities[i][j])
     if entry.findings:

@@ -168,7 +168,7 @@ def _vector_in(cell: GridCell) -> list[GridCell]:
 
 
 def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
-    """Return the axes in a text with several vectors: one for each axis, or its halves ω and v."""
+    """Return the axes in a text with one vector, or the two vectors ω and v, for each axis."""
     try:
         found = pasted_grids(text, reader)
     except GridError:
@@ -208,7 +208,10 @@ def _cells(grid: Grid) -> list[GridCell]:
 def _placed(
     names: Sequence[str], vectors: Sequence[Sequence[GridCell]], count: int
 ) -> list[Sequence[GridCell]] | None:
-    """Return the vector of each axis, empty cells for an absent one; None if names contradict."""
+    """Return the vector of each axis, with empty cells for an absent axis.
+
+    Return None if the names contradict each other.
+    """
     places = _places(names, count)
     if places is None:
         return None

@@ -157,7 +157,7 @@ def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | N
 
 
 def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Read:
-    """Return the label and cells of a row that names its values."""
+    """Return the label and the cells of a row whose keys are headers."""
     label: object = None
     cells: dict[str, object] = {}
     for key, value in row.items():
@@ -333,7 +333,7 @@ def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] |
 
 
 class _MemoizedRow(NamedTuple):
-    """The entries of a row, and the number of symbols that were read."""
+    """The entries of a row, and the number of symbols that were read for them."""
 
     entries: tuple[Entry, ...]
     symbols: int

@@ -1,4 +1,4 @@
-"""Convert lengths below a header with another unit than the exercise's, such as mm for metres."""
+"""Convert lengths below a header with another unit than the exercise has, such as mm for m."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from service.translations import say
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
-    """Convert an entry from the header's unit to the exercise's.
+    """Convert an entry from the unit in the header to the unit of the exercise.
 
     Numbers are converted. Letters mean lengths in any unit, so formulas of letters alone stay
     unchanged. A formula that also contains a length in numbers is unreadable, because the number is

@@ -146,9 +146,10 @@ def read_table(
 ) -> StudentTable:
     """Read a table ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    The answer may have one of the other shapes in ``cells``. The answer or its ``rows`` may also be
-    pasted text. Columns without names are in ``order``. A cell that is empty or a dash is missing.
-    With ``empty_is_zero`` the cell is 0 if another cell of its row is not empty.
+    The answer may have one of the other shapes that ``canonical_table`` accepts. The answer or its
+    ``rows`` may also be pasted text. Columns without names are in ``order``. A cell that is empty
+    or a dash is missing. With ``empty_is_zero`` the cell is 0 if another cell of its row is not
+    empty.
 
     Raises UnreadableAnswerError if the answer has no rows at all. An unreadable row or cell affects
     only itself.

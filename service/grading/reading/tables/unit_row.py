@@ -11,7 +11,9 @@ _BRACKETS = "()[]"
 
 
 def with_units_in_headers(grid: Grid) -> Grid:
-    """Return the table with ``a`` above ``(m)`` as the header ``a [m]``; any other unchanged.
+    """Return the table with one header ``a [m]`` for the two cells ``a`` and ``(m)``.
+
+    Other tables are unchanged.
 
     All cells of the second row must be units of a parameter, or empty.
     """

@@ -1,8 +1,9 @@
 """Find the valid table that equals a submitted one, or differs in one or two cells or one row.
 
-If base, tool and directions are given, a table is valid if and only if its pose is the reference's
-at all joint values, and every cell changes only as its own joint variable does. So no search is
-needed: the right value of a cell, or of a whole row, follows from all other cells.
+If base, tool and directions are given, a table is valid if and only if its tool pose equals the
+tool pose of the reference at all joint values, and every cell changes only as its own joint
+variable does. So no search is needed: the correct value of a cell, or of a whole row, follows from
+all other cells.
 """
 
 from collections.abc import Container, Iterable, Sequence
@@ -94,7 +95,8 @@ class _Case:
     def from_reference(self, reached: Matrices) -> Matrices:
         """Return the frames on the joint axes, as seen from the reference's frames.
 
-        For the shapes, see ``_from_reference``.
+        ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables. The result is
+        ``(joints, T, subset, 4, 4)``.
         """
         return _from_reference(reached, self.roles, self.convention, self.grading)
 
@@ -104,8 +106,8 @@ def nearest_by_few_cells(
 ) -> NearestTable | None:
     """Return the valid table that equals the written one, or differs in 1 or 2 cells or 1 row.
 
-    If there are several, return the one with the likeliest slip; None if there is none. Every role
-    must have a row.
+    If there are several such tables, return the table with the likeliest slip; None if there is no
+    such table. Every role must have a row.
     """
     case = _case(roles, convention, grading)
     if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:

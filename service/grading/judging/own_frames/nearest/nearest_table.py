@@ -111,7 +111,9 @@ def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
 def _link_by_link(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the nearest valid table for any freedom, by comparing the links between the axes.
+    """Return the nearest valid table by comparing the links between the axes.
+
+    Base, tool and directions may be free or given.
 
     Try the table as written, then tables that differ in one cell, then a search.
     """

@@ -78,7 +78,7 @@ class _Body:
 
     @property
     def reversed(self) -> "_Body":
-        """Return the same table with its factors in the order from the last frame."""
+        """Return the same table with its factors in reverse order, starting from the last frame."""
         return _Body(
             reversed_factors(self.factors),
             len(self.factors.axes) - 1 - self.joints[::-1],
@@ -100,7 +100,7 @@ class _Body:
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A table to be repaired: its constants ``(rows, 4, L)`` and those of the mechanism.
+    """A table to be repaired, as constants ``(rows, 4, L)``, and the mechanism of the reference.
 
     ``wrong`` are the cells that are wrong whatever frames are chosen. ``joint_signs`` ``(rows +
     1,)`` are the signs of the variables, 0 if irrelevant, as in RowConstants.
@@ -150,7 +150,7 @@ def one_cell_match(
     freedom: FrameFreedom,
     grading: Grading,
 ) -> ChainMatch | None:
-    """Return the valid table that differs from the written one in one cell; None if there is none.
+    """Return the valid table that differs from the written table in one cell, or None.
 
     If there are several, return the one with the likeliest slip. Every role must have a row.
     """

@@ -13,11 +13,12 @@ from service.kinematics.chain import Table
 def units_lost(
     expected: Table, variables: Table, wrong: NDArray[np.bool_], length_scale: float
 ) -> float:
-    """Return the loss for the ``wrong`` cells ``(rows, 4)`` in units, the cost of one wrong cell.
+    """Return the loss for the ``wrong`` cells ``(rows, 4)`` in units.
 
-    Several wrong cells in one row lose no more than the row is worth. A single wrong cell always
-    loses a whole unit, even in a row of zeros, which is worth less: the mistake may be the sign of
-    a joint variable, and a table of zeros with wrong axes must lose enough.
+    A unit is the cost of one wrong cell. Several wrong cells in one row lose no more than the row
+    is worth. A single wrong cell always loses a whole unit, even in a row of zeros, which is worth
+    less: the mistake may be the sign of a joint variable, and a table of zeros with wrong axes must
+    lose enough.
 
     ``expected`` ``(rows, 4, samples)`` is the correct table. ``variables`` is the joint variable
     that belongs in each cell, or 0.

@@ -1,9 +1,9 @@
 """Replace angles that are rounded decimals, such as 1.57 for π/2, by the exact angles.
 
-A pose computed from rounded angles is not exactly valid, so the student's frames or missing cells
-could not be found. If the constant angles of a robot are all multiples of 15°, so are the angles in
-all plausible frames. Then a decimal that agrees with such a multiple to its last digit means it:
-2.094 means 2π/3, but 2.0951 does not.
+A pose computed from rounded angles is not exactly valid, so that the student's frames or missing
+cells could not be found. If the constant angles of a robot are all multiples of 15°, so are the
+angles in all plausible frames. Then a decimal that agrees with such a multiple to its last digit
+means this multiple: 2.094 means 2π/3, but 2.0951 does not.
 """
 
 from dataclasses import replace
@@ -82,7 +82,7 @@ def _slack_of_angles(
 def slack_of_cells(
     roles: tuple[Role, ...], samples: Samples, columns: NDArray[np.bool_] = EVERY_COLUMN
 ) -> Numbers:
-    """Return how far rounding may have moved each cell, ``(rows, 4)``; 0 in other columns."""
+    """Return how far rounding may have moved each cell, ``(rows, 4)``; 0 outside ``columns``."""
     slack = np.zeros((len(roles), len(COLUMNS)))
     for i, role in enumerate(roles):
         for column in np.flatnonzero(columns).tolist() if role.row else ():

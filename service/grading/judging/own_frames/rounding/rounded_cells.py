@@ -59,9 +59,9 @@ LEAST_SIZE = 1e-16
 class _Chain:
     """A table to be made valid, at L sets of links.
 
-    ``links`` ``(rows + 1, 4, L)`` are its regrouped constants; ``values`` ``(rows, 4, SAMPLES)``
-    its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or None if frame 0 is
-    given. The ``unknown`` cells may have any value.
+    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of the table; ``values`` ``(rows, 4,
+    SAMPLES)`` are its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or None if
+    frame 0 is given. The ``unknown`` cells may have any value.
     """
 
     links: Table
@@ -114,7 +114,7 @@ class _Chain:
         return np.maximum(largest, LEAST_SIZE)
 
     def fit(self) -> tuple[Numbers, Numbers] | None:
-        """Return shifts ``(count,)`` and other unknowns ``(free, L)`` without error, or None."""
+        """Return shifts ``(count,)`` and unknowns ``(free, L)`` that leave no error, or None."""
         count, sets = self.decimals.count, self.links.shape[-1]
         sizes = np.concatenate([self._sizes(), np.full(self.free, SMALL)])
         steps = difference_steps(sizes)
@@ -150,7 +150,8 @@ def with_true_numbers(
     """Return the roles with decimals shifted so that the table is valid, if that is possible.
 
     ``as_written`` of a row keeps its numbers. Return ``roles`` itself if the table is already valid
-    (perhaps because its angles were made exact, ``rounded_angles``), or no shifts make it valid.
+    (perhaps because ``rounded_angles`` made its angles exact), or if no shifts make the table
+    valid.
     """
     if not _has_decimals(roles):
         return roles
