@@ -143,9 +143,9 @@ class Content:
     is worth. With ``besides``, each group has a small worth besides its content cells. With
     ``equal``, all groups are worth the same. ``most`` is the largest number of cells that count,
     because a student's own choices may add content cells. ``bottom`` are the rows that are the same
-    in every right answer: the last rows of homogeneous matrices. ``usual`` are the numbers of rows
-    and content cells of the reference, if an answer may have other numbers. ``given`` marks the
-    rows that the exercise gives, which earn nothing; it is empty if the exercise gives no rows.
+    in every correct answer: the last rows of homogeneous matrices. ``usual`` are the numbers of
+    rows and content cells of the reference, if an answer may have other numbers. ``given`` marks
+    the rows that the exercise gives, which earn nothing; it is empty if the exercise gives no rows.
     """
 
     known: tuple[tuple[bool, ...], ...]

@@ -1,4 +1,4 @@
-"""The content of a right answer: the cells that need knowledge and therefore earn marks.
+"""The content of a correct answer: the cells that need knowledge and therefore earn points.
 
 Most cells of a DH table are 0, and every row has its joint variable in the usual place. An answer
 with nothing else is called lazy; it needs no geometry. So the content cells are those cells of the

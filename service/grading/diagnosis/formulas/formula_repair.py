@@ -30,8 +30,8 @@ class Rewritten(Repaired[Node]):
     """The student's formula without the misconception.
 
     The rewritten formula explains the entry if the rewritten formula is correct. Unless ``signed``,
-    it also explains the entry if only its sign is wrong. ``WrongEntry`` then adds the sign and the
-    correction to the finding.
+    a rewritten formula with only a wrong sign explains the entry, too. ``WrongEntry`` then adds the
+    sign and the correction to the finding.
     """
 
     signed: bool = False

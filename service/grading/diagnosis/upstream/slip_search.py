@@ -98,7 +98,11 @@ class SlipSearch:
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
-        """Return masks ``(K, ...)`` of the entries that a slip explains, and of those changed."""
+        """Return two masks ``(K, ...)`` for K slips.
+
+        The first mask marks the entries that each slip explains, the second mask the entries that
+        each slip changes.
+        """
         samples = self.samples if count == HALF else self.samples.subset(count)
         half = self.actual.shape[-1] // 2
         some = [*range(count), *range(half, half + count)]

@@ -146,7 +146,7 @@ def _has_given_ends(part: DhTableSpec, judged: Judged) -> bool:
 def _content_in_any_frames(
     part: DhTableSpec, answer: StudentTable, rows: list[int], grading: Grading
 ) -> list[tuple[int, int]]:
-    """Return the rows, each with the number of its content cells that no choice of frames avoids.
+    """Return the rows, each with its number of content cells that every choice of frames has.
 
     A row has at most two such cells: the angle between its two axes, unless the axes are parallel;
     and the distance between the axes, unless one axis only has a direction.

@@ -29,7 +29,9 @@ from service.translations import listed, say
 def read_matrices(
     text: str, labels: Sequence[str], quantities: Quantities, reader: Reader
 ) -> list[StudentMatrix]:
-    """Read the matrices of a pasted text, one for each label; absent ones have missing entries.
+    """Read the matrices of a pasted text, one for each label.
+
+    The entries of an absent matrix are missing.
 
     Matrices are identified by their names, if they have any. An unreadable matrix affects only
     itself. Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.

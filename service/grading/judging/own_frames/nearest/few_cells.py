@@ -104,7 +104,7 @@ class _Case:
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NearestTable | None:
-    """Return the valid table that equals the written one, or differs in 1 or 2 cells or 1 row.
+    """Return the valid table that equals the written table, or differs in 1-2 cells or 1 row.
 
     If there are several such tables, return the table with the likeliest slip; None if there is no
     such table. Every role must have a row.
