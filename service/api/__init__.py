@@ -1,1 +1,1 @@
-"""The HTTP interface: routes read requests, call the other packages, and answer."""
+"""The HTTP interface: routes read requests, call the other packages, and send responses."""

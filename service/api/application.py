@@ -72,9 +72,10 @@ Layer = Callable[[ASGIApp], ASGIApp]
 def _freeze_gc() -> None:
     """Exempt all objects that exist now from garbage collection.
 
-    A body of many small lists triggers full collections. If full collections also visit the objects
-    of the program, they take twice as long as reading the body. If the process started with the
-    collector off, the collector is turned on without a first collection.
+    Reading a request body with many small lists triggers full collections. If these
+    collections also visited the objects of the program, they would take twice as long as reading
+    the body. If the process was started with garbage collection off, this function turns garbage
+    collection on without a first collection.
     """
     if gc.isenabled():
         gc.collect()
@@ -85,7 +86,7 @@ def _freeze_gc() -> None:
 def _sending(
     store: "AttemptStore", access: Access, catalogue: Catalogue
 ) -> "Iterable[BackgroundSending]":
-    """Yield the threads that send scores and reports to platforms; none without a secret."""
+    """Yield the threads that send scores and reports to platforms; none if no secret is set."""
     secret = None if access.keys is None else access.keys.secret
     if secret is None:
         return
@@ -102,7 +103,7 @@ def _sending(
 
 
 class _Api(FastAPI):
-    """FastAPI with further layers around its error pages and its size limit of bodies."""
+    """FastAPI with additional layers outside its error handling and its limit on body size."""
 
     def __init__(
         self,
@@ -158,10 +159,10 @@ class _Api(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         """Return the application with its layers.
 
-        From the inside: FastAPI's own layers, compression, turns between clients,
-        authentication, and the boundary. CORS comes around these, so that pages of other
-        origins may read problems, too. The request id comes last, so that every answer has
-        one.
+        The layers from the inside to the outside: FastAPI's own layers, compression, turns
+        between clients, authentication, and the boundary. The CORS layer is outside these
+        layers, so that pages of other origins may read problems, too. The layer that sets
+        the request id is outermost, so that every response has a request id.
         """
         app = super().build_middleware_stack()
         if self._monitor is not None:
@@ -185,7 +186,7 @@ class _Api(FastAPI):
         return RequestIdMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
-        """Return the OpenAPI document; the first call makes it."""
+        """Return the OpenAPI document; the first call builds it."""
         if self.openapi_schema is None:
             fill_body_schemas()
             self.openapi_schema = completed(super().openapi())
@@ -204,13 +205,14 @@ def application(
     pages: WebPages | None = None,
     monitor: Monitor | None = None,
 ) -> FastAPI:
-    """Return the HTTP service for these exercises; pages of ``cors_origins`` may call it.
+    """Return the HTTP service for the exercises of ``catalogue``.
 
+    Web pages of ``cors_origins`` may call the service.
     ``access`` checks callers. Without ``access``, everybody may grade and record, and nobody sees
-    the data that are for tutors. ``rates`` limits the number of requests. A report has at most the
-    level ``feedback``, and at most the level of its exercise. ``turns`` is a layer that orders
-    requests, and ``pages`` are the service's web pages. Attempts are recorded in ``store``, if
-    there is one. ``monitor`` counts requests and reports.
+    the data that are for tutors. ``rates`` limits the number of requests. The level of a
+    report is at most ``feedback``, and at most the level of the exercise. ``turns`` is a layer that
+    orders requests, and ``pages`` are the service's web pages. Attempts are recorded in ``store``,
+    if there is one. ``monitor`` counts requests and reports.
     """
     access = access or Access()
     app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)

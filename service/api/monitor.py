@@ -1,4 +1,4 @@
-"""What the application reports to the metrics."""
+"""The interface through which the application counts requests and reports in the metrics."""
 
 from typing import Protocol
 
@@ -8,13 +8,13 @@ from service.grading import Report
 
 
 class Monitor(Protocol):
-    """Counts requests and reports. It changes no answer."""
+    """Counts requests and reports. It changes no response."""
 
     def watched(self, app: ASGIApp) -> ASGIApp:
-        """Return the application in a layer that sees every request and its answer."""
+        """Return the application in a layer that sees every request and its response."""
 
     def graded(self, report: Report, seconds: float) -> None:
         """Count a report, and the seconds that its grading took."""
 
     def refused(self, answer: str) -> None:
-        """Count a refused request or connection; ``answer`` is the status code, or "none"."""
+        """Count a refusal; ``answer`` is the status code of the response, or "none"."""

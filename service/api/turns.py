@@ -1,4 +1,4 @@
-"""Turns between clients, for the routes and the layers around them."""
+"""Let the requests of clients take turns: functions for routes and the layers around them."""
 
 import asyncio
 import math
@@ -43,7 +43,7 @@ ONE_STUDENT, ONE_ADDRESS, COURSE_SITE = 1.0, 8.0, math.inf
 
 
 def arrived_at(request: Request) -> datetime:
-    """Return when the request had been received. Waiting for its turn makes no hand-in late."""
+    """Return when the whole request was received. A hand-in is not late if it waits for a turn."""
     found: datetime | None = request.scope.get(ARRIVED)
     return found or datetime.now(UTC)
 

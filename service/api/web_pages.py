@@ -10,7 +10,7 @@ from service.catalogue.drafts import Drafts
 
 
 class WebPages(NamedTuple):
-    """The routes of the pages, and the function that makes the page of a problem for browsers.
+    """The routes of the pages, and ``of_problem``, which makes an HTML page from a problem.
 
     ``close`` stops the work that the pages have started. ``drafts`` are the exercises in the
     preview of the editor.

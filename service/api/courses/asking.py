@@ -69,6 +69,6 @@ async def _done(
 
 
 def course_problem(error: CourseError) -> ProblemError:
-    """Return the problem of an error of courses."""
+    """Return the problem to send for a CourseError."""
     status, title = _TITLES[error.name]
     return ProblemError(status, message_of(error), error.name, title)

@@ -1,4 +1,4 @@
-"""The routes of the gradebook, of missing hand-ins, and of one learner's view; for tutors."""
+"""Routes for tutors: the gradebook, missing hand-ins, and a course as one learner sees it."""
 
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -103,6 +103,6 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
 
 
 def _file(course_id: str, ending: str) -> dict[str, str]:
-    """Return the headers of a downloaded gradebook."""
+    """Return the HTTP headers with which a browser saves a gradebook as a file."""
     attachment = f'attachment; filename="gradebook-{course_id}.{ending}"'
     return {"Cache-Control": "no-store", "Content-Disposition": attachment}

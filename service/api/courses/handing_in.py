@@ -1,4 +1,4 @@
-"""The routes of learners: their assignments, handing in, and solutions."""
+"""The routes for learners: show assignments, hand in answers, and show solutions."""
 
 from collections.abc import Collection
 from datetime import UTC, datetime
@@ -55,9 +55,9 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the routes of learners; reports have at most the level ``feedback``.
+    """Return the routes for learners; reports have at most the level ``feedback``.
 
-    Pages of the service and of ``origins`` may hand in.
+    Web pages of the service and of ``origins`` may hand in answers.
     """
     router = APIRouter(prefix="/v1", tags=["courses"])
     solutions = SolvedExercises()
@@ -181,10 +181,10 @@ def _begun(
     idempotency_key: str,
     connection: "Connection",
 ) -> "tuple[LearnerTerms, Exercise, str | None, Standing] | CourseError":
-    """Return the terms of a hand-in, the exercise, the learner's seed, and the learner's standing.
+    """Return the terms of a hand-in, the exercise, the variant's seed, and the learner's standing.
 
-    ``place`` is a course, an assignment and an exercise. A CourseError is returned, because raising
-    the error would run the other jobs of the transaction again.
+    ``place`` is a course, an assignment and an exercise. A CourseError is returned, not raised:
+    raising the error would run the other jobs of the transaction again.
     """
     from service.attempts.recording import standing
     from service.courses.dealing import assigned_seed, needs_choices, pin_choices

@@ -1,7 +1,7 @@
-"""The variant of an exercise that a learner has in an assignment, for the routes of exercises.
+"""Find the variant of an exercise that a learner has in an assignment, for routes of exercises.
 
-With ``?course=…&assignment=…``, a route of exercises uses the learner's own variant. The token of
-the request names the learner. The answer names the exercise by its plain id.
+If a request has ``?course=…&assignment=…``, the route uses the learner's own variant. The token of
+the request names the learner. The response names the exercise, not the variant, by its id.
 """
 
 from typing import TYPE_CHECKING, Any, Final

@@ -1,4 +1,4 @@
-"""The route of hints at recorded attempts: each step is recorded, and may have a price."""
+"""The route for hints on recorded attempts: each step is recorded, and may have a price."""
 
 from collections.abc import Collection
 from functools import partial
@@ -111,7 +111,7 @@ def _may_use(caller: Caller, row: "Row[Any]") -> bool:
 def _terms(
     row: "Row[Any]", exercise: Exercise, connection: "Connection"
 ) -> tuple[AttemptsSpec, list[float] | None, int]:
-    """Return the rules of the next attempt, the prices of hints, and the counted attempts."""
+    """Return the next attempt's rules, the prices of hints, and the number of counted attempts."""
     from service.attempts.recording import standing
     from service.courses.terms import terms_of
 
@@ -125,7 +125,7 @@ def _terms(
 def _hint(
     exercise: Exercise, row: "Row[Any]", body: AttemptHintRequest, most: FeedbackLevel
 ) -> Hint:
-    """Return the step of the hint for a message of the recorded report. Raises ProblemError."""
+    """Return the requested hint step for a message of the recorded report. Raises ProblemError."""
     from json import loads
 
     submission = GradeRequest.model_validate_json(row.submission)

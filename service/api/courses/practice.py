@@ -17,20 +17,20 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 class PracticeGate:
-    """Refuses practice, free hints and solutions that a learner may not have now."""
+    """Refuses practice, a free hint or a solution if the learner may not have it now."""
 
     def __init__(self, store: "AttemptStore | None", catalogue: Catalogue) -> None:
         self._store = store
         self._catalogue = catalogue
 
     async def check(self, caller: Caller, exercise: str) -> None:
-        """Raise ProblemError if this learner may not practise the exercise now."""
+        """Raise ProblemError if the caller may not practise the exercise now."""
         refused = await self.refusal(caller, exercise)
         if refused is not None:
             raise refused
 
     async def check_hints(self, caller: Caller, exercise: Exercise) -> None:
-        """Raise ProblemError if hints at this exercise have a price for this learner now."""
+        """Raise ProblemError if the caller may not practise, or would have to pay for hints."""
         await self.check(caller, exercise.plain_id)
         learner = caller.learner
         if self._store is None or learner is None:
@@ -55,7 +55,7 @@ class PracticeGate:
             )
 
     async def check_solution(self, caller: Caller, exercise: str) -> None:
-        """Raise ProblemError if an assignment of this learner does not show the solution now."""
+        """Raise ProblemError if an assignment of the caller hides the solution now."""
         learner = caller.learner
         if self._store is None or learner is None:
             return
@@ -77,7 +77,7 @@ class PracticeGate:
             )
 
     async def refusal(self, caller: Caller, exercise: str) -> ProblemError | None:
-        """Return why this learner may not practise the exercise now; None if the learner may."""
+        """Return why the caller may not practise the exercise now; None if the caller may."""
         learner = caller.learner
         if self._store is None or learner is None:
             return None
@@ -114,7 +114,7 @@ class PracticeGate:
         return ProblemError(HTTPStatus.FORBIDDEN, detail, "no-practice", title)
 
     def _alike(self, exercise: str) -> set[str]:
-        """Return the ids of the exercises with the same robot, and so with the same answers."""
+        """Return the ids of the exercises with the same robot, which have the same solution."""
         reference = getattr(self._catalogue.get(exercise), "reference", None)
         return {
             name

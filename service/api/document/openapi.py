@@ -1,6 +1,7 @@
-"""The OpenAPI document: the bodies, failures and examples that the service really sends.
+"""The OpenAPI document: the schemas of bodies, the failures, and examples.
 
-The examples are files, so that no start computes them; a test compares them with real answers.
+The examples are stored in files, so that the service need not compute them when it starts. A test
+compares them with real responses.
 """
 
 import json
@@ -148,7 +149,7 @@ def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
 
 
 def completed(document: dict[str, Any]) -> dict[str, Any]:
-    """Return FastAPI's document with schemas of problems, tidy schemas, and the use of keys."""
+    """Return FastAPI's document with problem schemas, tidied schemas, and how to send a key."""
     problem = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     for path in document["paths"].values():
         for operation in path.values():

@@ -1,7 +1,8 @@
-"""The schemas of the OpenAPI document in a form that suits generators of clients.
+"""Convert the schemas of the OpenAPI document to a form that suits client generators.
 
-Pydantic's schemas say how a value is validated. A client needs a name for each model and each
-choice. It must also know which fields may be left out; a field without a value is not sent as null.
+Pydantic's schemas say how a value is validated. A generated client needs a name for each model and
+each enumeration, and must know which fields may be absent. A field without a value is absent, not
+null.
 """
 
 import json
@@ -56,7 +57,7 @@ def public_name(name: str) -> str:
 
 
 def tidy_schemas(document: Schema) -> None:
-    """Give the document a named schema for each model and choice, in alphabetical order."""
+    """Give the document a named schema for each model and enumeration, in alphabetical order."""
     components = document.setdefault("components", {})
     tidying = _Tidying()
     for name, schema in components.get("schemas", {}).items():
@@ -91,7 +92,7 @@ class _Tidying:
         return {"$ref": f"{_REFERENCE}{name}"}
 
     def tidied(self, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """Return the tidied schema; ``is_sent`` is True for answers, and False for requests."""
+        """Return the tidied schema; ``is_sent`` is True for responses, False for requests."""
         for name, definition in schema.get("$defs", {}).items():
             self.name(name, definition, is_sent=is_sent)
         if "properties" in schema:
@@ -127,12 +128,14 @@ class _Tidying:
         return body
 
     def _fields(self, schema: Schema, *, is_sent: bool) -> Schema:
-        """Return the fields of a model.
+        """Return the fields of a model, and the names of the required fields.
 
-        The service sends every field that has a value, so in answers a field with a default is
-        required. In requests, the description names the default, because ``default`` makes some
-        generators require the field. A field with the mark ``ADDED_LATER`` may be
-        absent in answers that an older version has recorded.
+        In responses, a field with a default is required, because the service always sends the
+        field. A field with the mark ``ADDED_LATER`` is not required, because a response that
+        an older version has recorded may lack the field.
+
+        In requests, a field with a default is not required. The description of the field
+        names the default: the schema's own ``default`` makes some generators require a field.
         """
         required = list(schema.get("required", ()))
         fields = {}
@@ -163,7 +166,7 @@ def _without_null(field: Schema) -> Schema:
 
 
 def _texts(schema: Schema) -> Schema:
-    """Return the description of a schema, if any, with code in backticks as in Markdown."""
+    """Return only the description of a schema, if any, with code in Markdown's backticks."""
     if "description" not in schema:
         return {}
     return {"description": schema["description"].replace("``", "`")}

@@ -17,12 +17,13 @@ M = TypeVar("M", bound=BaseModel)
 
 
 async def read_body(model: type[M], request: Request) -> M:
-    """Return the body as this model. Any Content-Type is accepted if the body is JSON.
+    """Return the request's body as an instance of ``model``.
 
-    Forms and scripts often forget the header. Accepting such bodies is safe, because a cookie gives
-    rights only to requests of the service's own pages. Raises ProblemError: 400 if the body is not
-    JSON, or 415 if the header also names a type other than JSON; 422 if the body does not match the
-    model.
+    A JSON body is accepted with any Content-Type, because forms and scripts often omit this header.
+    That is safe: a cookie gives rights only to requests of the service's own pages.
+
+    Raises ProblemError with status 422 if the JSON does not match the model. If the body is not
+    JSON, the status is 415 if Content-Type names another type, and otherwise 400.
     """
     try:
         value = read_json(await request.body())
@@ -32,9 +33,9 @@ async def read_body(model: type[M], request: Request) -> M:
 
 
 def validated(model: type[M], value: object, at: Location = ()) -> M:
-    """Return part of a body as this model; ``at`` is its place in the body.
+    """Return a part of a body as an instance of ``model``; ``at`` is the part's place in the body.
 
-    Raises ProblemError: 422 if the value does not match the model.
+    Raises ProblemError with status 422 if the value does not match the model.
     """
     try:
         return model.model_validate(_with_few_unknown(model, value))
@@ -45,7 +46,7 @@ def validated(model: type[M], value: object, at: Location = ()) -> M:
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    """Return the value with at most ``MAX_ERRORS`` unknown fields: a problem lists no more."""
+    """Return the value with at most ``MAX_ERRORS`` unknown fields; a problem lists no more."""
     known = model.model_fields
     if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
         return value

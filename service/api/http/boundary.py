@@ -1,4 +1,4 @@
-"""The outermost layers, which every request and every answer passes."""
+"""The outermost layers, which every request and every response passes."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -19,7 +19,7 @@ _DIGITS: Final = len(str(MAX_BODY_SIZE))
 
 
 class RequestIdMiddleware:
-    """Give every request an id, and send it with the answer."""
+    """Give every request an id, and send the id with the response."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -81,10 +81,10 @@ class RefusedRouteMiddleware:
 
 
 class BoundaryMiddleware:
-    """Add security headers, answer HEAD like GET, and refuse bodies that are declared too large.
+    """Add security headers, answer HEAD like GET, and refuse too large a Content-Length.
 
-    The framework's own limit counts the bytes as they arrive. A body that is declared too large is
-    refused without reading it, also on routes that take no body.
+    FastAPI's own limit counts the bytes of a body as they arrive. This layer refuses a body whose
+    Content-Length is too large without reading the body, also on routes that take no body.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -115,7 +115,7 @@ class BoundaryMiddleware:
 
 
 def _is_too_large(declared: str) -> bool:
-    """True if a header Content-Length declares more than a body may hold."""
+    """True if a Content-Length header declares more bytes than a body may have."""
     if not (declared.isascii() and declared.isdigit()):
         return False
     # int() refuses more than 4,300 digits, and zeros may precede a length.

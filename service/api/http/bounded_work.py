@@ -14,7 +14,7 @@ WAITING: Final = 4
 
 
 class BoundedWork:
-    """Does one piece of work at a time in a thread; refuses more if the queue is full."""
+    """Does one piece of work at a time in a thread; refuses further work if the queue is full."""
 
     def __init__(self) -> None:
         self._working = asyncio.Lock()

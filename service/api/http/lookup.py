@@ -1,4 +1,4 @@
-"""The exercise and the parts that a request names, or a problem that lists the known ones."""
+"""Find the exercise and the parts that a request names, or list the known names in a problem."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -60,10 +60,10 @@ def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: 
 
 
 def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
-    """Check that the exercise has these parts, each given with its place in the body.
+    """Check that the exercise has the parts in ``located``: pairs of a part's id and its place.
 
-    Raises ProblemError, which lists the parts of the exercise and the places of the first
-    unknown ones.
+    Raises ProblemError if parts are unknown. The problem lists the exercise's parts, and the places
+    of the first unknown parts in the body.
     """
     absent = (each for each in located if exercise.part(each[0]) is None)
     known = [part.id for part in exercise.parts]

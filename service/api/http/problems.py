@@ -1,4 +1,4 @@
-"""Every answer that is not a success: RFC 9457 problem details."""
+"""Every response that is not a success: RFC 9457 problem details."""
 
 import json
 import logging
@@ -30,11 +30,11 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request that cannot be answered. The type of the problem ends with ``name``.
+    """A request has failed; the attributes are the fields of the problem to send.
 
-    A problem without a name has the type ``about:blank``. Each of ``challenges`` is sent in a
-    separate header ``WWW-Authenticate``. A ``title`` or ``detail`` of the class ``Sentence`` is
-    translated into the language of the reader.
+    The type of the problem ends with ``name``; without a name, the type is ``about:blank``. Each of
+    ``challenges`` is sent in a separate header ``WWW-Authenticate``. A ``title`` or ``detail`` of
+    the class ``Sentence`` is translated into the language of the reader.
     """
 
     status: HTTPStatus
@@ -46,7 +46,7 @@ class ProblemError(Exception):
     challenges: Sequence[str] = ()
 
     def response(self, instance: str, language: Language = ENGLISH) -> Response:
-        """Return the problem as the answer to a request for the path ``instance``."""
+        """Return the problem as the response to a request for the path ``instance``."""
         request = current_request()
         content = self.content(instance, "" if request is None else request.id, language)
         answer = self.answer(content, MEDIA_TYPE)
@@ -55,7 +55,7 @@ class ProblemError(Exception):
         return answer
 
     def answer(self, content: bytes, media_type: str = "text/html") -> Response:
-        """Return an answer with this content and with the status and headers of the problem."""
+        """Return a response with this content, and with the problem's status and headers."""
         response = Response(content, self.status, self.headers, media_type)
         for challenge in self.challenges:
             response.headers.append("WWW-Authenticate", challenge)
@@ -86,7 +86,7 @@ class ProblemError(Exception):
 
 
 def message_of(error: Exception) -> str:
-    """Return the message of an error; ``str(error)`` would lose the template of a sentence."""
+    """Return the message of an error. A Sentence stays translatable, unlike in ``str(error)``."""
     message = error.args[0] if error.args else ""
     return message if isinstance(message, str) else str(error)
 
@@ -96,7 +96,7 @@ ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
-    """Return the problem of a too large body. The connection closes without reading the rest."""
+    """Return the problem for a body that is too large; the connection closes without reading on."""
     return ProblemError(
         HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
         say("A request may hold {most} KiB; this one is larger.", most=MAX_BODY_SIZE // 1024),
@@ -107,7 +107,7 @@ def too_large() -> ProblemError:
 
 
 def store_down(detail: str) -> ProblemError:
-    """Return the problem that the database does not answer. Grading works without a database."""
+    """Return the problem for a database that does not respond; grading needs no database."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         detail,
@@ -118,7 +118,7 @@ def store_down(detail: str) -> ProblemError:
 
 
 def failed() -> ProblemError:
-    """Return the problem of a failure inside the program."""
+    """Return the problem for a failure inside the program."""
     return ProblemError(
         HTTPStatus.INTERNAL_SERVER_ERROR,
         say(
@@ -133,7 +133,7 @@ def invalid(
     fields: Sequence[str] = (),
     at: tuple[str | int, ...] = (),
 ) -> ProblemError:
-    """Return the problem of a body with errors that pydantic found.
+    """Return the problem for a body in which pydantic has found errors.
 
     ``fields`` are the names of all known fields of the object at the place ``at`` in the body.
     """
@@ -165,9 +165,9 @@ def _pointer(location: Sequence[str | int]) -> str:
 
 
 def install(app: FastAPI, page: ProblemPage | None = None) -> None:
-    """Let the app answer every failure, including failures of the framework, with a problem.
+    """Let the app respond with a problem to every failure, including failures of the framework.
 
-    A browser gets the ``page`` of the problem instead.
+    For a browser, ``page`` makes an HTML page from the problem.
     """
 
     async def answer(request: Request, error: Exception) -> Response:

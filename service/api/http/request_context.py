@@ -15,7 +15,7 @@ _WELL_FORMED: Final = re.compile(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
 
 @dataclass(slots=True)
 class RequestContext:
-    """One request. ``route`` is the pattern of its path, or empty until it is known."""
+    """One request. ``route`` is the pattern of its path, or empty until the route is known."""
 
     id: str
     route: str = ""

@@ -1,4 +1,4 @@
-"""The documentation and headers of answers whose sentences are in the language of the reader."""
+"""Responses in the language of the reader: their headers, and the parameter ``lang``."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -40,6 +40,6 @@ def told_json(
     status: HTTPStatus = HTTPStatus.OK,
     headers: Mapping[str, str] | None = None,
 ) -> Response:
-    """Return an answer in JSON that says in which language it is."""
+    """Return a JSON response whose headers name its language."""
     named = {**language_headers(language), **(headers or {})}
     return Response(content, status, named, "application/json")

@@ -1,4 +1,4 @@
-"""Who may do what: the caller of each request is checked against the table of rights.
+"""Check that the caller of each request has the right that the request's route needs.
 
 As long as there are no keys, grading and recording are open. Tutors are then the users of the
 machine that the service runs on. A request that a proxy has forwarded does not count as a tutor's,
@@ -124,9 +124,9 @@ class Access:
         return Identity(NOBODY, by_key=True, refusal=refusal)
 
     async def permit(self, request: Request) -> None:
-        """Check the right that the route of the request needs; a dependency of all routes.
+        """Check that the caller has the right that the request's route needs.
 
-        Raises ProblemError.
+        Every route depends on this check. Raises ProblemError.
         """
         self._check(request, right_of(request))
 
@@ -142,7 +142,7 @@ class Access:
         """Check that the request comes from a page that may record attempts. Raises ProblemError.
 
         The pages of the service and of ``origins`` may do so. A browser sends the POST of any page
-        without asking the service first, and only hides the answer from the page. Requests with a
+        without asking the service first, and only hides the response from the page. Requests with a
         key that the browser has not added by itself skip this check.
         """
         identity = self._identity(request)
@@ -160,12 +160,12 @@ class Access:
         return True
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token with the rights of ``caller``, a key holder restricted to a learner."""
+        """Return a token with the rights of ``caller``: a key's holder, restricted to a learner."""
         assert self.keys is not None, "only keys make tokens"
         return self.keys.token(caller, expires_at)
 
     def close(self) -> None:
-        """Write pending notes of the use of keys, and stop the threads of the keys."""
+        """Write down the latest uses of keys, and stop the threads that look up keys."""
         if self.keys is not None:
             self.keys.close()
 
@@ -190,7 +190,7 @@ class Access:
     def _problem(
         self, request: Request, identity: Identity, right: Right, scope: Scope
     ) -> ProblemError | None:
-        """Return the problem of a caller without the right, or None."""
+        """Return the problem for a caller who lacks the right; None if the caller has it."""
         caller = identity.caller
         shown = self._shown.get(right.without_keys)
         is_learner = caller.learner is not None
@@ -227,7 +227,7 @@ class Access:
 
 
 def require_reach(caller: Caller, exercise: str | None) -> None:
-    """Check that the caller's key is for this exercise, if one is named. Raises ProblemError."""
+    """Check that the caller may use the exercise, unless it is None. Raises ProblemError."""
     if exercise is not None and not caller.reaches(exercise):
         raise access_problem("other-exercise")
 
@@ -236,7 +236,7 @@ def is_at_the_machine(request: Request) -> bool:
     """True if a program or browser on this machine made the request, and no proxy forwarded it.
 
     Both ends of the connection are on this machine, no proxy is between them, and the header Host
-    has a local name. The last condition refuses pages whose own name resolves to this machine.
+    has a local name. The last condition refuses pages whose domain name resolves to this machine.
     """
     server = request.scope.get("server") or ("",)
     client = request.scope.get("client") or ("",)
@@ -287,12 +287,13 @@ def _host_name(netloc: str) -> str:
 
 
 def is_same_origin(request: Request) -> bool:
-    """True unless a page of another origin made the request; programs name no origin.
+    """True unless a page of another origin has made the request.
 
-    The header Sec-Fetch-Site (Fetch Metadata) says where a request comes from. Browsers send the
-    header over HTTPS and to this machine, also in requests for pictures and scripts, which have no
-    Origin. A browser knows the scheme better than a service behind a proxy. A user may follow a
-    link from any page, because that page cannot read the answer.
+    Programs send no origin. Browsers say in the header Sec-Fetch-Site (Fetch Metadata) whether the
+    origin is the same. They send this header over HTTPS and to their own machine, also with
+    requests for pictures and scripts, which have no Origin header. Sec-Fetch-Site is more reliable
+    than comparing schemes, because a service behind a proxy may not know the browser's scheme. A
+    user may follow a link from any page, because that page cannot read the response.
     """
     headers = request.headers
     site = headers.get("sec-fetch-site")
@@ -307,11 +308,11 @@ def is_same_origin(request: Request) -> bool:
 
 
 def session_in(scope: AsgiScope) -> str:
-    """Return the session in the cookies of a request, or "".
+    """Return the session token in the cookies of a request, or "".
 
-    Over HTTPS only the secure cookie counts: another host of the same site, or anybody who changes
-    an answer over HTTP, can set the plain cookie. Browsers also send cookies with the requests of
-    pages of other origins. The session of such a request is ignored, unless a user follows a link.
+    Over HTTPS, only the secure cookie counts. Another host of the same site, or an attacker who
+    changes HTTP responses, could set the plain cookie. Browsers send cookies also with requests of
+    pages of other origins; then the session is ignored, unless a user follows a link.
     """
     request = Request(scope)
     origin = request.headers.get("origin", "")
@@ -323,7 +324,7 @@ def session_in(scope: AsgiScope) -> str:
 
 
 def _follows_link(request: Request) -> bool:
-    """True if a browser opens the answer as a page, and not in a frame."""
+    """True if a browser opens the response as a page, and not in a frame."""
     headers = request.headers
     return (
         request.method in ("GET", "HEAD")
@@ -333,7 +334,7 @@ def _follows_link(request: Request) -> bool:
 
 
 def _credential(header: str) -> tuple[str, bool]:
-    """Return the key or token in a header Authorization, and whether it is sent as a password.
+    """Return the key or token in an Authorization header, and True if it is sent as a password.
 
     Browsers send a key as a password. A password that is not a key is ignored: it may be meant for
     a proxy, which has already checked it.

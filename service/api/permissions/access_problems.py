@@ -1,4 +1,4 @@
-"""The problems of callers without the right to do what they ask for."""
+"""The problems for requests whose caller lacks the right to make them."""
 
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
@@ -17,7 +17,7 @@ _ALLOWS: Final = {
 
 
 class AccessProblem(NamedTuple):
-    """The constant parts of a problem. Braces in its texts are places for values."""
+    """The constant parts of a problem. Names in braces are placeholders for values."""
 
     status: HTTPStatus
     title: str
@@ -132,12 +132,12 @@ def access_problem(name: str, **values: SentenceValue) -> ProblemError:
 
 
 def scope_missing(scope: Scope) -> ProblemError:
-    """Return the problem of a key without this scope."""
+    """Return the problem for a key that lacks this scope."""
     return access_problem("scope-missing", allowed=_ALLOWS[scope], scope=str(scope))
 
 
 def token_for_token() -> ProblemError:
-    """Return the problem of a token with which its holder asks for another token."""
+    """Return the problem for a request that asks for a token with another token."""
     return ProblemError(
         HTTPStatus.FORBIDDEN,
         say("A token makes no tokens; this needs a key."),

@@ -19,17 +19,17 @@ _HEALTH: Final = ("/healthz", "/readyz")
 
 
 class RequestRates(Protocol):
-    """Counts of requests."""
+    """Counts the requests of callers, and says when one has sent too many."""
 
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
         """Count a request; return 0 if it is allowed, otherwise the seconds to wait."""
 
     def close(self) -> None:
-        """Stop the threads of the counts."""
+        """Stop the threads that count."""
 
 
 class AuthenticationMiddleware:
-    """Note the caller of each request, and refuse requests beyond the caller's rate."""
+    """Note the caller of each request, and refuse requests beyond the caller's rate limit."""
 
     def __init__(self, app: ASGIApp, access: Access, rates: RequestRates | None) -> None:
         self.app = app

@@ -13,7 +13,7 @@ from service.access.caller import Scope
 
 
 class Reach(Enum):
-    """The exercises that a route is about. A key restricted to some exercises must reach them."""
+    """The exercises that a route is about. A key restricted to some exercises must include them."""
 
     PATH = "the one in the path"
     QUERY = "the one in `?exercise=`, else all"

@@ -34,7 +34,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 @dataclass(frozen=True, slots=True)
 class AttemptTerms:
-    """The rules of an attempt, its feedback by ordinal, and the number of its assignment."""
+    """The rules for attempts, the n-th attempt's feedback level, and the assignment's number."""
 
     rules: AttemptsSpec
     feedback_at: Callable[[int], FeedbackLevel]
@@ -63,9 +63,10 @@ class Recorder:
         idempotency_key: str | None,
         arrived: Arrived | None = None,
     ) -> Response:
-        """Grade answers, record them, and answer with the attempt and its report.
+        """Grade answers, record them, and return a response with the attempt and its report.
 
-        Without ``arrived``, the time of arrival is now. Raises ProblemError.
+        ``arrived`` has the time of arrival, and the learner's standing then. By default, the
+        time is that of the request, and the store is asked for the standing. Raises ProblemError.
         """
         now, before = arrived or (arrived_at(request), None)
         attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
@@ -201,7 +202,7 @@ class _Attempting:
 
 
 def _answer(recorded: RecordedAttempt, language: Language) -> bytes:
-    """Return the attempt and its report as JSON; an English one is exactly as it was sent."""
+    """Return the attempt and its report as JSON. An English report is sent exactly as recorded."""
     attempt = Attempt.model_validate(recorded, from_attributes=True)
     told = attempt.model_dump_json(exclude_none=True)
     report = shown_report(recorded.report, language)

@@ -211,7 +211,7 @@ def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
 
 
 def _summary(attempt: ListedAttempt, caller: Caller) -> AttemptSummary:
-    """Return an attempt as the caller may see it: learners see no seed."""
+    """Return an attempt as the caller may see it: a learner does not see the variant's seed."""
     seen = attempt if caller.learner is None else replace(attempt, variant=None)
     return AttemptSummary.model_validate(seen, from_attributes=True)
 

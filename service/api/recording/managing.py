@@ -64,7 +64,10 @@ _EXPORTED: Final[dict[int | str, dict[str, Any]]] = {
 def routes(
     catalogue: Catalogue, feedback: FeedbackLevel, store: "AttemptStore | None", access: Access
 ) -> APIRouter:
-    """Return the routes that export and change attempts; ``feedback`` limits new reports."""
+    """Return the routes that export and change attempts.
+
+    ``feedback`` is the highest level of new reports.
+    """
     router = APIRouter(prefix="/v1", tags=["attempts"])
     regrades = _Regrades(feedback)
 
@@ -228,7 +231,7 @@ class _Regrades:
         language: Language,
         store: "AttemptStore",
     ) -> RegradeAnswer:
-        """Do one step of a regrade, in a course or in all. Raises ProblemError, StoreDownError."""
+        """Do one step of a regrade, in one or all courses. Raises ProblemError, StoreDownError."""
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 
@@ -291,7 +294,7 @@ async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:
 
 
 def _stem(form: GradesFormat, exercise: str | None) -> str:
-    """Return the name, without ending, of an exported file; omit an invalid exercise id."""
+    """Return the name of an exported file without its suffix; omit an invalid exercise id."""
     kind = form.value if form.is_gradebook else "attempts"
     return f"{kind}-{exercise}" if exercise and is_exercise_id(exercise) else kind
 

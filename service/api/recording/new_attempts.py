@@ -44,7 +44,7 @@ def routes(
     """Return the route that records; reports have at most the level ``feedback``.
 
     ``practice`` refuses a learner for whom the exercise counts in an assignment now.
-    Pages of the service and of ``origins`` may record.
+    Web pages of the service and of ``origins`` may record attempts.
     """
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
@@ -95,7 +95,7 @@ def routes(
 
 
 def not_recorded() -> ProblemError:
-    """Return the problem of a service without a database."""
+    """Return the problem for a service without a database."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         say("No attempts are recorded here: the service has no database."),

@@ -23,7 +23,7 @@ NO_STORE: Final = {"Cache-Control": "no-store"}
 async def ask(
     store: "AttemptStore | None", question: Callable[["AttemptStore"], Awaitable[R]]
 ) -> R:
-    """Return the store's answer. Raises ProblemError if there is no store, or if it is down."""
+    """Return what ``question`` gets from the store. Raises ProblemError without a working store."""
     if store is None:
         raise not_recorded()
     try:
@@ -34,7 +34,7 @@ async def ask(
 
 
 def unknown_attempt() -> ProblemError:
-    """Return the problem of an attempt that does not exist or that the caller may not see."""
+    """Return the problem for an attempt that does not exist or that the caller may not see."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         say("No attempt with this id is recorded here."),
@@ -44,10 +44,10 @@ def unknown_attempt() -> ProblemError:
 
 
 def private(model: BaseModel) -> Response:
-    """Return an answer that no cache may store."""
+    """Return the model as a JSON response that no cache may store."""
     return private_json(model.model_dump_json(exclude_none=True).encode())
 
 
 def private_json(content: bytes) -> Response:
-    """Return JSON as an answer that no cache may store."""
+    """Return JSON as a response that no cache may store."""
     return Response(content, HTTPStatus.OK, NO_STORE, "application/json")

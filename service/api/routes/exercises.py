@@ -1,4 +1,4 @@
-"""The routes that list and describe exercises, without the answers."""
+"""The routes that list and describe exercises, without their correct answers."""
 
 from http import HTTPStatus
 from typing import Any

@@ -27,7 +27,7 @@ _REFUSED = refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.UNPRO
 
 
 class SvgResponse(Response):
-    """A drawing."""
+    """A response with a drawing in SVG."""
 
     media_type = "image/svg+xml"
 

@@ -62,7 +62,7 @@ _MOST_MECHANISMS: Final = 64
 
 
 class _Mechanisms:
-    """The most recently used mechanisms and their lengths; dragging a slider reuses a mechanism."""
+    """The most recently used mechanisms, by their numbers; dragging a slider reuses a mechanism."""
 
     def __init__(self) -> None:
         self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
@@ -115,7 +115,7 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
 def _answered(
     exercise: Exercise | None, body: FramesRequest, mechanisms: _Mechanisms
 ) -> FramesAnswer:
-    """Return the answer to a request. Raises ProblemError if its fields contradict each other."""
+    """Return the response to a request. Raises ProblemError if fields contradict each other."""
     scope = _scope(exercise, body)
     constants = [variable.name for variable in scope.variables if variable.joint is None]
     if unknown := sorted(body.symbols.keys() - set(constants)):
@@ -182,7 +182,7 @@ def _refused(place: Location, message: Sentence) -> ProblemError:
 
 
 def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
-    """Return the joint values of each picture, ``(pictures, joints)``."""
+    """Return the joint values of each picture as an array of shape ``(pictures, joints)``."""
     if body.joints is None:
         return np.array([[numbers[joint.variable] for joint in scope.joints]])
     for i, values in enumerate(body.joints):
@@ -217,7 +217,7 @@ def _table(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
-    """Return the frames for the answer, and for the drawing (None if the table is unreadable)."""
+    """Return a table's frames for the response, and for the drawing (None if unreadable)."""
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
         written = table_to_draw(table.rows, scope, budget, body.angle_unit)

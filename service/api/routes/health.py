@@ -71,14 +71,14 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
 
 
 class _Checks:
-    """Checks of the database, one at a time; requests that arrive during a check share it."""
+    """Checks the database, once at a time; requests that arrive during a check share the check."""
 
     def __init__(self, store: "AttemptStore") -> None:
         self._store = store
         self._under_way: asyncio.Task[None] | None = None
 
     async def passed(self) -> None:
-        """Return after a check has passed. Raises StoreDownError."""
+        """Wait until a check of the database has passed. Raises StoreDownError if it fails."""
         if self._under_way is None or self._under_way.done():
             self._under_way = asyncio.create_task(self._check())
         # If one client goes away, the others still wait for the check.

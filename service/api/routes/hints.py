@@ -1,4 +1,4 @@
-"""The routes of hints on demand, of the pictures of rules, and of other choices of frames."""
+"""The routes for hints on demand, pictures of DH rules, and other valid choices of frames."""
 
 from functools import partial
 from http import HTTPStatus
@@ -48,7 +48,7 @@ def routes(
     practice: PracticeGate,
     own: OwnVariants,
 ) -> APIRouter:
-    """Return the routes of hints; there are none if ``feedback`` allows no messages."""
+    """Return the routes for hints. They give no hints if ``feedback`` allows no messages."""
     router = APIRouter(prefix="/v1", tags=["grading"])
     pictures = MemoizedResults()
 

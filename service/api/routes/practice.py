@@ -32,7 +32,7 @@ _FAVOUR = Query(description="A situation that the robot should have.")
 
 
 def routes(catalogue: Catalogue) -> APIRouter:
-    """Return the route that deals robots of the catalogue."""
+    """Return the route that deals generated robots, which ``catalogue`` includes."""
     router = APIRouter(prefix="/v1/practice", tags=["exercises"])
 
     @router.get(
