@@ -44,7 +44,7 @@ class Asset:
 
 @dataclass(frozen=True, slots=True)
 class Assets:
-    """All files by their plain names."""
+    """All static files, by their plain names: the names without a hash."""
 
     by_plain_name: Mapping[str, Asset]
 
@@ -77,7 +77,8 @@ class Assets:
 def load_assets(folder: Path = FOLDER) -> Assets:
     """Return all files below a folder.
 
-    Raises LookupError if a file refers to a missing one, and ValueError if two have the same name.
+    Raises LookupError if a file refers to a missing file, or ValueError if two files have the same
+    name.
     """
     found = [file for file in folder.rglob("*") if file.suffix in _MEDIA_TYPES]
     files = {file.name: file for file in found}

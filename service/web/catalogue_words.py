@@ -39,7 +39,7 @@ def words_of(
 ) -> str:
     """Return all words of an exercise that a student may search for.
 
-    In another language than English, the words of the ``original`` exercise are among them.
+    If the language is not English, the words of the English ``original`` are included.
     """
     texts = [told(each, language.translation) for each in _texts(exercise)]
     if language.translation:

@@ -1,4 +1,4 @@
-"""The answer with a page in the language of its reader."""
+"""Return an HTML page as a response in the language of its reader."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -20,7 +20,7 @@ def page_answer(
     headers: Mapping[str, str] = PAGE_HEADERS,
     status: HTTPStatus = HTTPStatus.OK,
 ) -> HTMLResponse:
-    """Return the answer with a page in ``language_of(request)``; store a newly chosen language."""
+    """Return a page as a response in ``language_of(request)``; store a newly chosen language."""
     answer = HTMLResponse(content, status, headers=dict(headers))
     answer.headers["Content-Language"] = language_of(request).tag
     answer.headers["Vary"] = _VARY

@@ -73,7 +73,7 @@ def exercise_page(
     *,
     tutor: bool = False,
 ) -> bytes:
-    """Return the page of an exercise, with a link to the ``following`` one."""
+    """Return the page of an exercise, with a link to the ``following`` exercise."""
     return page(
         "web/templates/exercise.html",
         assets,
@@ -102,7 +102,7 @@ def play_page(assets: Assets, language: Language, *, tutor: bool = False) -> byt
 
 
 def practice_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page of generated robots; the element deals them."""
+    """Return the page of generated robots, which the embedded element requests one by one."""
     return page(
         "web/templates/practice.html",
         assets,
@@ -173,12 +173,12 @@ def page(
     is_framed: bool = False,
     **values: object,
 ) -> bytes:
-    """Return the page of a template that extends ``site.html``.
+    """Return the page made from a template that extends ``site.html``.
 
     ``root`` is the relative address of the catalogue. The menu has one more entry for a ``tutor``.
     With ``is_framed``, the page has no menu, because other pages do not open in a frame. A page
-    without a ``language`` is in English, and does not offer others. ``values`` are the variables of
-    the template.
+    without a ``language`` is in English, and offers no other language. ``values`` are the variables
+    of the template.
     """
     static = f"{root}static/"
     offers = language is not None and not is_framed and len(LANGUAGES) > 1
@@ -202,5 +202,5 @@ def page(
 
 
 def _markdown(text: str, exercise: Exercise) -> Markup:
-    """Return a text of the exercise's author as HTML."""
+    """Return a text that the exercise's author has written in Markdown as HTML."""
     return own_html(statement_html(text, exercise.symbols))

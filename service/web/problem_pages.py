@@ -30,9 +30,9 @@ _FOR_TUTORS: Final[Mapping[str, str]] = {
 
 
 def problem_page(assets: Assets) -> ProblemPage:
-    """Return the function that answers a request for a page with the page of a problem.
+    """Return a function that makes the response with a problem as a page.
 
-    It returns None if the request did not ask for a page.
+    The function returns None if the request did not ask for a page.
     """
 
     def made(request: Request, problem: ProblemError) -> Response | None:

@@ -64,7 +64,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
-        """Answer with the catalogue, or redirect to the exercise that the query names."""
+        """Return the catalogue, or redirect to the exercise that the query names."""
         if exercise is not None:
             known = exercise_or_404(practised, exercise)
             answer = RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
@@ -76,7 +76,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/exercises/{exercise_id}")
     async def exercise(request: Request, exercise_id: str) -> Response:
-        """Answer with the page of an exercise; statement and figure need no scripts."""
+        """Return the page of an exercise; statement and figure need no scripts."""
         found = exercise_or_404(practised, exercise_id)
         tutor = tutoring.access.shows_solutions(request)
         following = exercise_after(exercise_id, catalogue.values())
@@ -85,32 +85,32 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/play")
     async def play(request: Request) -> Response:
-        """Answer with the page of free play; its tables stay in the browser."""
+        """Return the page of free play; its tables stay in the browser."""
         tutor = tutoring.access.shows_solutions(request)
         shown = play_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)
 
     @router.get("/learn")
     async def learn(request: Request) -> Response:
-        """Answer with the learner's page, the same for all; the key in the link never gets here."""
+        """Return the page for all learners; browsers do not send the key in a personal link."""
         return page_answer(request, learner_page(assets, language_of(request)))
 
     @router.get("/docs")
     async def reference(request: Request) -> Response:
-        """Answer with the reference of the HTTP interface."""
+        """Return the reference of the HTTP interface."""
         tutor = tutoring.access.shows_solutions(request)
         shown = reference_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown, REFERENCE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
-        """Answer with the only module whose name never changes; it loads all others."""
+        """Return the only module whose name never changes; it loads all others."""
         content = assets.by_plain_name[_ENTRY].content.replace(b'"./', b'"./static/')
         return _file(assets.by_plain_name[_ENTRY], content, "no-cache")
 
     @router.get("/static/{name}")
     async def static(name: str) -> Response:
-        """Answer with a script, style or picture."""
+        """Return a script, style or picture."""
         if name not in files:
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
         return _file(files[name], files[name].content, _FOR_EVER)
@@ -123,14 +123,14 @@ def _practice_routes(assets: Assets, access: Access) -> APIRouter:
 
     @router.get("/practice")
     async def practice(request: Request) -> Response:
-        """Answer with the page of generated robots; the robot is in the fragment of the address."""
+        """Return the page of generated robots; the fragment of the address names the robot."""
         tutor = access.shows_solutions(request)
         shown = practice_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)
 
     @router.get("/learn-dh")
     async def learn_dh(request: Request) -> Response:
-        """Answer with the page "DH in ten minutes"; its progress stays in the browser."""
+        """Return the page "DH in ten minutes"; its progress stays in the browser."""
         tutor = access.shows_solutions(request)
         shown = ten_minutes_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)

@@ -1,4 +1,4 @@
-"""The dictionaries of the scripts: their sentences in each language but English."""
+"""The dictionaries with translations of the scripts' sentences, for each language but English."""
 
 import json
 import re
@@ -53,12 +53,12 @@ def dictionary(language: Language, sentences: ScriptSentences) -> str:
 
 
 def with_dictionaries(script: str, names: dict[str, str]) -> str:
-    """Return words.js with the addresses of the dictionaries, by the codes of their languages."""
+    """Return the script words.js with ``names`` inserted: each dictionary's address by language."""
     return script.replace(_PLACE, f"const FILES = {json.dumps(names)};")
 
 
 def _unquoted(text: str) -> str:
-    """Return the text of a string of JavaScript."""
+    """Return the text of a string literal in JavaScript."""
     if text[0] == "'":
         text = '"' + text[1:-1].replace("\\'", "'").replace('"', '\\"') + '"'
     return str(json.loads(text))

@@ -55,7 +55,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
 
     @router.get("/sign-in")
     async def ask(request: Request, following: str = HOME) -> Response:
-        """Answer with the form that asks for a key."""
+        """Return the form that asks for a key."""
         return form(request, own_path(following))
 
     @router.post("/sign-in")
@@ -89,19 +89,19 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
 
 
 def sign_in_address(path: str, query: str) -> str:
-    """Return the address, relative to the root, of the form that leads back to a tutor's page."""
+    """Return the address, relative to the root, of the sign-in form that leads back to a page."""
     wanted = f"{path}?{query}" if query else path
     return f"tutor/sign-in?following={quote(own_path(wanted), safe='')}"
 
 
 def own_path(path: str) -> str:
-    """Return the path if it leads to a tutor's page; otherwise that of the first tutor's page."""
+    """Return the path if it leads to a tutor's page, otherwise the path of tutors' home page."""
     is_ours = len(path) <= _LONGEST and _OURS.fullmatch(path) and ".." not in unquote(path)
     return path if is_ours else HOME
 
 
 async def _session(keys: Keys, key: str, until: datetime) -> str:
-    """Return a session of the holder of a key. Raises CredentialError, ProblemError."""
+    """Return a session token for a key's holder. Raises CredentialError, ProblemError."""
     if not key:
         raise CredentialError(say("Enter a key."))
     try:

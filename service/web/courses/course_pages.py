@@ -34,9 +34,9 @@ _GROUPS: Final = 10
 class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
-    ``handed_in`` has the number of learners with a readable attempt, by assignment; ``roster`` is
-    the context of the course if its platform gives a roster, otherwise None. ``reports`` are the
-    reports on handed-in files that did not reach the platform.
+    ``handed_in`` has the number of learners with a readable attempt for each assignment id.
+    ``roster`` is the row of the course's LTI context if the platform gives a roster, otherwise
+    None. ``reports`` are the reports on handed-in files that did not reach the platform.
     """
 
     course: Course
@@ -99,7 +99,7 @@ def assignment_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return the page of an assignment: its fields, extensions, missing learners and points."""
+    """Return the page of an assignment: its fields, extensions, missing hand-ins and points."""
     names = told_apart(state.learners)
     place_of = {learner: i for i, learner in enumerate(names)}
     given = sorted(chosen.extensions, key=lambda it: place_of.get(it.learner, len(names)))
@@ -184,7 +184,7 @@ def distribution(book: Gradebook) -> list[PointsGroup]:
 
 
 def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
-    """Return each exercise with its points, the number of its learners, and their mean points."""
+    """Return each exercise's id and points, how many learners have points, and their mean."""
     found = []
     for i, column in enumerate(book.columns):
         earned = [row.points[i] for row in book.rows if row.points[i] is not None]

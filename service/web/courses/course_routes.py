@@ -51,7 +51,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("")
     async def courses(request: Request) -> Response:
-        """Answer with the list of courses; a tutor of one course sees this one."""
+        """Return the page with all courses; a tutor of one course sees only this course."""
         from service.courses import roll
 
         only = access.caller(request).course
@@ -61,7 +61,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/{course_id}")
     async def course(request: Request, course_id: CourseId) -> Response:
-        """Answer with the page of a course."""
+        """Return the page of a course."""
         language = language_of(request)
         state = await read(store, lambda it: _state(it, course_id, language))
         drawn = course_page(
@@ -79,7 +79,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     async def assignment(
         request: Request, course_id: CourseId, assignment_id: AssignmentId
     ) -> Response:
-        """Answer with the page of an assignment."""
+        """Return the page of an assignment."""
         from service.courses.assignments import assignment_of
         from service.courses.results.gradebook import gradebook, missing
         from service.lti.scores.overview import scores_of
@@ -106,13 +106,13 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
 
 def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the routes of the gradebook, of one learner, and of the links."""
+    """Return the routes of the gradebook's page, a learner's page, and the personal links."""
     router = APIRouter(prefix="/tutor/courses")
     access, store = tutoring.access, tutoring.store
 
     @router.get("/{course_id}/gradebook")
     async def book(request: Request, course_id: CourseId) -> Response:
-        """Answer with the page of the gradebook."""
+        """Return the page of the gradebook."""
         from service.courses import roll
 
         found = await read(store, lambda it: roll.course(it, course_id))
@@ -122,7 +122,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     async def learner(
         request: Request, course_id: CourseId, learner: Annotated[Learner, Query()]
     ) -> Response:
-        """Answer with the page of a learner. An id may have a slash: it is not in the path."""
+        """Return the page of a learner. The id is in the query, because it may have a slash."""
         from service.courses.dealing import learner_variants
         from service.courses.learner_view import own_view
         from service.lti.handed_files.overview import missing_reports
@@ -148,7 +148,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
 
     @router.post("/{course_id}/links.csv")
     async def links(request: Request, course_id: CourseId) -> Response:
-        """Answer with the personal links of all learners, or a new one of one learner, as CSV."""
+        """Return as CSV the personal links of all learners, or a new link for one learner."""
         from service.courses.links import issue_links, written_links
 
         fields = parse_qs((await request.body()).decode(errors="replace"))

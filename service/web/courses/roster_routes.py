@@ -27,7 +27,7 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
 
     @router.post("/{course_id}/roster")
     async def roster(request: Request, course_id: CourseId) -> Response:
-        """Read the roster; answer with the page that says what has changed."""
+        """Read the roster; return the page that says what has changed."""
         from service.courses import roll
         from service.lti.roster.enrolment import (
             RosterError,

@@ -1,4 +1,4 @@
-"""Where a launch ends: the page of a learner, of a tutor, or of a visitor."""
+"""Record a launch, and make the page that it opens: for a learner, a tutor, or a visitor."""
 
 from datetime import UTC, datetime, timedelta
 from typing import Final
@@ -32,7 +32,7 @@ TOKEN_LIFETIME: Final = timedelta(hours=12)
 
 
 class Landings:
-    """Makes the pages that launches open, in the transaction that uses up the login."""
+    """Records launches, each in the transaction that uses up its login, and makes their pages."""
 
     def __init__(
         self,

@@ -28,8 +28,8 @@ def frame_headers(
 
     ``language`` is the language of the page. Forms of the page may be sent only to ``targets``, or
     only to us if there are no ``targets``. The platform's window must stay the opener of the page,
-    because that window may have the platform's storage. ``style`` is the hash of the page's only
-    style, if the page needs no other file.
+    because that window may have the platform's storage. ``style`` is the hash of a style
+    sheet inside the page; then the page may use no other style.
     """
     ancestors = " ".join(dict.fromkeys(["'self'", *origins]))
     more = {"form_action": " ".join(dict.fromkeys(targets))} if targets else {}
@@ -53,7 +53,7 @@ class Choice:
 
 
 def login_page(login: "NewLogin", name: str, assets: Assets, language: Language) -> bytes:
-    """Return the page that puts the secret of the browser into the platform's storage."""
+    """Return the page that stores the login's secret for this browser in the platform's storage."""
     return lti_page(
         "login.html",
         assets,
@@ -76,10 +76,10 @@ def binding_page(
     token: str = "",
     storage: tuple[str, str, str] | None = None,
 ) -> bytes:
-    """Return the page for a browser without the cookie of the login.
+    """Return the page for a browser that has not sent the cookie of the login.
 
     ``storage`` has the frame and the origin of the platform's storage, and the name of the stored
-    value. Without ``storage``, the page only has a button that opens the address ``window`` in a
+    secret. Without ``storage``, the page only has a button that opens the address ``window`` in a
     window of its own.
     """
     frame, origin, name = storage or ("", "", "")
@@ -154,9 +154,9 @@ def tutor_page(
     *,
     is_review: bool = False,
 ) -> bytes:
-    """Return the page of a tutor: the assignment of the link, and the way to the course.
+    """Return a tutor's page with the resource link's assignment and a form that opens the course.
 
-    With ``is_review``, the way leads to the attempts of one learner.
+    With ``is_review``, the form opens the attempts of one learner.
     """
     assert landing.assignment is not None
     return lti_page(
@@ -199,7 +199,7 @@ def choosing_page(
 def found(
     catalogue: Catalogue, language: Language, search: str, chosen: Mapping[str, str]
 ) -> Sequence[tuple[Exercise, str]]:
-    """Return the chosen exercises, then those with all words of a search, all with their points."""
+    """Return pairs of exercise and points: first the chosen exercises, then those found."""
     words = search.lower().split()
 
     def has_words(each: Exercise) -> bool:
@@ -215,7 +215,7 @@ def found(
 
 
 def _place(course: str, assignment: CourseAssignment) -> str:
-    """Return the fragment of the only exercise of an assignment, or "" for the list of all."""
+    """Return the URL fragment of an assignment's only exercise, or "" if it has several."""
     if len(assignment.exercises) != 1:
         return ""
     return f"#/{course}/{assignment.id}/{assignment.exercises[0].exercise}"
@@ -228,7 +228,7 @@ def lti_page(
     more_styles: Iterable[str] = (),
     **values: Any,
 ) -> bytes:
-    """Return the page of a template of this folder."""
+    """Return the page made from a template in this folder."""
     shown = {"is_framed": True, **values}
     styles = ["tutor.css", "records.css", *more_styles]
     path = f"{_FOLDER}/{template}"

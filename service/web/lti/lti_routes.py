@@ -1,6 +1,6 @@
 """The routes of LTI: login, launch, our public keys, and the forms of a tutor's first page.
 
-They are there only if the service has a database and a secret.
+The service has these routes only if it has a database and a secret.
 """
 
 import logging
@@ -89,14 +89,14 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
 
     @router.post(_LOGIN)
     async def login_by_post(request: Request) -> Response:
-        """Begin a login whose fields are those of a form."""
+        """Begin a login with the fields of a form."""
         fields = await form_fields(request, _MOST_FIELDS)
         language = language_of(request)
         return await launching.answered(lambda: login(fields, language), language)
 
     @router.post(_LAUNCH)
     async def launch(request: Request) -> Response:
-        """Take the message of the platform, and answer with the page that it opens."""
+        """Check the message of the platform, and return the page that the message opens."""
         fields = await form_fields(request, _MOST_FIELDS)
 
         async def launched() -> Response:
@@ -115,7 +115,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
 
     @router.get("/jwks.json")
     async def own_keys() -> Response:
-        """Answer with our public keys."""
+        """Return our public keys."""
         from service.lti.own_keys import published_keys
 
         found = await read(tutoring.store, published_keys)
@@ -139,7 +139,7 @@ class _Launching:
         self._platform_keys = platform_keys
 
     async def begin(self, given: Mapping[str, str]) -> "NewLogin":
-        """Note a login. Raises LtiError."""
+        """Store a new login and return it. Raises LtiError."""
         from service.lti.logins import begin_login, login_fields
         from service.lti.registrations import find_registration
 
@@ -151,7 +151,7 @@ class _Launching:
         return await write(self._store, lambda it: begin_login(it, known, fields, now))
 
     async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
-        """Return the login that a message answers, and its registration. Raises LtiError."""
+        """Return the login to which a message belongs, and its registration. Raises LtiError."""
         from service.lti.logins import login_of
         from service.lti.problems import LtiError
         from service.lti.registrations import RegistrationError, registration
@@ -167,7 +167,7 @@ class _Launching:
         return known, begun
 
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
-        """Return the message in a token. Raises LtiError and notes it in the registration."""
+        """Return the message in a token. Raises LtiError, and stores the refusal's name."""
         from service.lti.messages import key_id_of, message_in
         from service.lti.problems import LtiError
         from service.lti.registrations import note_refusal
@@ -184,7 +184,7 @@ class _Launching:
     def ask_to_bind(
         self, request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
     ) -> Response:
-        """Answer a browser without the cookie of the login with ``binding_page``.
+        """Return ``binding_page`` for a browser that has not sent the cookie of the login.
 
         Raises LtiError if the page already has its own window and the platform offers no storage.
         """
@@ -212,7 +212,7 @@ class _Launching:
     async def answered(
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
-        """Return the answer of ``work``, or a page with the reason of its LtiError."""
+        """Return the response from ``work``, or a page that explains its LtiError."""
         from service.lti.problems import LtiError
 
         try:
@@ -221,7 +221,7 @@ class _Launching:
             return await self._refused(error, language)
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
-        """Answer with a page for the student; the page and the log line have the same reference."""
+        """Return an error page for the student, with the same reference number as the log line."""
         from service.lti.registrations import all_registrations
 
         context = current_request()
@@ -237,11 +237,11 @@ class _Launching:
 def is_bound(
     request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
 ) -> bool:
-    """True if the browser has begun the login, False if it has not sent its secret yet.
+    """True if this browser has begun the login, False if the browser has not sent its secret yet.
 
     The browser sends its secret in a cookie, or in a form with the value from the platform's
-    storage. The form is accepted only from our own page: anybody may begin a login, and post its
-    message elsewhere. Raises LtiError.
+    storage. The form is accepted only from our own page, because an attacker could begin a login
+    and let another browser post the form. Raises LtiError.
     """
     from service.lti.problems import LtiError
 

@@ -37,7 +37,7 @@ _RegistrationId = Annotated[CourseName, Path(description="The id of a registrati
 
 
 class _Shown(NamedTuple):
-    """A registration on the page."""
+    """A registration as the page shows it."""
 
     registration: Registration
     deployments: list[str]
@@ -46,7 +46,7 @@ class _Shown(NamedTuple):
 
 
 def platform_routes(landings: Landings) -> APIRouter:
-    """Return the routes of the page."""
+    """Return the routes of the page with the registered platforms."""
     router = APIRouter(prefix="/tutor/platforms")
 
     async def answer(
@@ -72,12 +72,12 @@ def platform_routes(landings: Landings) -> APIRouter:
 
     @router.get("")
     async def platforms(request: Request) -> Response:
-        """Answer with the registrations and our keys."""
+        """Return the page with the registrations and our keys."""
         return await answer(request)
 
     @router.post("/{registration_id}/check")
     async def check(request: Request, registration_id: _RegistrationId) -> Response:
-        """Test a registration; answer with the page and what the test has found."""
+        """Test a registration; return the page with the results of the test."""
         secret, now = landings.secret, datetime.now(UTC)
 
         def known(connection: "Connection") -> tuple[Registration, SigningKey]:

@@ -27,8 +27,8 @@ def attempts_page(
 ) -> bytes:
     """Return the page with the list of attempts, its filters, the export, and the deletion.
 
-    Without ``of_all``, the list always shows one exercise; without ``forgets``, there is no
-    deletion, because it concerns all exercises and courses.
+    Without ``of_all``, the list always shows one exercise. Without ``forgets``, the page has no
+    deletion, because deletion concerns all exercises and courses.
     """
     all_of_them = [("", say("All exercises"))] if of_all else []
     titles = ((each.id, in_language(each, language).title) for each in catalogue.values())
@@ -53,7 +53,7 @@ def attempt_page(attempt_id: str, assets: Assets, language: Language) -> bytes:
 def statistics_page(
     exercise: Exercise, assets: Assets, language: Language, place: CoursePlace
 ) -> bytes:
-    """Return the page of an exercise with the statistics of its attempts, export, and regrade."""
+    """Return an exercise's page with statistics, the export of attempts, and the regrade."""
     return _page(
         "statistics",
         assets,

@@ -36,7 +36,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
-        """Answer with the list of attempts. A restricted key sees one exercise at a time."""
+        """Return the page of attempts. For a restricted key, it lists one exercise at a time."""
         caller = access.caller(request)
         require_reach(caller, exercise or None)
         shown = reachable_exercises(catalogue, caller)
@@ -52,12 +52,12 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts/{attempt_id}")
     async def attempt(request: Request, attempt_id: str) -> Response:
-        """Answer with the page of an attempt."""
+        """Return the page of an attempt."""
         return answer(request, attempt_page(attempt_id, assets, language_of(request)), "../../")
 
     @router.get("/statistics/{exercise_id}")
     async def statistics(request: Request, exercise_id: str) -> Response:
-        """Answer with the page of an exercise's statistics and regrade."""
+        """Return the page with an exercise's statistics and regrade."""
         exercise = exercise_or_404(catalogue, exercise_id)
         drawn = statistics_page(exercise, assets, language_of(request), _place(request))
         return answer(request, drawn, "../../")

@@ -1,6 +1,6 @@
 """`python -m service.web.tutor.check_process`: check exercise files for the service.
 
-The service starts this process. It ends with the service, or after some idle minutes.
+The service starts this process. The process ends with the service, or after some idle minutes.
 """
 
 import os
@@ -19,7 +19,7 @@ _NICE = 5
 
 
 def main() -> None:
-    """Answer each request with its findings, or with an empty message if the checks crash."""
+    """Reply to each request with the findings, or with an empty message if the checks crash."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # Text that is printed by mistake must not get into the answers.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())

@@ -36,8 +36,8 @@ class Checking:
     def checked(self, body: CheckRequest, language: Language = ENGLISH) -> bytes:
         """Return the findings on a text as JSON, in a language.
 
-        Only one thread may call it at a time. Raises ProblemError if the checks take too long, or
-        if the service ends.
+        Only one thread may call this method at a time. Raises ProblemError if the checks take too
+        long, or if the service ends.
         """
         if self._process is None or self._process.poll() is not None:
             self._start()
@@ -80,7 +80,7 @@ class Checking:
         weakref.finalize(self, _end, self._process)
 
     def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
-        """Return the answer of the process, empty if it failed. Raises OSError, _TooLongError."""
+        """Return the process's reply, empty if the checks failed. Raises OSError, _TooLongError."""
         # The service may have ended just before this process was started.
         if self._closed:
             raise ConnectionResetError

@@ -1,4 +1,4 @@
-"""The report on a class from uploaded files, as ``dh-grader grade`` makes it."""
+"""Grade uploaded files of a class, and make the same reports as ``dh-grader grade``."""
 
 import io
 import tempfile
@@ -49,7 +49,7 @@ class UploadedFile(BaseModel):
 
     @property
     def content(self) -> bytes:
-        """Return the bytes; for a file that is too large, zeros that exceed the limit."""
+        """Return the file's bytes; if the file is too large, zeros that exceed the limit."""
         if self.text is not None:
             return self.text.encode(errors="replace")
         return b"\0" * (MAX_BODY_SIZE + 1) if self.base64 is None else self.base64
@@ -66,7 +66,7 @@ class ClassUpload(BaseModel):
 
 
 def unpacked(body: bytes) -> ClassUpload:
-    """Return the upload in a body: JSON packed by gzip. Raises ProblemError."""
+    """Return the upload in a request body: JSON compressed by gzip. Raises ProblemError."""
     unpacker = zlib.decompressobj(16 + zlib.MAX_WBITS)
     try:
         content = unpacker.decompress(body, MAX_UPLOAD)
@@ -92,7 +92,7 @@ def unpacked(body: bytes) -> ClassUpload:
 
 
 def _marks(content: bytes) -> int:
-    """Return the number of characters of JSON outside texts, including the quotation marks."""
+    """Return the number of characters outside JSON strings, plus the number of quotation marks."""
     content = content.replace(rb"\\", b"").replace(rb"\"", b"")
     quotes = content.count(b'"')
     # With too many quotation marks, do not build the list of pieces between them.
@@ -102,9 +102,8 @@ def _marks(content: bytes) -> int:
 def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language = ENGLISH) -> bytes:
     """Grade a class, and return the folder of its reports and the gradebook as a ZIP archive.
 
-    Raises ProblemError.
-    The files are in a temporary folder while they are graded, so that they are found and read as on
-    the command line.
+    While the files are graded, they are in a temporary folder, so that they are found and read as
+    on the command line. Raises ProblemError.
     """
     exercise = require_exercise(catalogue, upload.exercise)
     try:

@@ -25,12 +25,12 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.get("/class")
     async def class_form(request: Request) -> Response:
-        """Answer with the form to choose the files of a class."""
+        """Return the form to choose the files of a class."""
         return page_answer(request, class_page(catalogue, assets, language_of(request)), _HEADERS)
 
     @router.get("/class/report")
     async def class_frame() -> Response:
-        """Answer with the empty frame for the reports; its policy allows their styles."""
+        """Return the empty page for the frame of the reports; its policy allows their styles."""
         from service.formats.class_page.index import STYLE as INDEX_STYLE
         from service.formats.documents.html import STYLE as REPORT_STYLE
 
@@ -44,7 +44,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.post("/class")
     async def report(request: Request) -> Response:
-        """Grade a class, and answer with its folder as a ZIP archive. Nothing is stored."""
+        """Grade a class, and return the reports as a ZIP archive. Nothing is stored."""
         packed = await request.body()
         language = language_of(request)
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue, language))

@@ -31,7 +31,7 @@ _NEW: Final = "my-exercise"
 
 
 class DraftRequest(CheckRequest):
-    """The text to preview; ``draft`` is the id of the text that it replaces."""
+    """The text to preview; ``draft`` is the id of the draft that the text replaces."""
 
     draft: Annotated[str, Field(max_length=64)] = ""
 
@@ -49,7 +49,7 @@ def editor_routes(
 
     @router.get("/editor")
     async def editor(request: Request, exercise: str | None = None) -> Response:
-        """Answer with the editor of an exercise's file, or of a new file."""
+        """Return the editor of an exercise's file, or of a new file."""
         # Imported here, because it loads an algebra system.
         from service.authoring import template
 
@@ -72,7 +72,7 @@ def editor_routes(
 
     @router.post("/check")
     async def check(request: Request) -> Response:
-        """Answer with the findings on a text, which is not stored."""
+        """Return the findings on a text, which is not stored."""
         body = await read_body(CheckRequest, request)
         language = language_of(request)
         content = await work.do(partial(checking.checked, body, language))
@@ -80,7 +80,7 @@ def editor_routes(
 
     @router.post("/import")
     async def import_robot(request: Request) -> Response:
-        """Answer with the text of an exercise about a robot, which is not stored."""
+        """Return the text of an exercise file for a robot; the text is not stored."""
         body = await read_body(ImportRequest, request)
         language = language_of(request)
         content = await work.do(partial(imported, body, language))
@@ -88,7 +88,7 @@ def editor_routes(
 
     @router.post("/drafts")
     async def draft(request: Request) -> Response:
-        """Keep the text for the preview, and answer with the id under which it is shown."""
+        """Store the text as a draft for the preview, and return the draft's id."""
         body = await read_body(DraftRequest, request)
         draft_id = await work.do(partial(_put, drafts, body))
         return JSONResponse({"draft": draft_id}, headers=NO_STORE)
@@ -109,7 +109,7 @@ def editor_routes(
 
 
 def _put(drafts: Drafts, body: DraftRequest) -> str:
-    """Return the id of the draft. Raises ProblemError if the text cannot be used."""
+    """Store a draft and return its id. Raises ProblemError if the text cannot be used."""
     try:
         exercise_of(body.id, body.text)
         return drafts.put(body.text, body.draft)

@@ -105,7 +105,7 @@ def check(exercise_id: str, text: str, language: Language = ENGLISH) -> CheckAns
 
 
 def exercise_of(exercise_id: str, text: str) -> Exercise:
-    """Return the exercise of a file with this name and text. Raises CatalogueError."""
+    """Return the exercise that a file with this id and text defines. Raises CatalogueError."""
     file = Path(f"{exercise_id}.toml")
     if not is_exercise_id(exercise_id):
         raise CatalogueError(

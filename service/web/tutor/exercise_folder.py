@@ -31,14 +31,14 @@ _LONGEST_START: Final = 50
 
 
 class SaveRequest(CheckRequest):
-    """The text to save; ``before`` is the mark of the file that it replaces."""
+    """The text to save; ``before`` is the hash of the file that the text replaces, or ""."""
 
     before: Annotated[str, Field(max_length=64)] = ""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenedFile:
-    """The text of a file, and its mark: a hash, or "" if the editor's folder lacks the file."""
+    """The text of a file; ``mark`` is its hash, or "" if the file is not in the editor's folder."""
 
     text: str
     mark: str
@@ -70,22 +70,22 @@ class ExerciseFolder:
         return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
 
     def free_id(self, exercise_id: str) -> str:
-        """Return an id for a copy of an exercise, which no other file has."""
+        """Return an id for a copy of an exercise; no other file has this id."""
         copies = (f"{exercise_id[:_LONGEST_START]}-copy{i}" for i in chain([""], count(2)))
         taken = self._files()
         return next(each for each in copies if each not in taken and self._own(each) is None)
 
     def _files(self) -> dict[str, Path]:
-        """Return the files in the folders of the catalogue by id."""
+        """Return the files in the catalogue's folders, by exercise id."""
         try:
             return {file.stem: file for file in exercise_files(*self._folders)}
         except CatalogueError:
             return {}
 
     def save(self, body: SaveRequest) -> str:
-        """Save the file and return its mark. Raises ProblemError if that is not possible.
+        """Save a file and return the hash of its content. Raises ProblemError if saving fails.
 
-        The file has the old content or the new one, never half of it.
+        At any time, the file has either the whole old content or the whole new content.
         """
         if self._written is None:
             raise _refused(say("This service cannot save files: DH_GRADER_EDITOR_DIR is not set."))

@@ -47,7 +47,7 @@ def tutor_page(
 def solution_page(
     exercise: Exercise, assets: Assets, language: Language, *, of_all: bool = True
 ) -> bytes:
-    """Return the page with the right answer to each part, and the steps of the solution.
+    """Return the page with the correct answer to each part, and the steps of the solution.
 
     Without ``of_all``, it has no link to the editor.
     """
@@ -75,7 +75,7 @@ def solution_page(
 def misconceptions_page(
     exercise: Exercise, catalogue: Catalogue, assets: Assets, language: Language
 ) -> bytes:
-    """Return the page of the mistakes that the grader can name, each with its sentences."""
+    """Return the page that lists the mistakes that the grader can name, and their messages."""
     # Imported here, because it loads an algebra system.
     from service.authoring.misconceptions import misconceptions_of
 
@@ -116,7 +116,7 @@ def editor_page(
 
 
 def class_page(catalogue: Catalogue, assets: Assets, language: Language) -> bytes:
-    """Return the page with the form to choose exercise and files, and the frame of the report."""
+    """Return the page with the form to choose an exercise and files, and a frame for reports."""
     exercises = [in_language(each, language) for each in catalogue.values()]
     return _page("class", assets, "../", "class.js", language=language, exercises=exercises)
 
@@ -134,14 +134,14 @@ def _page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) ->
 
 
 def _table_of(latex: str) -> tuple[list[str], list[tuple[str, list[str]]]]:
-    """Return the names of the columns, and each row as its label and its cells, in LaTeX."""
+    """Return a LaTeX table's column names, and its rows as pairs of a label and the cells."""
     lines = [line.removesuffix(r" \\") for line in latex.split("\n") if line.endswith(r" \\")]
     names, *rows = ([cell.strip("$") for cell in line.split(" & ")] for line in lines)
     return names, [(label, cells) for label, *cells in rows]
 
 
 def _spoken(latex: str) -> str:
-    """Return a name in LaTeX as words."""
+    """Return a name in LaTeX as plain words, to be read aloud."""
     return latex.translate(str.maketrans("_", " ", "\\{}"))
 
 

@@ -40,7 +40,7 @@ class Tutoring:
 
     ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
     in ``editor_dir``. ``records`` is true if the service records attempts, in ``store``.
-    ``checking`` checks the text in the editor, and ``drafts`` has the exercises in its preview.
+    ``checking`` checks the text in the editor. ``drafts`` has the exercises in the preview.
     ``feedback`` is the highest feedback level for students.
     """
 
@@ -71,7 +71,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """Answer with the page for tutors; a restricted key sees only its exercises."""
+        """Return the home page for tutors. For a restricted key, it lists only its exercises."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(
@@ -94,7 +94,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
-        """Answer with the model solution of an exercise."""
+        """Return the page with an exercise's model solution."""
         exercise = exercise_or_404(catalogue, exercise_id)
         of_all = access.caller(request).reaches_all
         language = language_of(request)
@@ -106,7 +106,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/misconceptions/{exercise_id}")
     async def misconceptions(request: Request, exercise_id: str) -> Response:
-        """Answer with the mistakes that the grader can name in an exercise."""
+        """Return the page with the mistakes that the grader can name in an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
         language = language_of(request)
         key = (exercise.id, exercise.version, exercise.title, language.code)
@@ -117,7 +117,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:
-        """Answer with a drawing of the robot with the frames of the reference table."""
+        """Return a drawing of the robot and of the frames of its reference table."""
         exercise = exercise_or_404(catalogue, exercise_id)
         if not isinstance(exercise.reference, Robot):
             raise ProblemError(HTTPStatus.NOT_FOUND, say("The exercise has no frames to draw."))

@@ -1,4 +1,4 @@
-"""The links that a tutor makes for the platform: the offer, the tutor's choice, and its links."""
+"""Deep linking: what a tutor can choose, what the tutor has chosen, and the links made from it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +30,10 @@ class NotYetError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The assignments that a course has already, and the time zone of its dates."""
+    """What a tutor can choose: the assignments that the course has already, if it exists.
+
+    ``zone`` is the time zone of the dates that the tutor enters.
+    """
 
     ticket: LinkingTicket
     registration: Registration
@@ -61,7 +64,7 @@ class Picked:
 
 
 def offer_of(connection: Connection, ticket: LinkingTicket, known: Registration) -> Offer:
-    """Return what can be chosen for a message of deep linking."""
+    """Return what the tutor can choose for the ticket of a deep linking message."""
     if not ticket.course:
         return Offer(ticket, known, zone_named(known.zone))
     try:

@@ -1,4 +1,4 @@
-"""The pages of deep linking: the picker, and the form that sends the answer to the platform."""
+"""The pages of deep linking: the picker, and the form that sends the links to the platform."""
 
 from service.api.http.lookup import Catalogue
 from service.translations import Language
@@ -34,6 +34,6 @@ def picker_page(
 
 
 def return_page(address: str, response: str, assets: Assets, language: Language) -> bytes:
-    """Return the page that posts the signed answer to the platform."""
+    """Return the page that posts the signed ``response`` to the platform."""
     values = {"address": address, "response": response}
     return lti_page("return.html", assets, ["send_form.js"], language=language, **values)

@@ -1,4 +1,4 @@
-"""The route for notices of platforms. They are signed, and need neither a login nor a browser."""
+"""The route to which platforms send signed notices, without a login and without a browser."""
 
 import logging
 from collections.abc import Mapping
@@ -41,13 +41,13 @@ class Notices(BaseModel):
 
 
 def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> APIRouter:
-    """Return the route."""
+    """Return the route that accepts notices."""
     router = APIRouter(prefix="/lti")
 
     async def accept(token: str, refusals: dict[str, str]) -> None:
         """Queue the files of a notice. Raises LtiError.
 
-        If the notice names a registered platform, ``refusals`` gets the name of the error.
+        If the notice names a registered platform, the error's name is added to ``refusals``.
         """
         key_id, now = key_id_of(token), datetime.now(UTC)
         parties = parties_of(token)
@@ -63,7 +63,7 @@ def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> AP
 
     @router.post("/notices")
     async def notices(request: Request) -> Response:
-        """Take notices of a platform; one that is refused does not keep out the others."""
+        """Accept notices of a platform. If one notice is refused, the others are still accepted."""
         body = await read_body(Notices, request)
         refused: list[dict[str, str]] = []
         refusals: dict[str, str] = {}

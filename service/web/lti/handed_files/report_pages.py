@@ -32,7 +32,7 @@ from service.web.lti.lti_pages import lti_page
 
 
 class ReportPages:
-    """Makes the pages of messages about handed-in files."""
+    """Makes the pages that platforms open for handed-in files: a report, or the settings."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class ReportPages:
         self._catalogue, self._feedback, self._platform = catalogue, feedback, platform
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
-        """Return the page with the report, or the page about the settings. Raises LtiError."""
+        """Return the page that the message opens: a report, or the settings. Raises LtiError."""
         now = datetime.now(UTC)
 
         def found(connection: Connection) -> HandedFiles | None:
@@ -99,7 +99,7 @@ class ReportPages:
 
 
 def _id_in(claims: Mapping[str, Any], name: str) -> str:
-    """Return the id in a claim. Raises LtiError."""
+    """Return the id in the LTI claim ``name``. Raises LtiError."""
     claim = claims.get(f"{LTI}{name}")
     found = claim.get("id") if isinstance(claim, dict) else None
     if not isinstance(found, str) or not 0 < len(found) <= 255:

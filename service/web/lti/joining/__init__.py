@@ -1,1 +1,1 @@
-"""The pages on which the admin of a platform registers it by invitation."""
+"""The pages on which a platform's admin registers the platform by invitation."""

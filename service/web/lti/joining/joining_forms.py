@@ -47,7 +47,7 @@ def joining_forms(landings: Landings) -> APIRouter:
 
     @router.get("/register")
     async def ask(request: Request) -> Response:
-        """Answer with the page that asks the admin of a platform to go on; nothing is fetched."""
+        """Return the page that asks the platform's admin to continue; nothing is fetched yet."""
         fields = {name: request.query_params.get(name, "") for name in _FIELDS}
         now = datetime.now(UTC)
         try:
@@ -64,7 +64,7 @@ def joining_forms(landings: Landings) -> APIRouter:
 
     @router.post("/register")
     async def register(request: Request) -> Response:
-        """Register the platform, and answer with the page that says how it went."""
+        """Register the platform, and return the page that says whether this has worked."""
         given = await form_fields(request)
         fields = {name: given.get(name, "") for name in _FIELDS}
         if not is_same_origin(request):

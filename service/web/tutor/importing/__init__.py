@@ -1,1 +1,1 @@
-"""Imports of robots in the editor."""
+"""Import robots into the exercise editor."""

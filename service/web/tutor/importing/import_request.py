@@ -1,4 +1,4 @@
-"""A URDF file or a pasted DH table -> the text of an exercise file, for the editor."""
+"""Make the text of an exercise file from a URDF file or a pasted DH table, for the editor."""
 
 from dataclasses import replace
 from http import HTTPStatus
@@ -39,7 +39,7 @@ class ImportRequest(BaseModel):
 
 
 def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
-    """Return the exercise of a robot as JSON. Raises ProblemError with the reason of a refusal."""
+    """Return an exercise for a robot as JSON. Raises ProblemError if the robot is refused."""
     if not is_exercise_id(body.id):
         raise _refused(say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE))
     options = ImportOptions(
