@@ -1,4 +1,8 @@
-"""The self-test of a registration: can its keys be read, do the clocks agree, did it launch."""
+"""The self-test of a registration.
+
+The self-test says whether the platform's keys can be read, whether the clocks agree, whether the
+platform gives an access token, and when the platform last launched.
+"""
 
 import json
 from collections.abc import Iterator
@@ -30,7 +34,7 @@ class CheckLine(NamedTuple):
 
 
 def check_registration(registration: Registration, key: SigningKey) -> Iterator[CheckLine]:
-    """Yield the lines of the self-test. It asks the platform for its keys, and for a token."""
+    """Yield the lines of the self-test, which asks the platform for keys and an access token."""
     until = monotonic() + TIMEOUT
     try:
         with answer(registration.jwks_url, local=registration.is_development) as response:
@@ -58,7 +62,7 @@ def check_registration(registration: Registration, key: SigningKey) -> Iterator[
 
 
 def last_refusal(registration: Registration) -> str:
-    """Return when and why a launch was refused last, or ""."""
+    """Return when and why a launch was last refused, or "" if none was refused."""
     if registration.refused_at is None:
         return ""
     moment = f"{registration.refused_at:%Y-%m-%d %H:%M} UTC"

@@ -1,4 +1,4 @@
-"""Fetch JSON from a platform with care: the address comes from outside.
+"""Fetch JSON from a platform with care, because the address comes from outside.
 
 The limits: only HTTPS, only public addresses, no redirect to another host, at most 64 KiB, at most
 five seconds. The name of the host is resolved once: the connection goes to the checked address.
@@ -32,11 +32,11 @@ _TRANSLATED: Final = tuple(map(IPv6Network, ("64:ff9b::/96", "2002::/16", "2001:
 
 
 class FetchError(Exception):
-    """An address was not fetched. The message says why, without the content of the answer."""
+    """A URL was not fetched. The message says why, without the content of the response."""
 
 
 class TooLargeError(FetchError):
-    """The answer is larger than allowed."""
+    """The response is larger than allowed."""
 
 
 def fetch_json(url: str, *, local: bool = False) -> Any:
@@ -65,7 +65,7 @@ def fetch_json(url: str, *, local: bool = False) -> Any:
 def answer(
     url: str, method: str = "GET", *, local: bool = False, **more: Any
 ) -> Iterator[httpx.Response]:
-    """Send a request, and yield the answer. Read its body with ``content``.
+    """Send a request, and yield the response. Read the response's body with ``content``.
 
     ``more`` are further arguments of ``httpx.Client.stream``. Raises FetchError.
     """
@@ -94,7 +94,7 @@ def answer(
 
 
 def content(response: httpx.Response, until: float, largest: int = LARGEST) -> bytes:
-    """Return the content of an answer, read before the moment ``until``. Raises FetchError."""
+    """Return the body of a response, read before the time ``until``. Raises FetchError."""
     if response.headers.get("content-encoding", "identity") != "identity":
         raise FetchError(say("the answer is compressed"))
     found = bytearray()
@@ -109,7 +109,7 @@ def content(response: httpx.Response, until: float, largest: int = LARGEST) -> b
 
 @cache
 def _tls() -> ssl.SSLContext:
-    """Return the settings of TLS. Making them takes longer than a request."""
+    """Return the TLS settings. They are memoized: making them takes longer than a request."""
     return httpx.create_ssl_context(trust_env=False)
 
 
@@ -129,7 +129,7 @@ def _address(host: str, *, local: bool) -> IPv4Address | IPv6Address:
 
 
 def is_public(address: IPv4Address | IPv6Address) -> bool:
-    """True if an address is one of the public internet."""
+    """True if an address belongs to the public internet."""
     if isinstance(address, IPv6Address):
         if address.ipv4_mapped is not None:
             return is_public(address.ipv4_mapped)

@@ -45,10 +45,10 @@ DATES: Final = ("opens", "due")
 
 @dataclass(frozen=True, slots=True)
 class Landing:
-    """Where a launch leads to.
+    """The course and the assignment that a launch opens.
 
-    ``context`` and ``link`` are numbers of rows, or 0 if the launch records nothing. ``assignment``
-    is None as long as no exercises are chosen for the link.
+    ``context`` and ``link`` are row numbers, or 0 if the launch records nothing. ``assignment`` is
+    None as long as no exercises are chosen for the resource link.
     """
 
     role: LtiRole
@@ -69,9 +69,9 @@ def enter(
     catalogue: Mapping[str, Exercise],
     now: datetime,
 ) -> Landing:
-    """Record a launch and return where it leads to. Raises LtiError.
+    """Record a launch and return what it opens. Raises LtiError.
 
-    Previews and guests see what exists already, and record nothing.
+    For previews and guests nothing is recorded; they see only what exists already.
     """
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
@@ -118,14 +118,14 @@ def pseudonym(registration: str, sub: str, secret: Secret) -> str:
 
 
 def pseudonymous_name(learner: str) -> str:
-    """Return the name that is shown for a learner as long as the tutor wants no names."""
+    """Return the name that is shown for a learner unless the tutor shows real names."""
     return f"Learner {learner[-6:]}"
 
 
 def enrolled(
     connection: Connection, registration: str, sub: str, course: str, secret: Secret, now: datetime
 ) -> str:
-    """Enrol a platform's user in a course; return the learner."""
+    """Enrol a platform's user in a course; return the learner's id."""
     learner = pseudonym(registration, sub, secret)
     values = {"registration": registration, "sub": sub, "learner": learner, "launched_at": now}
     statement = insert_or_ignore(tables.learners)[connection.dialect.name]
@@ -139,14 +139,14 @@ def enrolled(
 
 
 def _is_set_up(connection: Connection, message: LaunchMessage) -> bool:
-    """True if a message's resource link is an assignment already."""
+    """True if a message's resource link already has an assignment."""
     context = known_context(connection, message)
     link = None if context is None else _known_link(connection, context.number, message.link)
     return link is not None and link.assignment is not None
 
 
 def context_of(connection: Connection, message: LaunchMessage, now: datetime) -> Row[Any]:
-    """Return the row of a message's context; make it, and its course, if it is new."""
+    """Return the row of a message's context; make the row and the course if there are none."""
     found = known_context(connection, message)
     if found is None:
         course = f"lti-{_short(message.registration.id, message.deployment, message.context)}"
@@ -177,7 +177,7 @@ def context_of(connection: Connection, message: LaunchMessage, now: datetime) ->
 def assign(
     connection: Connection, link: int, new: NewAssignment, catalogue: Mapping[str, Exercise]
 ) -> CourseAssignment:
-    """Make an assignment for a resource link, or return the one that it has. Raises CourseError."""
+    """Make a resource link's assignment, or return the existing one. Raises CourseError."""
     row = connection.execute(
         select(tables.resource_links, tables.contexts.c.course)
         .join_from(tables.resource_links, tables.contexts)
@@ -196,7 +196,7 @@ def assign(
 
 
 def new_assignment_id(link: int) -> str:
-    """Return the id of the assignment of a resource link."""
+    """Return the id for a new assignment of a resource link."""
     return f"lti-{link}"
 
 
@@ -212,7 +212,7 @@ def linked_assignment(
 
 
 def check_deployment(connection: Connection, message: LaunchMessage, now: datetime) -> None:
-    """Check that a deployment is known, or may become known. Raises LtiError."""
+    """Check that the message's deployment is known or allowed. Raises LtiError."""
     mine = message.registration
     if message.deployment in deployments_of(connection, mine.id):
         return
@@ -223,7 +223,7 @@ def check_deployment(connection: Connection, message: LaunchMessage, now: dateti
 
 
 def _visit(connection: Connection, message: LaunchMessage) -> Landing:
-    """Return where the launch of a preview or a guest leads to; missing parts are empty."""
+    """Return what the launch of a preview or a guest opens; missing parts are empty."""
     context = known_context(connection, message)
     if context is None:
         return Landing(message.role, link_title=message.link_title)
@@ -252,7 +252,7 @@ def known_context(connection: Connection, message: LaunchMessage) -> Row[Any] | 
 def _course_key(
     connection: Connection, context: Row[Any], message: LaunchMessage, now: datetime
 ) -> str:
-    """Return the id of the course's key; make one if it has none that is valid for long."""
+    """Return the id of the course's key; make a new key if none is valid long enough."""
     if context.key is not None:
         found = keys_at(connection, [("id", context.key)]).get(("id", context.key))
         is_valid = found is not None and found.revoked_at is None
@@ -278,7 +278,7 @@ def _link(
     catalogue: Mapping[str, Exercise],
     now: datetime,
 ) -> Row[Any]:
-    """Return the row of a message's resource link; note the addresses of its services."""
+    """Store a message's resource link and the addresses of its services; return the row."""
     values = {
         "title": message.link_title or "Exercises",
         "lineitem_url": message.lineitem_url,
@@ -311,7 +311,7 @@ def _assign_by_parameters(
     course: str,
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Link the assignment that the custom parameters of a deep link name, if they are usable."""
+    """Set the link's assignment to the one that the custom parameters name, if it is usable."""
     wanted = message.custom.get("assignment") or new_assignment_id(link.number)
     mine = (assignments.c.course == course) & (assignments.c.id == wanted)
     if connection.scalar(select(assignments.c.id).where(mine)) is None:

@@ -1,6 +1,6 @@
-"""Begun logins in the database: state, nonce and the secret of the browser, each used once.
+"""Logins in the database. Each has a state, a nonce and a secret of the browser, and is used once.
 
-The database has only digests of the three.
+The database has only digests of these three texts.
 """
 
 import hmac
@@ -83,7 +83,7 @@ class Login:
 
 
 def login_fields(given: Mapping[str, str]) -> dict[str, str]:
-    """Return the fields of a login that are known and not empty. Raises LtiError."""
+    """Return the known fields of a login request that are not empty. Raises LtiError."""
     fields = {name: given[name] for name in _LONGEST if given.get(name)}
     for name, value in fields.items():
         if len(value) > _LONGEST[name]:
@@ -97,7 +97,7 @@ def login_fields(given: Mapping[str, str]) -> dict[str, str]:
 def begin_login(
     connection: Connection, registration: Registration, fields: Mapping[str, str], now: datetime
 ) -> NewLogin:
-    """Note a login and return it. Raises LtiError."""
+    """Store a new login and return it. Raises LtiError."""
     if not same_place(fields["target_link_uri"], registration.launch_url):
         raise LtiError("foreign-target", target=fields["target_link_uri"])
     state, nonce, browser = (secrets.token_urlsafe(32) for _ in range(3))
@@ -121,7 +121,7 @@ def begin_login(
 
 
 def login_of(connection: Connection, state: str, now: datetime) -> Login:
-    """Return the login with a state, which may be used. Raises LtiError."""
+    """Return the login with this state. Raises LtiError if the login must not be used."""
     if not state:
         raise LtiError("no-state")
     mine = launches.c.state == digest(state)
@@ -145,7 +145,7 @@ def login_of(connection: Connection, state: str, now: datetime) -> Login:
 
 
 def use_login(connection: Connection, login: Login, now: datetime) -> None:
-    """Note that a login was used. Raises LtiError if it was used meanwhile."""
+    """Mark a login as used. Raises LtiError if the login was used meanwhile."""
     mine = (launches.c.state == login.state) & launches.c.used_at.is_(None)
     if not connection.execute(update(launches).where(mine).values(used_at=now)).rowcount:
         raise LtiError("state-used")

@@ -1,4 +1,4 @@
-"""Messages of platforms (id tokens): checked in order, each fault with a code of its own."""
+"""Check the messages of platforms (id tokens) step by step. Each fault has its own code."""
 
 import json
 from collections.abc import Mapping
@@ -92,7 +92,7 @@ def key_id_of(token: str) -> str:
 def message_in(
     token: str, key: RSAPublicKey, registration: Registration, login: Login, now: datetime
 ) -> LaunchMessage:
-    """Return the message in a token that answers a login. Raises LtiError."""
+    """Return the message in a token, which must belong to ``login``. Raises LtiError."""
     claims = signed_claims(token, key)
     check_parties(claims, registration)
     check_times(claims, now.timestamp())
@@ -250,7 +250,7 @@ def _name(value: Any) -> str:
 
 
 def _line(value: Any) -> str:
-    """Return a text of the platform in one line, shortened."""
+    """Return a text from the platform as one line, shortened; "" if it is no text."""
     return " ".join(value.split())[:200].strip() if isinstance(value, str) else ""
 
 

@@ -1,6 +1,6 @@
 """The keys with which this service signs messages to platforms, and their rotation.
 
-A new key is published for a day before it signs: platforms memoize the keys that they have read.
+A new key is published for a day before it signs, because platforms memoize our keys.
 """
 
 import json
@@ -92,7 +92,7 @@ def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
 
 @lru_cache(maxsize=4)
 def _private_key(pem: str, password: bytes) -> RSAPrivateKey:
-    """Return a stored key. Decrypting it takes longer than signing with it."""
+    """Return a stored key, decrypted. It is memoized: decrypting takes longer than signing."""
     key = load_pem_private_key(pem.encode(), password)
     assert isinstance(key, RSAPrivateKey)
     return key

@@ -29,7 +29,7 @@ Fetch = Callable[..., Any]
 
 @dataclass
 class _Known:
-    """The keys of a platform; ``tried_at`` is the moment of the last fetch."""
+    """The keys of a platform; ``tried_at`` is the time of the last try to fetch them."""
 
     keys: Mapping[str, RSAPublicKey | None] = field(default_factory=dict)
     fetched_at: float = -_LONGEST
@@ -39,7 +39,7 @@ class _Known:
 
 
 class PlatformKeys:
-    """The keys of platforms, each read from the registered address and from nowhere else."""
+    """The keys of platforms, read only from the address that is registered for the platform."""
 
     def __init__(self, fetch: Fetch = fetch_json, clock: Callable[[], float] = monotonic) -> None:
         self._fetch, self._clock = fetch, clock
@@ -77,7 +77,7 @@ class PlatformKeys:
 
 
 def usable_keys(found: Any) -> dict[str, RSAPublicKey | None]:
-    """Return the keys of a JSON Web Key Set by id; a key that must not be used is None.
+    """Return the keys of a JSON Web Key Set by id, with None for keys that must not be used.
 
     Raises FetchError.
     """

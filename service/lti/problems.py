@@ -17,7 +17,7 @@ _TEACHER: Final = say(
 
 
 class LtiProblem(NamedTuple):
-    """A reason to refuse. Braces in ``cause`` are places for values; ``advice`` is for students."""
+    """Why a launch is refused. ``cause`` has placeholders in braces; ``advice`` is for students."""
 
     cause: str
     advice: str = _TEACHER
@@ -140,13 +140,13 @@ class LtiError(Exception):
 
 
 def short_value(value: object) -> str:
-    """Return a sentence, or the sentence of an error, as it is; shorten any other value."""
+    """Return a Sentence, or an error's Sentence, unchanged; return other values as short text."""
     said = value.args[0] if isinstance(value, Exception) and value.args else value
     return said if isinstance(said, Sentence) else str(value)[:200]
 
 
 def cause_without_values(name: str) -> str:
-    """Return the cause of a refusal with "…" for its values, or an unknown ``name`` as it is."""
+    """Return the cause of a refusal with "…" for its values; return an unknown ``name`` itself."""
     problem = LTI_PROBLEMS.get(name)
     if problem is None:
         return name

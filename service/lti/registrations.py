@@ -42,7 +42,7 @@ class RegistrationError(Exception):
 
 
 class NewRegistration(BaseModel):
-    """A platform to register: the values that it shows, and the address of this service."""
+    """A platform to register: the values that the platform shows, and this service's address."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -135,7 +135,7 @@ class Registration:
 
     @property
     def platform_origin(self) -> str:
-        """The origin of the platform's pages: that of its OIDC address."""
+        """The origin of the platform's pages, taken from the platform's OIDC address."""
         return origin_of(self.auth_url)
 
     @property
@@ -149,13 +149,13 @@ class Registration:
 
     @property
     def _customers(self) -> tuple[str, ...]:
-        """The domains of the customers, if one issuer serves several."""
+        """The domains of the issuer's customers, if the issuer serves several customers."""
         return tuple(
             domain for issuer, domain in _CUSTOMERS if same_place(self.issuer, f"https://{issuer}")
         )
 
     def is_own(self, address: str) -> bool:
-        """True if an address, which is usable, has an origin of the platform."""
+        """True if a usable address is at one of the platform's origins."""
         origin = origin_of(address)
         if origin in self.frame_origins:
             return True
@@ -205,7 +205,7 @@ def add_registration(connection: Connection, new: NewRegistration, now: datetime
 def add_deployments(
     connection: Connection, registration_id: str, ids: Iterable[str], now: datetime
 ) -> None:
-    """Note deployments of a registration that are not known yet."""
+    """Add the deployments that are not known yet to a registration."""
     for each in ids:
         values = {"registration": registration_id, "deployment": each, "created_at": now}
         statement = insert_or_ignore(tables.deployments)[connection.dialect.name]
@@ -228,7 +228,7 @@ def all_registrations(connection: Connection) -> list[Registration]:
 
 
 def find_registration(connection: Connection, issuer: str, client_id: str | None) -> Registration:
-    """Return the registration that a login means. Raises LtiError."""
+    """Return the only registration with this issuer and client id. Raises LtiError."""
     mine = tables.registrations.c.issuer == issuer
     if client_id is not None:
         mine &= tables.registrations.c.client_id == client_id
@@ -269,7 +269,7 @@ def remove_registration(connection: Connection, registration_id: str) -> None:
 
 
 def note_refusal(connection: Connection, registration_id: str, name: str, now: datetime) -> None:
-    """Note the reason of the last refused launch of a registration."""
+    """Store why and when the registration's last launch was refused."""
     mine = tables.registrations.c.id == registration_id
     values = {"refused_at": now, "refusal": name}
     connection.execute(update(tables.registrations).where(mine).values(values))

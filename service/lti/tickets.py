@@ -30,9 +30,9 @@ class FormTicket(BaseModel):
 
 
 class LtiTicket(FormTicket):
-    """What a tutor may do from a page: with a course, and with one of its resource links.
+    """The ticket of a tutor's page about a course and one of the course's resource links.
 
-    ``learner`` is the one whose attempts the tutor wants to see, or "".
+    ``learner`` is the learner whose attempts the tutor wants to see, or "".
     """
 
     iss: Literal["dh-grader lti"] = "dh-grader lti"
@@ -44,7 +44,7 @@ class LtiTicket(FormTicket):
 class LinkingTicket(FormTicket):
     """The request of the platform in a message of deep linking.
 
-    ``course`` is "" until somebody launches the course. ``data`` goes back unchanged.
+    ``course`` is "" until somebody launches the course. ``data`` is sent back unchanged.
     ``notices_url`` is "" unless the exercises are for files that students hand in at the platform.
     """
 
@@ -62,13 +62,13 @@ _T = TypeVar("_T", bound=FormTicket)
 
 
 def signed_ticket(ticket: FormTicket, secret: Secret, now: datetime) -> str:
-    """Return the text of a ticket."""
+    """Return a ticket as a signed text."""
     until = int((now + LIFETIME).timestamp())
     return jwt.encode(ticket.model_dump() | {"exp": until}, _key(secret), _ALGORITHM)
 
 
 def ticket_in(text: str, kind: type[_T], secret: Secret) -> _T:
-    """Return the ticket of this kind with this text. Raises LtiError."""
+    """Return the ticket of this kind from its signed text. Raises LtiError."""
     try:
         ticket = kind.model_validate_json(_JWS.decode(text, _key(secret), [_ALGORITHM]))
     except (jwt.InvalidTokenError, ValidationError) as error:

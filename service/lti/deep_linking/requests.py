@@ -29,9 +29,9 @@ _LONGEST_ADDRESS: Final = 2000
 def begin_linking(
     connection: Connection, message: LaunchMessage, secret: Secret, now: datetime
 ) -> LinkingTicket:
-    """Return the ticket with which a tutor may answer the platform. Raises LtiError.
+    """Return the ticket with which a tutor may send links to the platform. Raises LtiError.
 
-    No course and no link is recorded: the tutor may give up.
+    No course and no link is recorded yet, because the tutor may cancel.
     """
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
@@ -51,7 +51,7 @@ def begin_linking(
 
 
 def _asked(message: LaunchMessage) -> Mapping[str, Any]:
-    """Return the checked settings of a message. Raises LtiError."""
+    """Check the settings in a deep linking message and return them. Raises LtiError."""
     name = f"{LINKING}deep_linking_settings"
     settings = message.claims.get(name)
     if settings is None:

@@ -1,4 +1,4 @@
-"""The answer to a message of deep linking: links, signed with our key."""
+"""The response to a deep linking message: links, signed with our key."""
 
 import secrets
 from collections.abc import Iterable, Mapping
@@ -53,7 +53,7 @@ def signed_response(
     now: datetime,
     locale: str = "",
 ) -> str:
-    """Return the signed answer with these links, or with none. Raises LtiError.
+    """Return the signed response with the links; there may be no links. Raises LtiError.
 
     Reports on files are in the language ``locale``.
     """

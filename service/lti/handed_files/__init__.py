@@ -1,1 +1,1 @@
-"""Files that students hand in at the platform: graded here, reported there (Asset Processor)."""
+"""Grade files that students hand in at a platform, and send it reports (Asset Processor)."""

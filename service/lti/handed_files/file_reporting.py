@@ -1,4 +1,4 @@
-"""The grader of handed-in files: one submission after the other, under a lease."""
+"""Grade handed-in files: one submission after the other, each leased to one process."""
 
 import logging
 import random
@@ -28,7 +28,7 @@ _GIVEN_UP: Final = timedelta(days=3)
 
 
 class FileReporting:
-    """Grades handed-in files, and reports to their platform."""
+    """Grades handed-in files, and sends the reports to the platform."""
 
     def __init__(
         self,
@@ -38,7 +38,7 @@ class FileReporting:
         now: Callable[[], datetime] = utc_now,
         chance: Callable[[], float] = random.random,
     ) -> None:
-        """``now`` tells the time; ``chance`` returns a number from 0 to 1 for each pause."""
+        """``now`` returns the time; ``chance`` a random number from 0 to 1 for each pause."""
         self._engine, self._catalogue = engine, catalogue
         self.now, self._chance = now, chance
         self._platform = PlatformFiles(
@@ -46,7 +46,7 @@ class FileReporting:
         )
 
     def send_next(self) -> bool:
-        """Grade the next submission, and report; False if none is due."""
+        """Grade the next submission and send its reports; return False if none is due."""
         now = self.now()
         taken = in_transaction(self._engine, lambda it: queue.take(it, now))
         if taken is None:
@@ -68,7 +68,7 @@ class FileReporting:
         return True
 
     def next_due(self) -> datetime | None:
-        """Return when there may be something to grade; None if nothing waits."""
+        """Return when the next submission may be graded; None if no submission waits."""
         with self._engine.connect() as connection:
             return queue.next_due(connection)
 

@@ -117,7 +117,7 @@ def report_on(file: FileAtPlatform, found: GradedFiles, now: datetime) -> dict[s
 def _assignment(
     custom: Mapping[str, str], catalogue: Mapping[str, Exercise], ceiling: FeedbackLevel
 ) -> Assignment | None:
-    """Return the assignment that the parameters of a tutor name, or None."""
+    """Return the assignment that a tutor's custom parameters name, or None."""
     wanted = parameters_assignment(
         {"exercise": custom.get("exercise", "")}, "files", "-", catalogue
     )

@@ -40,7 +40,7 @@ class FileAtPlatform(_Stored):
 class HandedFiles(_Stored):
     """The files of one submission, where the report goes, and the parameters of the grading.
 
-    ``deployment`` and ``context`` are the course at the platform; "" if the notice names none.
+    ``deployment`` and ``context`` identify the course at the platform; "" if the notice does not.
     """
 
     assets: Annotated[list[FileAtPlatform], Field(min_length=1, max_length=MOST_FILES)]
@@ -131,7 +131,7 @@ def _files(claims: Mapping[str, Any], registration: Registration) -> HandedFiles
 
 
 def _is_text(value: Any) -> TypeGuard[str]:
-    """True for a text that a database can look for. A lone surrogate cannot be encoded."""
+    """True for a text that is not empty and has no lone surrogate, which no database stores."""
     return isinstance(value, str) and bool(value) and not _SURROGATE.search(value)
 
 

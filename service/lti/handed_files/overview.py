@@ -1,4 +1,4 @@
-"""What tutors see of reports on handed-in files that did not arrive: functions on a connection."""
+"""The reports on handed-in files that did not reach a platform: functions on a connection."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _MOST: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class MissingReport:
-    """Files whose report did not arrive, and why. Without ``next_try_at``, no more tries follow."""
+    """A report that did not reach the platform. Without ``next_try_at``, no more tries follow."""
 
     learner: str
     name: str
@@ -71,7 +71,7 @@ def missing_reports(
 
 
 def missing_counts(connection: Connection) -> Mapping[str, int]:
-    """Return how many reports did not arrive at each platform, by registration."""
+    """Return how many reports did not reach each platform, by registration id."""
     counted = select(_OF.registration, func.count().label("number")).where(_TROUBLED)
     rows = connection.execute(counted.group_by(_OF.registration))
     return {row.registration: row.number for row in rows}

@@ -37,7 +37,7 @@ class NoFileError(Exception):
 
 
 class PlatformFiles:
-    """Handed-in files of platforms, with the access tokens of this process."""
+    """Uses platforms' services for handed-in files, with the access tokens of this process."""
 
     def __init__(self, tokens: AccessTokens) -> None:
         self._services = GradeServices(tokens)
@@ -58,7 +58,7 @@ class PlatformFiles:
     def content_of(self, registration: Registration, file: FileAtPlatform) -> bytes:
         """Return a file's content. Raises NoFileError, or ScoreError if a later try may succeed.
 
-        Platforms redirect to the host that has their files. The token goes to the first host only.
+        A platform may redirect to another host. The access token is sent to the first host only.
         """
         local, until = registration.is_development, monotonic() + TIMEOUT
         try:
@@ -108,7 +108,7 @@ class PlatformFiles:
 
 
 def _checked(data: bytes, file: FileAtPlatform) -> bytes:
-    """Return a content that has the checksum of the notice. Raises NoFileError.
+    """Return ``data`` if it has the checksum that the notice names. Raises NoFileError.
 
     Platforms write the checksum in hexadecimal digits or in base 64.
     """

@@ -1,4 +1,4 @@
-"""The queue of files to grade: take the next ones under a lease, and note what became of them."""
+"""The queue of submissions to grade: lease the next one to this process, and note the result."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -23,7 +23,7 @@ _OF: Final = handed_files.c
 
 @dataclass(frozen=True, slots=True)
 class TakenFiles:
-    """Files that this process has taken."""
+    """The files of a submission that is leased to this process."""
 
     number: int
     registration: Registration
@@ -60,7 +60,7 @@ def queue_files(
 
 
 def take(connection: Connection, now: datetime) -> TakenFiles | None:
-    """Take the next files; None if none are due."""
+    """Lease and return the files of the next submission; None if no submission is due."""
     free = or_(_OF.leased_until.is_(None), _OF.leased_until <= now)
     chosen = select(handed_files).where(_OF.state == "waiting", _OF.next_try_at <= now, free)
     ordered = chosen.order_by(_OF.next_try_at).limit(1).with_for_update(skip_locked=True)
@@ -79,12 +79,12 @@ def take(connection: Connection, now: datetime) -> TakenFiles | None:
 
 
 def note_done(connection: Connection, number: int, refusal: str | None = None) -> None:
-    """Note that the platform has the reports, or the reason why they do not arrive."""
+    """Note that the platform has the reports, or, with a ``refusal``, why it does not get them."""
     _note(connection, number, state="refused" if refusal else "sent", refusal=refusal)
 
 
 def note_later(connection: Connection, number: int, at: datetime, refusal: str) -> None:
-    """Note when files are to be graded again."""
+    """Note when a submission is to be graded again, and why."""
     _note(connection, number, next_try_at=at, refusal=refusal)
 
 
@@ -94,7 +94,7 @@ def _note(connection: Connection, number: int, **values: Any) -> None:
 
 
 def next_due(connection: Connection) -> datetime | None:
-    """Return when the next files are due, or None if none wait."""
+    """Return when the next submission is due, or None if no submission waits."""
     waiting = select(_OF.next_try_at, _OF.leased_until).where(_OF.state == "waiting")
     row = connection.execute(waiting.order_by(_OF.next_try_at).limit(1)).one_or_none()
     return None if row is None else max(row.next_try_at, row.leased_until or row.next_try_at)

@@ -1,1 +1,1 @@
-"""How platforms join: by invitation (dynamic registration), or with a file about this service."""
+"""Register platforms: by invitation (dynamic registration), or with a file about this service."""

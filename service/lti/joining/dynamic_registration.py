@@ -72,9 +72,9 @@ def register_at(invitation: Invitation, configuration: str, token: str) -> dict[
 
 
 def _asked(url: str, method: str, *, local: bool, **more: Any) -> dict[str, Any]:
-    """Return the JSON object with which a platform answers. Raises FetchError.
+    """Send a request to a platform and return the JSON object of the response. Raises FetchError.
 
-    No redirect is followed: the request has the token.
+    No redirect is followed, because the request contains the registration token.
     """
     until = monotonic() + TIMEOUT
     with answer(url, method, local=local, **more) as response:

@@ -1,8 +1,8 @@
 """Invitations: one-time links by which a platform registers itself.
 
-Only a digest of the link is stored. The text of the link begins with a mark if the registration
-waits for ``dh-grader lti allow``. Nobody can remove the mark, because it is part of the digested
-text.
+Only a digest of the secret text in the link is stored. The text begins with ``held-`` if the
+registration must wait for ``dh-grader lti allow``. Nobody can remove ``held-``, because it is part
+of the digested text.
 """
 
 import secrets
@@ -124,7 +124,7 @@ def accept(
 
 
 def allow(connection: Connection, registration_id: str) -> None:
-    """Let a registration that waits launch, in all its deployments. Raises RegistrationError."""
+    """Allow a waiting registration to launch from all deployments. Raises RegistrationError."""
     registration(connection, registration_id)
     mine = registrations.c.id == registration_id
     connection.execute(update(registrations).where(mine).values(any_deployment=True))

@@ -28,7 +28,7 @@ class RosterError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RosterQuestion:
-    """The context of a course, its platform, and the key that signs for us."""
+    """What reading a roster needs: the course's context, its platform, and our signing key."""
 
     context: Row[Any]
     registration: Registration
@@ -38,7 +38,7 @@ class RosterQuestion:
 
 @dataclass(frozen=True, slots=True)
 class RosterChange:
-    """The changes of a course by a roster; ``learners`` is the number of learners in the roster."""
+    """How a roster has changed a course; ``learners`` is the number of learners in the roster."""
 
     learners: int
     added: int
@@ -95,7 +95,7 @@ def enrol_members(
 ) -> RosterChange:
     """Enrol and rename the learners in a roster; remove learners who are no longer in the roster.
 
-    ``shows_names`` says whether their names are shown; None leaves this setting as it is.
+    ``shows_names`` says whether the learners' names are shown; None keeps this setting.
     """
     context, now = question.context, question.now
     if shows_names is None:
@@ -149,9 +149,9 @@ def enrol_members(
 def _enrolled(
     connection: Connection, registration_id: str, course: str
 ) -> dict[str, tuple[str, str | None]]:
-    """Return the names and family names of the learners of a course that came from a platform.
+    """Return, by id, the names and family names of a course's learners who are from the platform.
 
-    Learners whom a tutor has added are not among them: the roster does not remove them.
+    Learners whom a tutor has added are left out, so that a roster does not remove them.
     """
     of = course_learners.c
     joined = select(of.learner, of.name, of.family_name).join(

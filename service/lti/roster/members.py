@@ -28,7 +28,7 @@ _LONGEST_NAME: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A learner in the roster of a platform; ``name`` is "" if the platform tells none."""
+    """A learner in the roster of a platform; ``name`` is "" if the platform does not send it."""
 
     sub: str
     name: str
@@ -69,7 +69,7 @@ def _pages(registration: Registration, url: str, token: str) -> Iterator[Mapping
 
 
 def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]:
-    """Return a page and the address of the next one, or "". Raises FetchError."""
+    """Return a page and the address of the next page, or "". Raises FetchError."""
     headers = {"Authorization": f"Bearer {token}", "Accept": _MEDIA_TYPE}
     until = monotonic() + _PAGE_TIME
     with answer(url, local=local, headers=headers, timeout=_PAGE_TIME) as response:
@@ -88,7 +88,7 @@ def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]
 
 
 def _member(entry: Any) -> Member | None:
-    """Return the learner of an entry, or None."""
+    """Return the active learner in a roster's entry; None for other members."""
     if not isinstance(entry, dict) or entry.get("status", "Active") != "Active":
         return None
     sub, roles = entry.get("user_id"), entry.get("roles")

@@ -1,1 +1,1 @@
-"""Scores: what platforms get to know of the points of learners (AGS)."""
+"""Scores: send the points of learners to the gradebooks of platforms (AGS)."""

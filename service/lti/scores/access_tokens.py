@@ -1,4 +1,4 @@
-"""Access tokens of platforms, by client credentials that are signed with our key."""
+"""Get access tokens from platforms. Our key signs the requests (client credentials)."""
 
 import json
 import re
@@ -36,7 +36,7 @@ class AccessTokens:
     """The access tokens of this process, by registration and scopes."""
 
     def __init__(self, now: Callable[[], datetime], key: Callable[[], SigningKey]) -> None:
-        """``now`` tells the time, and ``key`` returns the key that signs."""
+        """``now`` returns the time, and ``key`` returns our signing key."""
         self._now, self._key = now, key
         self._known: dict[tuple[str, str], tuple[str, datetime]] = {}
 
@@ -97,7 +97,7 @@ def fetched_token(
 
 
 def available_key(engine: Engine, secret: Secret, now: datetime) -> SigningKey:
-    """Return the key that signs our assertions; make the first one. Raises LaterError."""
+    """Return the key that signs our assertions; make a key if there is none. Raises LaterError."""
 
     def found() -> SigningKey:
         with engine.connect() as connection:

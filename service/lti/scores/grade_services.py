@@ -42,7 +42,7 @@ class NotThereError(RefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A line item to look up or to make: the link and the title that it belongs to."""
+    """A line item to look up or to make for a resource link, with its title and maximum points."""
 
     lineitems_url: str | None
     scopes: str
@@ -53,7 +53,7 @@ class Column:
 
 
 class GradeServices:
-    """The services of platforms, with the access tokens of this process."""
+    """Uses the gradebook services of platforms, with the access tokens of this process."""
 
     def __init__(self, tokens: AccessTokens) -> None:
         self._tokens = tokens
@@ -65,7 +65,7 @@ class GradeServices:
             return
 
     def line_item(self, registration: Registration, column: Column) -> tuple[str, bool]:
-        """Return the address of a line item, and True if it was made now. Raises ScoreError."""
+        """Return a line item's address, and True if this call has made it. Raises ScoreError."""
         if (found := self.found_line_item(registration, column)) is not None:
             return found, False
         if column.lineitems_url is None or CHANGE not in column.scopes.split():
@@ -116,8 +116,8 @@ class GradeServices:
     ) -> Iterator[httpx.Response]:
         """Send a request with an access token; if the token is refused, try once with a new token.
 
-        Yield the successful answer. Raises ScoreError. With ``redirects``, the answer may also be a
-        redirect, and TooLargeError may be raised.
+        Yield the successful response. Raises ScoreError. With ``redirects``, the response may also
+        be a redirect, and TooLargeError may be raised.
         """
         for is_last in (False, True):
             token = self._tokens.token(registration, scopes)
@@ -146,7 +146,7 @@ def scores_address(url: str) -> str:
 
 
 def _check(response: httpx.Response) -> None:
-    """Raise the ScoreError of an answer that is no success."""
+    """Raise a ScoreError if the response is not a success."""
     status = response.status_code
     if response.is_success:
         return
@@ -165,7 +165,7 @@ def _check(response: httpx.Response) -> None:
 
 
 def _is_used_up(headers: Mapping[str, str]) -> bool:
-    """True if Canvas answers 403 because of too many requests."""
+    """True if Canvas has refused a request (403) because we have sent too many requests."""
     try:
         return float(headers.get("x-rate-limit-remaining", "")) <= 0
     except ValueError:
@@ -187,9 +187,9 @@ def _item_address(item: Any, lineitems_url: str) -> str:
 
 
 def _of_platform(url: str, lineitems_url: str) -> str:
-    """Return an address from a platform's answer. Raises ThisLaterError if its host is another one.
+    """Return ``url`` if it has the origin of ``lineitems_url``. Otherwise raise ThisLaterError.
 
-    The access token is only sent to the platform's own host.
+    The access token is sent only to the platform's own host.
     """
     if unusable(url, local=True) or origin_of(url) != origin_of(lineitems_url):
         raise ThisLaterError("unusable-answer", reason=say("an address is of another host"))

@@ -1,4 +1,4 @@
-"""The score of a learner in an assignment, as the gradebook has it, and the message with it."""
+"""A learner's score in an assignment, as the gradebook has it, and the message that sends it."""
 
 import json
 from datetime import datetime
@@ -13,7 +13,7 @@ _CANVAS: Final = "https://canvas.instructure.com/lti/submission"
 
 
 class LearnerScore(NamedTuple):
-    """The points of all exercises together; None if no attempt counts.
+    """The learner's points in all exercises of an assignment together; None if no attempt counts.
 
     ``submitted_at`` is the moment of the last attempt among those that count.
     """
@@ -55,7 +55,7 @@ def learner_score(connection: Connection, assignment: int, learner: str) -> Lear
 def score_message(score: LearnerScore, sub: str, stamp: datetime, address: str) -> dict[str, Any]:
     """Return the message with a score; without points, it clears the score at the platform.
 
-    ``address`` launches the assignment. Only Canvas reads some of the fields.
+    ``address`` launches the assignment. Some fields of the message are only for Canvas.
     """
     message: dict[str, Any] = {"userId": sub, "timestamp": _written(stamp)}
     if score.points is None:

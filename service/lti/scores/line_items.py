@@ -18,7 +18,7 @@ READ: Final = f"{AGS}lineitem.readonly"
 
 
 def ensure_line_item(connection: Connection, link: int) -> None:
-    """Note the line item of a resource link, if the platform takes scores for it.
+    """Store the line item of a resource link, if the platform accepts scores for the link.
 
     If the address of the line item is unknown, the sender of the first score looks up the line
     item, or makes it. The scores of earlier attempts are queued.

@@ -1,8 +1,8 @@
-"""The outbox of scores: take the next one under a lease, and note what became of it.
+"""The queue of scores to send: lease the next score to this process, and note the result.
 
-A score is noted as under way before it is sent. If the process dies after that, the lease ends, and
-another process sends the score again, with a later timestamp. So the platform gets the right score
-in the end.
+A score is leased to a process before it is sent. If the process dies, the lease ends, and another
+process sends the score again, with a later timestamp. In the end, the platform has the
+correct score.
 """
 
 from collections.abc import Collection
@@ -34,7 +34,7 @@ _FREE: Final = scores.c.leased_until.is_(None)
 
 @dataclass(frozen=True, slots=True)
 class TakenScore:
-    """A score that this process has taken."""
+    """A score that is leased to this process."""
 
     registration: Registration
     line_item: int
@@ -49,17 +49,17 @@ class TakenScore:
 
     @property
     def is_forgotten(self) -> bool:
-        """True if the learner was forgotten, and the score is to be cleared."""
+        """True if the learner's data were deleted, so that the score is to be cleared."""
         return self.learner.startswith(FORGOTTEN)
 
 
 def take(
     connection: Connection, sender: str, now: datetime, without: Collection[str]
 ) -> TakenScore | None:
-    """Take the next score for the sender; None if there is none.
+    """Lease the next score to ``sender`` and return the score; None if none is due.
 
-    ``without`` are registrations that get no score now. Scores that the platform already has are
-    noted as sent.
+    The registrations in ``without`` get no score now. Scores that the platform already has are
+    marked as sent.
     """
     for _ in range(_MOST_PASSED):
         row = connection.execute(_next(now, without)).one_or_none()
@@ -88,7 +88,7 @@ def take(
 
 
 def _next(now: datetime, without: Collection[str]) -> Any:
-    """Return the query for the next score, whose row it locks."""
+    """Return the query that finds and locks the row of the next score."""
     chosen = (
         select(
             scores,
@@ -162,7 +162,7 @@ def _taken(
 
 
 def note_sent(connection: Connection, taken: TakenScore, sender: str, now: datetime) -> None:
-    """Note that the platform has a score. If it has changed meanwhile, it stays in the queue."""
+    """Note that the platform has a score. A score that has changed meanwhile stays queued."""
     mine = _is(taken.line_item, taken.learner) & (scores.c.leased_by == sender)
     if taken.is_forgotten:
         connection.execute(delete(scores).where(mine))
@@ -196,7 +196,7 @@ def note_refused(
 def note_later(
     connection: Connection, taken: TakenScore, sender: str, at: datetime, problem: ScoreError | None
 ) -> None:
-    """Note when a score is to be sent again. Without a problem, the try is not counted."""
+    """Note when a score is to be sent again, and the problem, if there is one."""
     mine = _is(taken.line_item, taken.learner) & (scores.c.leased_by == sender)
     given_up = mine & (scores.c.wanted_at < at - _FORGETTING)
     if taken.is_forgotten and connection.execute(delete(scores).where(given_up)).rowcount:
@@ -221,7 +221,7 @@ def next_due(connection: Connection) -> datetime | None:
 
 
 def lease_line_item(connection: Connection, line_item: int, now: datetime) -> bool:
-    """True if this process may look up or make a line item; two must not make it twice."""
+    """Lease a line item to this process; return False if another process has the lease."""
     free = or_(line_items.c.found_at.is_(None), line_items.c.found_at <= now)
     mine = (line_items.c.number == line_item) & free
     leased = update(line_items).where(mine).values(found_at=now + LEASE)
@@ -231,7 +231,7 @@ def lease_line_item(connection: Connection, line_item: int, now: datetime) -> bo
 def note_line_item(
     connection: Connection, line_item: int, url: str | None, now: datetime, *, is_made: bool = False
 ) -> None:
-    """Note the address of a line item after ``lease_line_item``; None if it was not found."""
+    """End the lease of a line item, and store its address if it was found or made."""
     values: dict[str, Any] = {"found_at": now}
     if url is not None:
         values["url"] = url
@@ -241,7 +241,7 @@ def note_line_item(
 
 
 def _unchanged(taken: TakenScore) -> Any:
-    """Return the condition of a score that has not changed since it was taken."""
+    """Return the SQL condition that a score has not changed since it was leased."""
     return _is(taken.line_item, taken.learner) & (scores.c.version == taken.version)
 
 

@@ -1,4 +1,4 @@
-"""What tutors see of scores, and sending again: functions on a connection."""
+"""List a course's scores for tutors, and send scores again: functions on a connection."""
 
 from datetime import datetime
 from typing import Any
@@ -19,9 +19,9 @@ from service.translations import ENGLISH, Language
 def scores_of(
     connection: Connection, course: str, wanted: SendAgainRequest, language: Language = ENGLISH
 ) -> list[PlatformScore]:
-    """Return the scores of a course, by assignment and learner; problems are in the language.
+    """Return the scores of a course, ordered by assignment and learner.
 
-    Raises CourseError.
+    The problems of scores are in the given language. Raises CourseError.
     """
     _check(connection, course, wanted)
     enrolled = and_(

@@ -64,7 +64,7 @@ class RefusedError(ScoreError):
 
 
 class LaterError(ScoreError):
-    """The platform takes nothing now; ``seconds`` is the wait that it asks for, or None."""
+    """The platform accepts nothing now; ``seconds`` is how long it asks to wait, or None."""
 
     def __init__(self, name: str, /, seconds: float | None = None, **values: object) -> None:
         self.seconds = seconds
@@ -72,7 +72,7 @@ class LaterError(ScoreError):
 
 
 class ThisLaterError(ScoreError):
-    """This score is not taken now; others may be."""
+    """The platform does not accept this score now, but may accept other scores."""
 
 
 def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = False) -> str:

@@ -1,4 +1,4 @@
-"""The sender of scores: one after the other, under a lease; any number of processes may send."""
+"""Send scores one after the other, each leased to one process; several processes may send."""
 
 import logging
 import random
@@ -35,20 +35,20 @@ _LINE_ITEM: Final = timedelta(seconds=3)
 
 
 def utc_now() -> datetime:
-    """Return the time."""
+    """Return the current time in UTC."""
     return datetime.now(UTC)
 
 
 @dataclass(slots=True)
 class _Pause:
-    """The end of the pause of a platform, and the number of failures before it."""
+    """The pause of a platform: when the pause ends, and how many failures came before."""
 
     until: datetime
     failures: int
 
 
 class ScoreSender:
-    """Sends scores. After a failure of a platform, it sends this platform nothing for a while."""
+    """Sends scores. After a failure at a platform, the platform gets no scores for a while."""
 
     def __init__(
         self,
@@ -57,7 +57,7 @@ class ScoreSender:
         now: Callable[[], datetime] = utc_now,
         chance: Callable[[], float] = random.random,
     ) -> None:
-        """``now`` tells the time; ``chance`` returns a number from 0 to 1 for each pause."""
+        """``now`` returns the time; ``chance`` a random number from 0 to 1 for each pause."""
         self._engine = engine
         self.now, self._chance = now, chance
         self._name = secrets.token_hex(8)
@@ -67,7 +67,7 @@ class ScoreSender:
         )
 
     def send_next(self) -> bool:
-        """Send the next score that is due; False if there is none."""
+        """Send the next score that is due; return False if none is due."""
         now = self.now()
         resting = [name for name, pause in self._pauses.items() if now < pause.until]
         taken = in_transaction(self._engine, lambda it: outbox.take(it, self._name, now, resting))
@@ -92,7 +92,7 @@ class ScoreSender:
         return True
 
     def next_due(self) -> datetime | None:
-        """Return when there may be something to send; None if nothing waits."""
+        """Return when the next score may be sent; None if no score waits."""
         with self._engine.connect() as connection:
             due = outbox.next_due(connection)
         now = self.now()
@@ -126,7 +126,10 @@ class ScoreSender:
         in_transaction(self._engine, lambda it: outbox.note_sent(it, taken, self._name, now))
 
     def _line_item(self, taken: TakenScore) -> str | None:
-        """Look up or make the line item; None if another process does so, and the score waits."""
+        """Look up or make the line item of a score, and return its address.
+
+        If another process is making the line item, delay the score and return None.
+        """
         now, number = self.now(), taken.line_item
         if not in_transaction(self._engine, lambda it: outbox.lease_line_item(it, number, now)):
             self._later(taken, now + _LINE_ITEM, None)
@@ -143,7 +146,7 @@ class ScoreSender:
         return url
 
     def _rest(self, taken: TakenScore, error: LaterError) -> None:
-        """Begin a pause for a platform, at least as long as it asks, but not beyond a limit."""
+        """Begin a platform's pause, at least as long as the platform asks, up to a limit."""
         name, now = taken.registration.id, self.now()
         before = self._pauses.get(name)
         failures = 0 if before is None else before.failures
@@ -161,7 +164,7 @@ class ScoreSender:
         )
 
     def _doubled(self, failures: int) -> datetime:
-        """Return the end of a pause, which doubles with each failure and is partly random."""
+        """Return the end of a pause. Each failure doubles the pause, which is partly random."""
         pause = min(_FIRST * 2 ** min(failures, 20), _LONGEST)
         end: datetime = self.now() + pause * (0.5 + 0.5 * self._chance())
         return end

@@ -1,4 +1,4 @@
-"""Threads of a service that send what its database has queued. They sleep while nothing waits."""
+"""Threads that send what is queued in the service's database. They sleep if nothing is due."""
 
 import logging
 import threading
@@ -22,17 +22,17 @@ class Sender(Protocol):
     now: Callable[[], datetime]
 
     def send_next(self) -> bool:
-        """Send what is due next; False if nothing is."""
+        """Send the next item that is due; return False if none is due."""
 
     def next_due(self) -> datetime | None:
-        """Return when there may be something to send; None if nothing waits."""
+        """Return when the next item may be sent; None if no item waits."""
 
 
 class BackgroundSending:
     """A thread that sends what is queued as soon as this process has committed it."""
 
     def __init__(self, engine: Engine, sender: Sender, queued: str) -> None:
-        """Listen to commits. A transaction that queues something sets ``queued`` in its info.
+        """Listen to commits. A transaction that queues an item sets ``queued`` in Connection.info.
 
         No other thread may commit during this call, because a commit iterates over the listeners.
         """
@@ -47,7 +47,7 @@ class BackgroundSending:
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the thread after what it is sending."""
+        """Stop the thread after the item that is being sent."""
         self._closed.set()
         self._wake.set()
         self._thread.join()
