@@ -1,7 +1,8 @@
 """The language of the user, in which the command line speaks.
 
-Help texts are English in the source. ``translate_help`` translates those of a command when it is
-loaded. Output for programs, the names of commands and options, and exit codes have no language.
+Help texts are English in the source. ``translate_help`` translates a command's help texts when the
+command is loaded. Output for programs, the names of commands and options, and exit codes have no
+language.
 """
 
 import gettext
@@ -35,7 +36,8 @@ _TYPER_WORDS: Final = (
 def user_language(variables: Mapping[str, str] = os.environ) -> Language:
     """Return the language that the environment names, or English.
 
-    ``DH_GRADER_LANGUAGE`` comes first, then the locale and its list of languages, LANGUAGE.
+    ``DH_GRADER_LANGUAGE`` decides. Without it, the first known language of the list LANGUAGE and of
+    the locale decides. The locales C and POSIX mean English.
     """
     if own := variables.get(OWN_VARIABLE):
         return language_named(own) or ENGLISH
@@ -59,7 +61,7 @@ def spoken(text: str) -> str:
 
 
 def translate_help(command: Any) -> Any:
-    """Return a command of typer after translating its help texts and those below it."""
+    """Translate the help texts of a typer command and its subcommands; return the command."""
     translation = user_language().translation_of_commands
     if translation is not None:
         # typer asks gettext when it loads the module that shows help.
@@ -73,7 +75,7 @@ def translate_help(command: Any) -> Any:
 
 
 def with_help(command: Any) -> Iterable[Any]:
-    """Yield a command, its options and arguments, and all those of the commands below it."""
+    """Yield a command, its options and arguments, and those of its subcommands."""
     yield command
     yield from command.get_params(typer.Context(command))
     for each in getattr(command, "commands", {}).values():
@@ -81,7 +83,7 @@ def with_help(command: Any) -> Iterable[Any]:
 
 
 def paragraphs(text: str) -> list[str]:
-    """Return the paragraphs of a help text, each in one line. They are translated one by one."""
+    """Return the paragraphs of a help text, each as one line, to be translated one by one."""
     return [" ".join(each.split()) for each in text.split("\n\n")]
 
 
@@ -90,7 +92,7 @@ def _translated(text: str, translation: NullTranslations) -> str:
 
 
 class _Formatter(TyperCommand.context_class.formatter_class):  # type: ignore[name-defined, misc]
-    """Writes the line of the usage in the language of the user."""
+    """Writes the line with a command's usage in the language of the user."""
 
     def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
         translation = user_language().translation_of_commands

@@ -36,14 +36,14 @@ _OPERATIONS: Final = {"learners", "backup", "restore", "doctor"}
 
 
 def commands_of(name: str | None) -> typer.Typer:
-    """Return the commands in the file of a name of ``COMMANDS``."""
+    """Load the file of a command in ``COMMANDS`` and return its typer application."""
     room = "operations" if name in _OPERATIONS else "lti" if name == "lti" else "commands"
     found: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
     return found
 
 
 class _Commands(TyperGroup):
-    """Loads and runs commands; prints the reason of an error and ends with its exit code."""
+    """Loads and runs commands. On an error, it prints the reason and ends with an exit code."""
 
     def main(self, *args: Any, **extra: Any) -> Any:
         translate_help(self)
@@ -92,7 +92,7 @@ program = typer.Typer(
 
 
 def _placeholder() -> None:
-    """Represent a command that is not loaded in the program's help."""
+    """Do nothing. In the program's help, this function takes the place of a command."""
 
 
 for _name, _line in COMMANDS.items():

@@ -55,7 +55,7 @@ def tell(message: str) -> None:
 
 
 def tell_verdict(is_fine: bool | None, message: str) -> None:
-    """Write the line of a check; ``is_fine`` is None if the line only informs."""
+    """Write the result of a check; ``is_fine`` is None if the message only informs."""
     words = {True: spoken(say("ok")), False: spoken(say("WRONG")), None: ""}
     width = max(map(cell_len, words.values())) + 2
     typer.echo(set_cell_size(words[is_fine], width) + spoken(message))
@@ -82,7 +82,7 @@ def installed() -> Mapping[str, Exercise]:
 
 
 def installed_exercise(exercise_id: str) -> Exercise:
-    """Return the exercise or variant of this installation; read no other exercise files.
+    """Return the installed exercise or variant with this id; read only this exercise's file.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """

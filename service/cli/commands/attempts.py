@@ -172,7 +172,7 @@ def show_statistics(exercise: ExerciseArgument) -> None:
 
 
 def _nothing(exercise: str | None) -> str:
-    """The message that no attempts are recorded; it lists the exercises if the id is unknown."""
+    """The message that no attempts are recorded, with all exercises if the id is unknown."""
     found = say("No attempts are recorded.")
     if exercise is None or exercise in (known := installed()):
         return spoken(found)

@@ -97,7 +97,7 @@ def checked(model: type[M], **fields: Any) -> M:
 
 
 def _told(error: ErrorDetails) -> str:
-    """Return an error of a field in words."""
+    """Return the message about a field that cannot be used."""
     match error["loc"], error["type"]:
         case ("id",), "string_pattern_mismatch":
             return say("The id has small letters, digits and hyphens, such as homework-1.")
@@ -314,7 +314,7 @@ def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
 
 
 def _points(option: str) -> Mapping[str, Any]:
-    """Return the exercise and the points of an option such as scara=10."""
+    """Return the exercise and the points that an option such as scara=10 names."""
     name, sign, points = option.partition("=")
     if not sign:
         exercise = installed_exercise(name)

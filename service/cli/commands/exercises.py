@@ -145,7 +145,7 @@ def new_exercise(
 
 
 def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
-    """Yield each level, and the id, joints and title of its exercises, with the parts below."""
+    """Yield the lines of the list: each level, followed by the lines of its exercises."""
     ids = max(len(exercise.id) for exercise in exercises)
     heading = spoken(say("joints"))
     joints = max(len(heading), *(len(exercise.structure or "") for exercise in exercises))

@@ -316,7 +316,7 @@ def _variants_of_student(
 
 
 def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportFormat:
-    """Return the format of this name; end the program if it does not suit the other options."""
+    """Return the format called ``name``; end the program if other options do not allow it."""
     taken = report_format(name)
     if taken.is_single and len(paths) > 1:
         give_up(
@@ -361,9 +361,9 @@ def _grading(
 
 
 class _Run:
-    """Yields the graded submissions; ``exit_code`` is the exit code of the worst one so far.
+    """Yields graded submissions; ``exit_code`` is the exit code of the worst submission so far.
 
-    Between submissions, it calls ``check``. That function may end the run.
+    Between two submissions, ``check`` is called, which may end the run.
     """
 
     def __init__(
@@ -388,7 +388,7 @@ class _Run:
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
-    """The distinct problems of files of a submission; one file may affect several exercises."""
+    """The problems of a submission's files, each once: a file may be for several exercises."""
     told = (f"{file.file}: {spoken(file.problem)}" for file in submission.files if file.problem)
     return [visible(line) for line in dict.fromkeys(told)]
 

@@ -41,7 +41,7 @@ def command(
 
 
 class _Run:
-    """Yields the lines; ``exit_code`` is the exit code of the worst line so far."""
+    """Yields the merged lines; ``exit_code`` is the exit code of the worst line so far."""
 
     def __init__(self, lines: Iterable[bytes]) -> None:
         self._lines = lines

@@ -42,7 +42,7 @@ _ROWS: Final[Mapping[str, str]] = {
 
 
 def check_seeds(exercise: Exercise, count: int, console: Console) -> bool:
-    """Check variants and print how they differ; return True if one fails."""
+    """Check ``count`` variants and print how they differ; return True if a variant fails."""
     try:
         checked = [checked_variant(exercise, str(seed)) for seed in range(1, count + 1)]
     except NoVariantError as error:
@@ -95,7 +95,7 @@ def _warn(console: Console, warning: str) -> None:
 
 
 def _table(checked: Sequence[CheckedVariant]) -> Table:
-    """Return a table with the least, greatest and usual value of each measure of difficulty."""
+    """Return a table with the least, greatest and most common value of each difficulty measure."""
     table = Table.grid(padding=(0, 2, 0, 2))
     rows: dict[str, list[float]] = defaultdict(list)
     for each in checked:

@@ -17,7 +17,7 @@ _IN_MEMORY: Final = 1024 * 1024
 
 
 def console_of(output: Path | None) -> Console:
-    """The console that determines the layout: the screen, or 80 columns without colour."""
+    """The console for which reports are laid out: the screen, or 80 columns without colour."""
     if output is None:
         return stdout()
     page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")

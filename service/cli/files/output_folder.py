@@ -23,7 +23,7 @@ class UnusableFolderError(Exception):
 
 
 def is_for_folder(output: Path, *, several: bool) -> bool:
-    """True if the output is an existing folder, or a new path without the suffix of a page.
+    """True if the output is an existing folder, or a new path without the suffix of an HTML file.
 
     A single submission needs no folder: without ``several``, a new path is a file.
     """
@@ -82,7 +82,7 @@ def _write(documents: Iterable[Document], folder: Path) -> None:
 
 
 def _within(path: str) -> PurePosixPath:
-    """Return the path. Raises ValueError if it leads out of the folder or is more than 2 deep."""
+    """Return the path. Raises ValueError if it leaves the folder or has more than 2 steps."""
     within = PurePosixPath(path)
     if within.is_absolute() or len(within.parts) > 2 or ".." in within.parts or "\n" in path:
         raise ValueError(f"{path!r} does not stay in its folder")
@@ -90,7 +90,7 @@ def _within(path: str) -> PurePosixPath:
 
 
 def _replaceable(folder: Path) -> list[Path]:
-    """The content of the folder. Raises UnusableFolderError if no earlier run has written it."""
+    """The content of a folder. Raises UnusableFolderError unless earlier runs have written it."""
     if not folder.is_dir():
         raise UnusableFolderError(say("is no folder"))
     found = [path for path in folder.iterdir() if not path.name.startswith(_UNFINISHED)]
@@ -114,7 +114,7 @@ def _written_before(folder: Path) -> set[Path]:
 
 
 def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
-    """Yield the paths, at this level or directly below, that are not in ``written``."""
+    """Yield the paths in ``found``, and directly below them, that are not in ``written``."""
     folders = {file.parent for file in written}
     for path in found:
         if path.is_symlink() or path not in (written if path.is_file() else folders):

@@ -216,7 +216,7 @@ def _secret() -> Secret:
 
 
 def _done(work: Callable[[Connection], R], *, create: bool = False) -> R:
-    """Return the result of ``work`` in a transaction; end the program with the reason of errors."""
+    """Return the result of ``work`` in a transaction; on an error, end the program and say why."""
     with database(create=create) as engine:
         try:
             return in_transaction(engine, work)

@@ -1,4 +1,4 @@
-"""The lines in which the command line shows an assignment of a course."""
+"""The lines that the command line prints about an assignment of a course."""
 
 from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime
@@ -60,7 +60,7 @@ def assignment_lines(
 
 
 def ends(dates: CourseAssignment | Extension | MissingLearner) -> Iterator[Sentence]:
-    """Yield when something is due and when it closes."""
+    """Yield lines that say when answers are due and when the assignment closes."""
     if dates.due is not None:
         yield say("due {time}", time=_time(dates.due))
     if dates.closes is not None:

@@ -28,7 +28,7 @@ _COUNTS: Final[Mapping[str, str]] = {
 
 
 def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
-    """Return the result of ``work`` in a transaction; end the program with the reason of an error.
+    """Return the result of ``work`` in a transaction; on an error, end the program and say why.
 
     A missing database file is created only with ``create``.
     """
@@ -42,7 +42,7 @@ def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
 def deleted(
     name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
 ) -> None:
-    """Print what ``work`` would delete, ask, and delete it. ``name`` is visible text."""
+    """Print what ``work`` would delete, ask the user, and delete it; ``name`` is printable."""
     found = changed(lambda it: work(it, wanted))
     if not wanted.with_attempts:
         # They stay, or they prevent the deletion.

@@ -70,12 +70,12 @@ def _copy(file: Path, target: Path) -> Path:
 
 
 def _logs(file: Path) -> list[Path]:
-    """Return the files beside a database in which SQLite keeps changes."""
+    """Return the paths of the files beside a database to which SQLite writes changes."""
     return [file.with_name(f"{file.name}{end}") for end in ("-wal", "-shm", "-journal")]
 
 
 def _target() -> Path:
-    """Return the place of the database of this installation."""
+    """Return the path of this installation's database."""
     setting = load_settings().database
     if setting is None:
         give_up(say("Name the database: DH_GRADER_DATABASE."))
@@ -89,7 +89,7 @@ def _target() -> Path:
 
 
 def _damage(file: Path) -> bool:
-    """True if the file is not a whole database with the tables of the program."""
+    """True if the file is not an intact database with the tables of this program."""
     try:
         with closing(
             sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)

@@ -1,1 +1,1 @@
-"""Grading by a server instead of this program."""
+"""Let a server grade instead of this program."""

@@ -1,6 +1,6 @@
-"""The journal of reports from a server. After an interruption, the next run requests the rest.
+"""The journal of reports from a server. After an interruption, the next run requests only the rest.
 
-The file has lines of JSON, each with a report and the digest of its submission and options.
+The file has lines of JSON. Each line has a report, and the digest of its submission and options.
 """
 
 import hashlib
@@ -22,9 +22,9 @@ _DEFAULT_NAME: Final = "dh-grader"
 
 
 def journal_beside(output: Path | None) -> Path:
-    """The path of the journal of a run with this output.
+    """The path of the journal of a run that writes to ``output``.
 
-    Its name begins with a dot, so that it is not taken for a submission.
+    The journal's name begins with a dot, so that no run takes the journal for a submission.
     """
     if output is None or (output.exists() and not (output.is_file() or output.is_dir())):
         return Path(f".{_DEFAULT_NAME}.graded")
@@ -33,15 +33,15 @@ def journal_beside(output: Path | None) -> Path:
 
 
 def digest(content: Sequence[object]) -> str:
-    """The SHA-256 of JSON content."""
+    """The SHA-256 digest of the content, written as JSON."""
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 
 class Journal:
-    """Reads the reports of earlier runs from a file, and appends those of this run.
+    """Reads the reports of earlier runs from a file, and appends the reports of this run.
 
-    Several threads may use it. If the file cannot be written, a warning is printed and the run goes
-    on.
+    Several threads may use one journal. If the file cannot be written, a warning is printed and the
+    run continues.
     """
 
     def __init__(self, path: Path) -> None:
@@ -63,7 +63,7 @@ class Journal:
             return None
 
     def add(self, of: str, report: Report) -> None:
-        """Write a report for the next run."""
+        """Append a report to the journal, where the next run finds it."""
         # Begin with a line break: the last line may be incomplete.
         line = b'\n{"digest": "%b", "report": %b}\n' % (of.encode(), rendered(report))
         with self._lock:

@@ -1,4 +1,4 @@
-"""Grading of submissions by a server. This module loads httpx: import it late."""
+"""Let a server grade submissions. This module loads httpx, so import the module late."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -37,12 +37,12 @@ def exercise_of(server: GraderClient, exercise_id: str) -> ExerciseOutline:
 
 
 class RemoteGrading:
-    """Grades submissions by a server, unless the journal has their reports already.
+    """Lets a server grade submissions, unless the journal already has their reports.
 
-    ``ungraded`` are the names of the submissions that the server could not grade now, and
-    ``reason`` is why. After an error that concerns all submissions, nothing more is sent. Several
-    threads may use it. ``key`` distinguishes reports in the journal, because the feedback of a
-    server may depend on the key.
+    ``ungraded`` has the names of the submissions that the server could not grade, and ``reason``
+    says why. After an error that concerns all submissions, nothing more is sent. Several threads
+    may use one object. The journal keeps the reports for each ``key`` apart, because the feedback
+    of a server may depend on the key.
     """
 
     def __init__(

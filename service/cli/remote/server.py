@@ -27,7 +27,7 @@ REQUESTS: Final = 4
 
 @contextmanager
 def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
-    """Open a client of the server in the settings; yield None if they name no server.
+    """Open a client of the server that the settings name; yield None if they name no server.
 
     End the program with exit code 2 if the address or the key is invalid.
     """
@@ -86,10 +86,10 @@ def graded_by(
     output: Path | None,
     settings: Settings,
 ) -> Iterator[Iterator[GradedSubmission]]:
-    """Yield the submissions in order, graded by the server, with ``requests`` at once.
+    """Yield an iterator over the submissions in order, graded by the server.
 
-    If the server fails, its reports stay in the journal beside the output, and a message says what
-    to do.
+    ``requests`` is the number of concurrent requests. If the server fails, the reports so far stay
+    in the journal beside the output, and a message says what to do.
     """
     from service.cli.remote.remote_grading import RemoteGrading
 

@@ -40,8 +40,8 @@ class _Signals:
 def interruptible() -> Iterator[Callable[[], None]]:
     """Let SIGTERM end this process like Ctrl-C, so that files and processes are cleaned up.
 
-    Yield a function to call between two pieces of work: it ends the process if the exception of a
-    signal was lost. No other exception replaces that of a signal.
+    Yield a function that ends the process if the exception of a signal was lost. Call the function
+    between two pieces of work. No other exception replaces the exception of a signal.
     """
     signals = _Signals()
     with _handled(signals.receive):

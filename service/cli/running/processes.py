@@ -25,7 +25,7 @@ _GROUP_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 class WorkerLostError(Exception):
-    """A process did not start, or ended before its work was done, for example because of a kill."""
+    """A process did not start, or ended before its work was done: perhaps it was killed."""
 
 
 def jobs_for(count: int) -> int:
@@ -106,9 +106,10 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator["SimpleQueue
 
 @contextmanager
 def _signals_blocked() -> Iterator[None]:
-    """Block signals to the process group, such as Ctrl-C, in processes that are started here.
+    """Block signals to the process group, such as Ctrl-C, in processes started in this context.
 
-    This process ends its workers; if they ended first, it would report a lost worker instead.
+    This process itself ends its workers. If a signal ended a worker first, this process would
+    report the worker as lost.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

@@ -16,7 +16,7 @@ _LEAST: Final = 10
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Functions to advance the bar and to print a complaint; ``is_shown`` is True with a bar."""
+    """Functions that advance the bar and print an error; ``is_shown`` is True if there is a bar."""
 
     advance: Callable[[], None]
     complain: Callable[[str], None]
@@ -25,7 +25,7 @@ class Progress:
 
 @contextmanager
 def progress(total: int) -> Iterator[Progress]:
-    """Show a bar on standard error during the context; complaints appear above it."""
+    """Show a bar on standard error during the context; errors appear above the bar."""
     if total < _LEAST or not sys.stderr.isatty():
         yield Progress(lambda: None, complain)
         return

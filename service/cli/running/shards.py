@@ -1,4 +1,4 @@
-"""Divide a class between machines, and merge their JSON lines into those of one run.
+"""Divide a class between machines, and merge the machines' JSON lines into those of one run.
 
 Shard 3 of 16 grades the third submission and every sixteenth after it. The first line of its file
 is a header that describes the division, so that merging notices a missing, incomplete or foreign
@@ -59,8 +59,8 @@ def shard_of(text: str) -> Shard:
 class ShardHeader:
     """The first line of a shard's file.
 
-    ``submissions`` is the number of all submissions, ``exercises`` the number of lines for each of
-    them, and ``run`` a hash of the names of all submissions and exercises.
+    ``submissions`` is the number of all submissions, ``exercises`` the number of lines for each
+    submission, and ``run`` a hash of the names of all submissions and exercises.
     """
 
     shard: int
@@ -75,7 +75,7 @@ def with_header(
 ) -> Iterator[bytes]:
     """Yield the header of a shard, then its lines.
 
-    The header depends on all ``submissions`` and ``exercises`` of the run, by name.
+    ``submissions`` and ``exercises`` are the names of all submissions and exercises of the run.
     """
     names = json.dumps([submissions, exercises])
     run = hashlib.sha256(names.encode()).hexdigest()
@@ -159,7 +159,7 @@ def _require_one_run(shards: dict[int, tuple[ShardHeader, Path, BinaryIO]]) -> N
 
 
 def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
-    """Yield the next lines, without end. Raises UnusableShardsError at the end of the file."""
+    """Yield the next lines. Raises UnusableShardsError if a line is missing or incomplete."""
     while True:
         line = file.readline()
         if not line.endswith(b"\n"):

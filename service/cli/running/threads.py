@@ -19,7 +19,7 @@ def mapped_in_threads(
 ) -> Iterator[Iterator[Result]]:
     """Yield an iterator over the results in the order of the items, with few of them in memory.
 
-    At the end of the context, waiting items are dropped, and running ones are not waited for.
+    At the end of the context, waiting items are dropped, and no running call is waited for.
     """
     # Import here: most runs need no threads. ThreadPoolExecutor would delay the end of the program
     # until its threads end; the threads of this pool are daemons.
@@ -30,7 +30,7 @@ def mapped_in_threads(
 
 
 def _in_order(begun: Iterator["AsyncResult[Result]"], ahead: int) -> Iterator[Result]:
-    """Wait for the results one by one, with ``ahead`` of them begun."""
+    """Yield the results one by one, while up to ``ahead`` of them are being computed."""
     waiting = deque(islice(begun, ahead))
     while waiting:
         yield waiting.popleft().get()
