@@ -40,8 +40,8 @@ class Caller:
     def owner(self) -> str:
         """The owner of the caller's requests and attempts, at most 32 characters.
 
-        It is the id of the key, a hash for each learner with a token, or "" for anonymous clients.
-        A learner of a course stays the same owner after the link was renewed.
+        The owner is the id of a key, a hash for each learner with a token, or "" for anonymous
+        clients. A course's learner stays the same owner when the personal link is renewed.
         """
         if self.learner is None:
             return self.key_id

@@ -1,11 +1,15 @@
-"""The client of an address. Scheduling, connection limits and rate limits count by client."""
+"""The address of a request decides for which client the request counts.
+
+Scheduling, connection limits and rate limits count the requests of each client.
+"""
 
 import ipaddress
 
 
 def client_key(address: str) -> str:
-    """Return the IPv4 address, or the /64 network of an IPv6 address: a client may own all of it.
+    """Return the client of an address: the IPv4 address, or the /64 network of the IPv6 address.
 
+    One client may own a whole /64 network.
     An IPv4 address in IPv6 notation, ``::ffff:10.0.0.7``, is returned as the IPv4 address.
     """
     if ":" not in address:

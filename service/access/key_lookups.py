@@ -22,8 +22,8 @@ TIMEOUT: Final = 15.0
 class KeyLookups:
     """Looks up keys in one thread, with a pause between two statements.
 
-    A client may send any number of invented keys. They cost the database and the process little: at
-    most ``1 / pause`` statements per second.
+    A client may send any number of invented keys. Invented keys cost the database and the process
+    little: at most ``1 / pause`` statements per second.
     """
 
     def __init__(

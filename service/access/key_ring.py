@@ -109,7 +109,7 @@ class KeyRing:
         return signed(token, expires_at, self.secret.token_secret)
 
     async def session_caller(self, session: str) -> Caller:
-        """Return the holder of the key that a session names.
+        """Return the holder of the key that a session token names.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
@@ -122,14 +122,14 @@ class KeyRing:
         return await self._holder("id", key_of_session(session, self.secret.session_secret))
 
     def session(self, caller: Caller, expires_at: datetime) -> str:
-        """Return the text of a session of the holder of a key."""
+        """Return a session token for ``caller``, who holds a key."""
         from service.access.sessions import signed_session
 
         assert self.secret is not None
         return signed_session(caller.key_id, expires_at, self.secret.session_secret)
 
     def close(self) -> None:
-        """Write pending notes of use and stop the threads."""
+        """Write down the latest uses of keys, and stop the threads."""
         self._known_lookups.close()
         self._new_lookups.close()
         self._thread.shutdown()

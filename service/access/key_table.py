@@ -26,7 +26,7 @@ def fits(connection: Connection, secret: Secret) -> bool:
 
 
 def settle(connection: Connection, secret: Secret, now: datetime) -> bool:
-    """Record this secret for new keys; return False if valid keys have another secret."""
+    """Record this secret for new keys; return False if valid keys belong to another secret."""
     valid = exists(select(keys.c.id).where(keys.c.revoked_at.is_(None), keys.c.expires_at > now))
     if not connection.scalar(select(valid)):
         connection.execute(delete(key_secrets))
@@ -63,7 +63,7 @@ def insert_key(connection: Connection, key: Key, digest: str) -> None:
 
 
 def all_keys(connection: Connection) -> list[Key]:
-    """Every key but those of personal links, the oldest first."""
+    """All keys except the keys of personal links, the oldest first."""
     found = select(keys).where(keys.c.learner.is_(None)).order_by(keys.c.created_at)
     return [_key(row) for row in connection.execute(found)]
 
@@ -77,7 +77,7 @@ def link_keys(connection: Connection, course: str) -> list[Key]:
 def keys_at(
     connection: Connection, places: Collection[tuple[str, str]]
 ) -> dict[tuple[str, str], Key]:
-    """Return the keys at these places, each a column (``id``, ``digest``) and its value."""
+    """Return the keys at these places. A place is a column (``id``, ``digest``) and a value."""
     columns: dict[str, list[str]] = {column: [] for column, _ in places}
     for column, value in places:
         columns[column].append(value)
@@ -87,7 +87,7 @@ def keys_at(
 
 
 def revoke_key(connection: Connection, key_id: str, now: datetime) -> bool:
-    """Revoke a key permanently; return False if it is unknown or already revoked."""
+    """Revoke a key permanently; return False if the key is unknown or already revoked."""
     done = connection.execute(
         keys.update().where(keys.c.id == key_id, keys.c.revoked_at.is_(None)).values(revoked_at=now)
     )

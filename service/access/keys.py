@@ -29,7 +29,7 @@ class CredentialError(Exception):
 class Key:
     """A key. ``exercises`` are the exercises that it may use, None for all; times are in UTC.
 
-    A key with a ``course`` is for this course only; one with a ``learner`` is a personal link.
+    A key with a ``course`` is for this course only. A key with a ``learner`` is a personal link.
     """
 
     id: str
@@ -44,7 +44,7 @@ class Key:
     learner: str | None = None
 
     def caller(self, now: datetime) -> Caller:
-        """Return the caller with this key. Raises CredentialError if it is revoked or expired."""
+        """Return the holder of this key. Raises CredentialError if the key is not valid now."""
         if self.revoked_at is not None:
             raise CredentialError(say("The key was revoked."))
         if self.expires_at <= now:
@@ -79,20 +79,20 @@ class Keys(Protocol):
         """Return a token with the rights of ``caller``."""
 
     async def session_caller(self, session: str) -> Caller:
-        """Return the holder of the key that a session names.
+        """Return the holder of the key that a session token names.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
 
     def session(self, caller: Caller, expires_at: datetime) -> str:
-        """Return the text of a session of the holder of a key."""
+        """Return a session token for ``caller``, who holds a key."""
 
     @property
     def secret(self) -> "Secret | None":
         """The secret of the installation, if it is known."""
 
     def close(self) -> None:
-        """Write pending notes of use and stop all threads."""
+        """Write down the latest uses of keys, and stop all threads."""
 
 
 class Secret:

@@ -55,8 +55,8 @@ class Rates:
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
         """Count a request; return 0 if it is allowed, otherwise the seconds to wait.
 
-        Requests with a key are counted by its owner, others by address. All IPv6 addresses of a /64
-        network count as one.
+        A request with a key counts for the key's owner, any other request for its address. All IPv6
+        addresses of a /64 network count as one address.
         """
         owner = caller.owner
         rates = self._per_key if owner else self._per_address

@@ -1,6 +1,6 @@
 """Sessions of tutors in a browser: signed like tokens, but with a different secret.
 
-Sessions are not stored. A session names a key, and ends with it.
+Sessions are not stored. A session token names a key, and is valid at most as long as the key.
 """
 
 import time
@@ -28,13 +28,13 @@ class _SessionClaims(BaseModel):
 
 
 def signed_session(key_id: str, expires_at: datetime, secret: bytes) -> str:
-    """Return the text of a session of the holder of a key."""
+    """Return a session token for the holder of the key ``key_id``."""
     claims = {"iss": "dh-grader session", "key": key_id, "exp": int(expires_at.timestamp())}
     return jwt.encode(claims, secret, _ALGORITHM)
 
 
 def key_of_session(text: str, secret: bytes) -> str:
-    """Return the id of the key of a session. Raises CredentialError."""
+    """Return the id of the key that a session token names. Raises CredentialError."""
     try:
         claims = _SessionClaims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
     except (jwt.InvalidTokenError, ValidationError) as error:

@@ -2,8 +2,8 @@
 
 GraderClientError         a call failed
 ├── RequestRefusedError     the service answered with an error
-├── ServerUnreachableError  there was no complete answer
-└── UnexpectedAnswerError   the answer is not that of a DH Grader
+├── ServerUnreachableError  there was no complete response
+└── UnexpectedAnswerError   the response is not from a DH Grader
 """
 
 from service.catalogue import FeedbackLevel

@@ -1,4 +1,4 @@
-"""The address of a server, and the options of httpx for it."""
+"""Check the address of a server, and make the httpx options for calling the server."""
 
 import re
 from typing import Any, Final
@@ -15,7 +15,7 @@ _KEY: Final = re.compile(r"[A-Za-z0-9._~+/-]+=*")
 def checked_server(server: str) -> str:
     """Return the address of a service without a trailing slash.
 
-    Raises ValueError for an invalid address, and for a password, which messages would show.
+    Raises ValueError for an invalid address, or for a password in it, which messages would show.
     """
     try:
         url = httpx.URL(server)

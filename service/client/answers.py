@@ -1,4 +1,4 @@
-"""Receive the answers of a server within limits, and convert failures to exceptions."""
+"""Receive the responses of a server within limits, and convert failures to exceptions."""
 
 import ssl
 import time
@@ -26,7 +26,7 @@ MAX_ANSWER: Final = 64 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class HttpAnswer:
-    """A complete answer."""
+    """A complete response."""
 
     status: int
     headers: httpx.Headers
@@ -35,7 +35,7 @@ class HttpAnswer:
 
 @dataclass
 class AnswerPieces:
-    """Collects the pieces of an answer; ``seconds`` is the time limit for all of them.
+    """Collects the pieces of a response; ``seconds`` is the time limit for the whole response.
 
     The time limits of httpx apply to each piece separately. A server that sends a byte now and then
     would never exceed these limits.
@@ -60,7 +60,7 @@ class AnswerPieces:
             raise httpx.ReadTimeout(f"no complete answer within {self.seconds:g} seconds")
 
     def whole(self) -> HttpAnswer:
-        """Return the complete answer, after the last piece."""
+        """Return the complete response, after the last piece."""
         return HttpAnswer(self.response.status_code, self.response.headers, bytes(self._content))
 
 
@@ -73,7 +73,7 @@ def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableEr
 
 
 def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
-    """Return the exception for an answer whose status is not 200."""
+    """Return the exception for a response that is not a success."""
     if location := answer.headers.get("location"):
         return UnexpectedAnswerError(
             say(

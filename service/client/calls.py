@@ -1,4 +1,4 @@
-"""The calls of the service: how requests are built, and how answers are read.
+"""The calls of the service: how requests are built, and how responses are read.
 
 The clients make their methods from these functions: a method sends the call and returns its result.
 """
@@ -40,7 +40,7 @@ def _new_key() -> str:
 
 @dataclass(frozen=True, slots=True)
 class HttpCall(Generic[T]):
-    """One call: POST if it has a body, otherwise GET. ``read`` parses the answer.
+    """One call: POST if it has a body, otherwise GET. ``read`` parses the response.
 
     Retries have the same ``idempotency_key``, by which the service recognizes them.
     """
@@ -63,7 +63,7 @@ class HttpCall(Generic[T]):
         return {"Content-Type": "application/json", "Idempotency-Key": self.idempotency_key}
 
     def result(self, server: str, answer: HttpAnswer) -> T:
-        """Parse the answer; return the result. Raises GraderClientError."""
+        """Parse the response; return the result. Raises GraderClientError."""
         if answer.status not in (200, 201):
             raise error_in(server, answer)
         try:
@@ -186,7 +186,7 @@ def _together(submissions: list[bytes]) -> bytes:
 
 
 def _fits(submissions: list[bytes]) -> bool:
-    """True if one request may have all these submissions."""
+    """True if one request may contain all these submissions."""
     body = _together(submissions)
     return (
         len(submissions) <= MAX_SUBMISSIONS

@@ -86,8 +86,8 @@ class GraderClient(_Methods):
     """Calls a DH Grader; several threads may share it. Every method raises GraderClientError.
 
     ``server`` is the address of the service, including a path before ``/v1``. ``key`` is sent only
-    to this server. ``timeout`` is the limit for one answer in seconds. ``transport`` is a transport
-    of httpx, for your own certificates or proxies. ``language`` is the language of messages, such
+    to this server. ``timeout`` is the limit for one response in seconds. ``transport`` is an httpx
+    transport, for your own certificates or proxies. ``language`` is the language of messages, such
     as "de"; the default is English. Raises ValueError for an invalid address or key.
     """
 

@@ -142,7 +142,7 @@ def deal_variant(course: str, assignment: str, wanted: DealRequest) -> HttpCall[
 
 
 def missing(course: str, assignment: str) -> HttpCall[MissingList]:
-    """Return the learners who have not handed in."""
+    """Return the learners who have not handed in all exercises of an assignment."""
     path = _path(course, "assignments", assignment, "missing")
     return HttpCall(path, MissingList.model_validate_json)
 
@@ -200,7 +200,7 @@ def regrade(
 ) -> HttpCall[RegradeAnswer]:
     """Regrade some attempts at an exercise; with ``course``, only attempts in this course.
 
-    Repeat the call with ``next`` of the answer as ``cursor``, until the answer has no ``next``.
+    Repeat the call with the result's ``next`` as ``cursor``, until the result has no ``next``.
     """
     body = RegradeRequest(apply=apply, force=force, cursor=cursor)
     path = f"v1/exercises/{quote(exercise, safe='')}/regrade{_query(course=course)}"
@@ -242,7 +242,7 @@ def _path(course: str, *rest: str) -> str:
 
 
 def _query(**given: str | None) -> str:
-    """Return the query string of the given parameters, with its question mark; "" without any."""
+    """Return "?" and the given parameters as a query string; "" if no parameter is given."""
     query = urlencode({name: value for name, value in given.items() if value is not None})
     return f"?{query}" if query else ""
 

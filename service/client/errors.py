@@ -33,8 +33,8 @@ class RequestRefusedError(GraderClientError):
     """The service answered with an error.
 
     ``status`` is the HTTP status, ``code`` the name of the problem (such as ``unknown-exercise``)
-    or empty, ``message`` its explanation. ``reasons`` has an entry for each fault, with its place
-    in the body.
+    or empty, ``message`` its explanation. ``reasons`` has an entry for each fault, with the
+    fault's place in the body.
     """
 
     def __init__(
@@ -54,11 +54,11 @@ class RequestRefusedError(GraderClientError):
 
 
 class ServerUnreachableError(GraderClientError):
-    """There was no answer, or it was incomplete."""
+    """There was no response, or the response was incomplete."""
 
 
 class UnexpectedAnswerError(GraderClientError):
-    """The answer is not that of a DH Grader of this version.
+    """The response is not from a DH Grader of this version.
 
-    This includes redirections: a client that follows one may reveal its key.
+    A redirect also raises this error: a client that follows a redirect may reveal its key.
     """

@@ -23,7 +23,7 @@ class Retries:
     def wait(self, failures: int, error: GraderClientError) -> float | None:
         """Return the seconds to wait after this number of failures, or None to give up.
 
-        Only temporary failures are retried: no answer, or the status 429, 502, 503 or 504.
+        Only temporary failures are retried: no response, or the status 429, 502, 503 or 504.
         """
         if failures > self.number or not error.is_temporary:
             return None

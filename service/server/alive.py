@@ -1,7 +1,7 @@
 """`python -m service.server.alive`: the health check of the image.
 
-Exit with 0 if the service on this machine answers. It imports nothing of the program, so it is
-cheap to run.
+Exit with 0 if the service on this machine answers. This module imports nothing else of the program,
+so the check is cheap to run.
 """
 
 import os

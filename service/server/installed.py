@@ -29,9 +29,9 @@ _log = logging.getLogger(__name__)
 def installed_app(
     settings: Settings, host: str | None = None, drafts: Path | None = None
 ) -> FastAPI:
-    """Return the application, with fair admission.
+    """Return the application of an installation, with fair turns between clients.
 
-    ``host`` is the address on which it listens, or None if the caller has checked it already.
+    ``host`` is the address on which the service listens, or None if it was checked already.
     ``drafts`` is the folder in which several processes share the drafts of the editor.
     Raises CatalogueError, SettingsError.
     """

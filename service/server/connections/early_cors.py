@@ -10,16 +10,16 @@ _ORIGIN: Final = re.compile(rb"\r\nOrigin:[ \t]*([^\r\n]*?)[ \t]*\r\n", re.IGNOR
 
 
 def origin_in(head: bytes) -> str:
-    """Return the origin in the head of a request, which may be incomplete or invalid, or ""."""
+    """Return the origin in a request's head, or "". The head may be incomplete or invalid."""
     found = _ORIGIN.search(head)
     return found[1].decode("latin-1") if found else ""
 
 
 def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
-    """Return the headers that let a page of ``origin`` read the answer if ``origins`` has it.
+    """Return the headers that let a page read the response, if ``origins`` has the page's origin.
 
-    ``origin`` is "" if the request was refused before its head was read. Then, if ``origins`` has
-    only one entry, this entry is used.
+    ``origin`` is "" if the request was refused before its head was read. In this case, the only
+    entry of ``origins`` is used, if there is only one.
     """
     if "*" in origins:
         allowed = "*"

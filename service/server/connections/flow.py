@@ -7,7 +7,7 @@ from uvicorn.protocols.http.flow_control import FlowControl
 
 
 class LingeringTransport:
-    """A transport whose ``close`` lets the client read the last answer first."""
+    """A transport whose ``close`` lets the client read the last response first."""
 
     def __init__(self, transport: asyncio.Transport, finish: Any) -> None:
         self._transport = transport

@@ -1,7 +1,7 @@
 """Cut the bytes of a connection into pieces that each belong to one request.
 
 The parser reads all bytes that it gets, stores a head of any size, and begins the next request of a
-pipeline before the last is answered. So the parser gets only as much as it should read now. The
+pipeline before the previous one is answered. So the parser gets only what it should read now. The
 parser alone decides whether the pieces are valid; this module only finds where they end (RFC 9112).
 """
 
@@ -33,7 +33,7 @@ class Framing:
     """Cuts the requests of one connection into pieces.
 
     ``whole`` is True once the last piece of a request has been returned; ``content`` is the number
-    of bytes of its body so far.
+    of bytes of the request's body so far.
     """
 
     def __init__(self) -> None:
@@ -76,7 +76,7 @@ class Framing:
         self.content, self.whole = 0, False
 
     def expect_body(self, length: int | None) -> None:
-        """Set the length of the body, after its head; None if it comes in chunks."""
+        """Set the length of the body that follows the head; None if the body is chunked."""
         if length is None:
             self._expected = _Expected.CHUNK_SIZE
         else:

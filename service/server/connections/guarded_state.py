@@ -1,4 +1,4 @@
-"""The state that all connections of a server share; it also answers refused requests."""
+"""The state that all connections of a server share, with the responses to refused requests."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,10 @@ from service.server.refusals import refusal_response
 
 
 class GuardedState(ServerState):
-    """The state that all connections of a server share. Pages of ``origins`` may read refusals."""
+    """The state that all connections of a server share.
+
+    Web pages of ``origins`` may read the responses to refused requests.
+    """
 
     def __init__(self, origins: Sequence[str] = (), monitor: Monitor | None = None) -> None:
         super().__init__()
@@ -23,14 +26,14 @@ class GuardedState(ServerState):
         self._monitor = monitor
 
     def note_refusal(self, answer: str) -> None:
-        """Count a refused request or connection; ``answer`` is the status code, or "none"."""
+        """Count a refusal; ``answer`` is the status code of the response, or "none"."""
         if self._monitor is not None:
             self._monitor.refused(answer)
 
     def refusal(
         self, problem: ProblemError, path: str, origin: str, headers: Headers | None = None
     ) -> Response:
-        """Count a refused request from a page of ``origin``, and return its answer."""
+        """Count a refused request from a page of ``origin``, and return the response."""
         self.note_refusal(str(problem.status.value))
         answer = refusal_response(problem, path, headers)
         answer.headers.update(cors_headers(self._origins, origin))

@@ -2,7 +2,8 @@
 
 If there are too many connections, or if they hold too many bytes, the process closes some of the
 connections without a complete request. It begins with the client that has the largest share, and
-there with the connection that has waited longest. A complete request is never dropped.
+first closes the connection of this client that has waited longest. A complete request is never
+dropped.
 """
 
 import asyncio
@@ -124,7 +125,8 @@ def closing_order(
 ) -> Iterable[OpenConnection]:
     """Yield waiting connections in the order in which to close them.
 
-    The next one always belongs to the address with the largest share, and has waited longest there.
+    The next connection always belongs to the address with the largest share. Among the connections
+    of this address, it has waited longest.
     """
     queues: dict[str, list[OpenConnection]] = {}
     for connection in sorted(waiting, key=lambda each: each.waiting_since or 0.0, reverse=True):
@@ -139,7 +141,7 @@ def closing_order(
 
 
 def allowed_here() -> ConnectionLimits:
-    """Raise the limit of open files if needed; return the limits of connections that it allows."""
+    """Raise the limit of open files if needed; return the connection limits that it allows."""
     try:
         import resource
     except ImportError:  # Windows, which has no such limit

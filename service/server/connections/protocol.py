@@ -140,7 +140,7 @@ class GuardedProtocol(HttpToolsProtocol):
             self.flow.hold()
 
     def _note_held(self) -> None:
-        """Report the bytes held for unfinished requests and unread answers of this client."""
+        """Report the bytes held for unfinished requests and unread responses of this client."""
         framing = self._framing
         unfinished = 0 if framing.whole else len(framing) + framing.content
         self.open_connections.set_unfinished(self, unfinished + self._unread)
@@ -180,7 +180,7 @@ class GuardedProtocol(HttpToolsProtocol):
             raise malformed("The Content-Length has more than 19 digits.")
 
     def _length(self) -> int | None:
-        """Return the length of the body by the parsed head, or None if it comes in chunks."""
+        """Return the length of the body according to the head, or None if the body is chunked."""
         length = 0
         for name, value in self.scope["headers"]:
             if name == b"transfer-encoding":
@@ -231,7 +231,7 @@ class GuardedProtocol(HttpToolsProtocol):
     # Callbacks of the parser and of the answer.
 
     def on_headers_complete(self) -> None:
-        """Start the answer, which may read the body as it arrives."""
+        """Start the application, which may read the body as it arrives."""
         full = self.open_connections.full and self._path() not in HEALTH
         self.app = self._answer_busy if full else self._answer
         super().on_headers_complete()
@@ -246,7 +246,7 @@ class GuardedProtocol(HttpToolsProtocol):
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Begin with the next request if the answered one has been read to its end."""
+        """Begin with the next request if the answered request has arrived completely."""
         self.server_state.total_requests += 1
         if self.transport.is_closing() or self._finishing:
             return
@@ -258,7 +258,7 @@ class GuardedProtocol(HttpToolsProtocol):
             self.flow.resume_reading()
 
     def pause_writing(self) -> None:
-        """Start a time limit for the client, because it does not read its answers."""
+        """Start a time limit for the client, because the client does not read responses."""
         super().pause_writing()
         self._unread = self._raw.get_write_buffer_size()
         if self.waiting_since is None:
@@ -266,7 +266,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._note_held()
 
     def resume_writing(self) -> None:
-        """Stop the time limit, because the client reads its answers again."""
+        """Stop the time limit, because the client reads responses again."""
         super().resume_writing()
         self._unread = 0
         self._note_held()
@@ -301,7 +301,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self.finish()
 
     def finish(self) -> None:
-        """Close the connection as soon as the client has received the answer."""
+        """Close the connection as soon as the client has received the response."""
         if self._finishing:
             return
         self._finishing = True
@@ -319,7 +319,7 @@ class GuardedProtocol(HttpToolsProtocol):
             self._raw.write_eof()
 
     def expire(self) -> None:
-        """Close the connection because a request, an unread answer or a pause took too long."""
+        """Close the connection because a request, an unread response or a pause took too long."""
         unread = self._raw.get_write_buffer_size() > 0
         if self._finishing or unread or self.waiting_since is None:
             self.reset()
@@ -341,7 +341,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._raw.abort()
 
     def _give_up(self) -> bool:
-        """Tell the app that the client has gone; return False if no answer is in progress."""
+        """Tell the app that the client has gone; return False if no response is in progress."""
         # uvicorn's annotation omits that this is None before the first request.
         cycle: RequestResponseCycle | None = self.cycle
         if cycle is None or cycle.response_complete:
@@ -351,7 +351,7 @@ class GuardedProtocol(HttpToolsProtocol):
         return True
 
     def shutdown(self) -> None:
-        """Accept no further request; still answer one whose head has been read."""
+        """Accept no further request, but answer a request whose head has been read."""
         self._stopping = True
         if self._framing.in_head:
             if self._raw.get_write_buffer_size():
@@ -371,7 +371,7 @@ class GuardedProtocol(HttpToolsProtocol):
                 raise
 
     async def _answer_busy(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer that the service is too busy, because too many connections are open."""
+        """Send a problem: the service is too busy, because too many connections are open."""
         headers = Headers(scope=scope)
         answer = self.server_state.refusal(too_busy(1), scope["path"], self._origin, headers)
         await answer(scope, receive, send)

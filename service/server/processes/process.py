@@ -49,7 +49,7 @@ class Server(uvicorn.Server):
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Handle signals while the server runs: after one, it shuts down with exit code 0."""
+        """Handle signals while the server runs: after a signal, it exits with code 0."""
         before = {number: signal.signal(number, self.handle_exit) for number in _SIGNALS}
         try:
             yield
@@ -119,7 +119,7 @@ class Server(uvicorn.Server):
 
 
 def _force_exit_later() -> None:
-    """Exit after the promised time, even if a thread is still running.
+    """Exit the process after the promised time, even if a thread is still running.
 
     Python waits for its threads and cannot stop one. Attempts that the database has confirmed are
     recorded.

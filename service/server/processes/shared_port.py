@@ -51,7 +51,7 @@ class ConnectionCounts:
 
 @dataclass(frozen=True)
 class SharedPort:
-    """A shared port, and the place of one worker process among those that share it."""
+    """A shared port, and the index of one worker among the processes that share the port."""
 
     listener: socket.socket
     counts: ConnectionCounts
@@ -88,7 +88,7 @@ class Acceptor:
         self._port.counts.stop_listening(self._port.index)
 
     def publish_count(self) -> int:
-        """Publish the number of connections; return the least number of another process."""
+        """Publish the number of connections; return the smallest number of other processes."""
         here, counts = self._port.index, self._port.counts.numbers
         counts[here] = self._count()
         return min((n for index, n in enumerate(counts) if index != here), default=_AWAY)

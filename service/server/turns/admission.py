@@ -51,7 +51,7 @@ class Metered:
 
     @property
     def spent(self) -> float:
-        """The seconds so far, including those of an unfinished step."""
+        """The processor seconds so far, including an unfinished step."""
         return self._spent + (0.0 if self._began is None else thread_time() - self._began)
 
     def __await__(self) -> Generator[Any, Any, None]:
@@ -75,7 +75,7 @@ class Metered:
 
 
 class _Lane:
-    """Counts the small answers given since the sockets were read, and queues further ones."""
+    """Counts the small responses since the sockets were read, and queues further requests."""
 
     def __init__(self) -> None:
         self.given = 0
@@ -83,7 +83,7 @@ class _Lane:
 
 
 class FairAdmission:
-    """Lets whole requests through to the application step by step, in turn by client."""
+    """Passes complete requests to the application step by step, in fair turns between clients."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -164,7 +164,7 @@ class FairAdmission:
         self._read_soon()
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
-        """Return the problem of a request for which the queue is too full, or None."""
+        """Return the problem for a request if the queue has no room for it, or None."""
         requests, size = self._queue.waiting(ticket.client)
         is_beyond = requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]
         if is_beyond and not ticket.client.is_trusted:
@@ -195,7 +195,7 @@ class FairAdmission:
                 raise ClientDisconnect
 
     async def _small_turn(self, lane: _Lane) -> None:
-        """Wait if too many small answers are given at once."""
+        """Wait if too many small responses are sent at once."""
         if lane.given >= SMALL:
             turn = asyncio.get_running_loop().create_future()
             lane.waiting.append(turn)
@@ -205,7 +205,7 @@ class FairAdmission:
             self._read_soon()
 
     def _read_soon(self) -> None:
-        """Schedule the next step for the time when the sockets have been read."""
+        """Schedule the next step, which runs as soon as the sockets have been read."""
         if not self._reading:
             self._reading = True
             # Twice: a callback that is scheduled once runs before the sockets are read.
@@ -213,7 +213,7 @@ class FairAdmission:
             loop.call_soon(loop.call_soon, self._next)
 
     def _next(self) -> None:
-        """Let the next request go on, and some small answers."""
+        """Let the next waiting request continue, and some requests with small responses."""
         self._reading, self._spent = False, 0.0
         called = 0
         while self._queue.length and not called:
@@ -236,7 +236,7 @@ def _wake(turn: asyncio.Future[None]) -> bool:
 
 
 async def _body(receive: Receive) -> tuple[bytes | None, bool]:
-    """Return the body, and True if it is complete.
+    """Return the body of a request, and True if the body is complete.
 
     A body beyond the application's limit is not read to its end. The body is None if the client
     has gone.
@@ -272,7 +272,7 @@ class _Replayed:
         return message
 
     def is_unwanted(self) -> bool:
-        """True if the client has gone. It does not wait for the client.
+        """True if the client has gone. This method does not wait for the client.
 
         Starlette's ``is_disconnected`` would let the event loop begin the next request.
         """

@@ -51,13 +51,13 @@ class Ticket:
 
     @property
     def key(self) -> tuple[str, int]:
-        """The account that is charged."""
+        """The key of the account that is charged for this request."""
         return self.client.name, self.connection
 
 
 @dataclass(slots=True)
 class _Requests:
-    """The requests of one client: the number present, the number waiting, the bytes waiting."""
+    """One client's requests: how many are present, how many wait, and the bytes that wait."""
 
     present: int = 0
     waiting: int = 0
@@ -85,8 +85,8 @@ class FairQueue:
     """The requests present, and the order of the waiting ones.
 
     Times are on a common clock that advances with the time that all connections use. A connection
-    that was idle has a small credit, and a new one has none. ``ordinary`` is the time in seconds of
-    an ordinary request on this machine.
+    that was idle has a small credit, and a new connection has none. ``ordinary`` is the time in
+    seconds of an ordinary request on this machine.
     """
 
     def __init__(self, ordinary: float) -> None:
@@ -144,7 +144,7 @@ class FairQueue:
             del self._clients[ticket.client.name]
 
     def push(self, ticket: Ticket) -> None:
-        """Add a request to the queue; ``enter`` has noted its arrival before."""
+        """Add a request to the queue, after ``enter`` has noted the arrival of the request."""
         account = self._accounts[ticket.key]
         account.queue.append(ticket)
         self._waiting[ticket.key] = account

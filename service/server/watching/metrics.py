@@ -177,7 +177,7 @@ class Metrics:
             self._request_seconds.labels(route).observe(request.seconds)
 
     def graded(self, report: Report, seconds: float) -> None:
-        """Count a report, and the seconds that grading took."""
+        """Count a report, and record how many seconds the grading took."""
         self._grading_seconds.observe(seconds)
         codes = set()
         for part in report.parts:
@@ -187,7 +187,7 @@ class Metrics:
             self._codes.labels(self._bounded(name)).inc()
 
     def refused(self, answer: str) -> None:
-        """Count a request refused before the application; ``answer`` is its status, or "none"."""
+        """Count a refusal before the application; ``answer`` is the response's status or "none"."""
         self._refusals.labels(answer).inc()
 
     def _bounded(self, name: str) -> str:

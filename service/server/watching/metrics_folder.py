@@ -16,9 +16,9 @@ FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
 
 @contextmanager
 def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]:
-    """Create a metrics folder for the processes started meanwhile, and remove it in the end.
+    """Create a metrics folder for processes started in this context; remove the folder at its end.
 
-    Yields a function that removes the gauges of a process which has ended. Raises SettingsError if
+    Yields a function that removes the gauges of a process that has ended. Raises SettingsError if
     no folder can be written.
     """
     if settings.metrics == "off" or settings.workers == 1:
