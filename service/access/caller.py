@@ -7,7 +7,7 @@ from typing import Final
 
 
 class Scope(StrEnum):
-    """A right of a key. Each key may grade."""
+    """A right of a key. Every key has the right to grade."""
 
     GRADE = "grade"
     RECORD = "record"

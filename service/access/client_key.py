@@ -9,8 +9,8 @@ import ipaddress
 def client_key(address: str) -> str:
     """Return the client of an address: the IPv4 address, or the /64 network of the IPv6 address.
 
-    One client may own a whole /64 network.
-    An IPv4 address in IPv6 notation, ``::ffff:10.0.0.7``, is returned as the IPv4 address.
+    One client may own a whole /64 network. An IPv4 address in IPv6 notation, such as
+    ``::ffff:10.0.0.7``, counts as the IPv4 address.
     """
     if ":" not in address:
         return address

@@ -38,7 +38,10 @@ class KeyLookups:
         self._working: asyncio.Task[None] | None = None
 
     async def key(self, place: KeyPlace) -> Key | None:
-        """Return the key at this place, or None. Raises KeysUnreachableError, KeysBusyError."""
+        """Return the key with this id or digest; None if there is no such key.
+
+        Raises KeysUnreachableError, KeysBusyError.
+        """
         asked = self._asked.get(place)
         if asked is None:
             if len(self._waiting) >= MAX_WAITING:

@@ -129,7 +129,7 @@ class KeyRing:
         return signed_session(caller.key_id, expires_at, self.secret.session_secret)
 
     def close(self) -> None:
-        """Write down the latest uses of keys, and stop the threads."""
+        """Record the latest uses of keys, and stop the threads."""
         self._known_lookups.close()
         self._new_lookups.close()
         self._thread.shutdown()

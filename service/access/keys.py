@@ -92,7 +92,7 @@ class Keys(Protocol):
         """The secret of the installation, if it is known."""
 
     def close(self) -> None:
-        """Write down the latest uses of keys, and stop all threads."""
+        """Record the latest uses of keys, and stop all threads."""
 
 
 class Secret:

@@ -12,7 +12,7 @@ NOTHING: Final = "none"
 
 @dataclass(frozen=True, slots=True)
 class OpenAccess:
-    """The scopes that never need a key; with ``until_keys``, no key is needed until one exists.
+    """The scopes that never need a key; with ``until_keys``, no key is needed until a key exists.
 
     ``until_keys`` applies only to requests to the loopback address, unless ``anywhere`` is set.
     """

@@ -72,10 +72,10 @@ Layer = Callable[[ASGIApp], ASGIApp]
 def _freeze_gc() -> None:
     """Exempt all objects that exist now from garbage collection.
 
-    Reading a request body with many small lists triggers full collections. If these
-    collections also visited the objects of the program, they would take twice as long as reading
-    the body. If the process was started with garbage collection off, this function turns garbage
-    collection on without a first collection.
+    Reading a request body with many small lists triggers full collections. If these collections
+    also visited the objects of the program, they would take twice as long as reading the body. If
+    the process was started with garbage collection off, this function turns garbage collection on
+    without a first collection.
     """
     if gc.isenabled():
         gc.collect()
@@ -207,12 +207,12 @@ def application(
 ) -> FastAPI:
     """Return the HTTP service for the exercises of ``catalogue``.
 
-    Web pages of ``cors_origins`` may call the service.
-    ``access`` checks callers. Without ``access``, everybody may grade and record, and nobody sees
-    the data that are for tutors. ``rates`` limits the number of requests. The level of a
-    report is at most ``feedback``, and at most the level of the exercise. ``turns`` is a layer that
-    orders requests, and ``pages`` are the service's web pages. Attempts are recorded in ``store``,
-    if there is one. ``monitor`` counts requests and reports.
+    Web pages of ``cors_origins`` may call the service. ``access`` checks callers. Without
+    ``access``, everybody may grade and record, and nobody sees the data that are for tutors.
+    ``rates`` limits the number of requests. The level of a report is at most ``feedback``, and at
+    most the level of the exercise. ``turns`` is a layer that orders requests, and ``pages`` are the
+    service's web pages. Attempts are recorded in ``store``, if there is one. ``monitor`` counts
+    requests and reports.
     """
     access = access or Access()
     app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)

@@ -14,7 +14,7 @@ class Monitor(Protocol):
         """Return the application in a layer that sees every request and its response."""
 
     def graded(self, report: Report, seconds: float) -> None:
-        """Count a report, and the seconds that its grading took."""
+        """Count a report, and record how many seconds the grading took."""
 
     def refused(self, answer: str) -> None:
         """Count a refusal; ``answer`` is the status code of the response, or "none"."""

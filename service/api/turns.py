@@ -56,7 +56,7 @@ async def give_way(request: Request) -> None:
 
 
 async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
-    """Return the result of ``work``, and let other requests have their turns between its steps.
+    """Return the result of ``work``. Other requests have turns between the steps of ``work``.
 
     Raises ClientDisconnect if the client has disconnected. Exceptions of ``work`` pass through.
     """

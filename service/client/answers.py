@@ -65,7 +65,7 @@ class AnswerPieces:
 
 
 def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableError:
-    """Convert a connection error of httpx."""
+    """Convert a connection error of httpx to an exception of this client."""
     reason = str(error) or type(error).__name__
     message = say("{server} cannot be reached: {reason}", server=server, reason=reason)
     is_temporary = not any(map(_is_permanent, _causes(error)))

@@ -1,4 +1,4 @@
-"""The calls for courses; see ``calls``."""
+"""The calls of the service for courses. Each function builds a call, which a client sends."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -166,7 +166,7 @@ def send_scores(course: str, wanted: SendAgainRequest) -> HttpCall[SentAgain]:
 
 
 def gradebook(course: str, assignment: str | None = None) -> HttpCall[Gradebook]:
-    """Return the points that count for each learner and exercise; ``assignment`` selects one."""
+    """Return each learner's counting points in each exercise, or in one ``assignment`` only."""
     path = _path(course, "gradebook") + _query(assignment=assignment)
     return HttpCall(path, Gradebook.model_validate_json)
 

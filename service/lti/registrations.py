@@ -140,7 +140,7 @@ class Registration:
 
     @property
     def frame_origins(self) -> tuple[str, ...]:
-        """The origins whose pages may show ours in a frame."""
+        """The origins whose pages may show our pages in a frame."""
         known = [self.platform_origin]
         if _ADDRESS.fullmatch(self.issuer) and not unusable(self.issuer, local=True):
             known.append(origin_of(self.issuer))

@@ -1,4 +1,4 @@
-"""The limits of one process for its clients, each with its reason."""
+"""The limits that one process sets for its clients, and the reasons for these limits."""
 
 from typing import Final
 

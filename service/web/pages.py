@@ -202,5 +202,5 @@ def page(
 
 
 def _markdown(text: str, exercise: Exercise) -> Markup:
-    """Return a text that the exercise's author has written in Markdown as HTML."""
+    """Return the HTML of a text that the exercise's author has written in Markdown."""
     return own_html(statement_html(text, exercise.symbols))

@@ -30,7 +30,7 @@ _FOR_TUTORS: Final[Mapping[str, str]] = {
 
 
 def problem_page(assets: Assets) -> ProblemPage:
-    """Return a function that makes the response with a problem as a page.
+    """Return a function that makes a response with an HTML page from a problem.
 
     The function returns None if the request did not ask for a page.
     """

@@ -95,7 +95,7 @@ def sign_in_address(path: str, query: str) -> str:
 
 
 def own_path(path: str) -> str:
-    """Return the path if it leads to a tutor's page, otherwise the path of tutors' home page."""
+    """Return the path if it leads to a tutor's page, otherwise the path of the home page."""
     is_ours = len(path) <= _LONGEST and _OURS.fullmatch(path) and ".." not in unquote(path)
     return path if is_ours else HOME
 

@@ -1,7 +1,7 @@
 """Find the variant of an exercise that a learner has in an assignment, for routes of exercises.
 
 If a request has ``?course=…&assignment=…``, the route uses the learner's own variant. The token of
-the request names the learner. The response names the exercise, not the variant, by its id.
+the request names the learner. The response has the id of the exercise, not of the variant.
 """
 
 from typing import TYPE_CHECKING, Any, Final

@@ -46,7 +46,7 @@ def validated(model: type[M], value: object, at: Location = ()) -> M:
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    """Return the value with at most ``MAX_ERRORS`` unknown fields; a problem lists no more."""
+    """Return the value without unknown fields beyond ``MAX_ERRORS``: no problem lists more."""
     known = model.model_fields
     if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
         return value

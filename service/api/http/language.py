@@ -17,8 +17,8 @@ def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
     """Return the language of the query (``?lang=de``), the cookie or ``Accept-Language``.
 
     The first of these three that names a language of the service decides. If none does, the
-    language is English. ``usual`` is the reader's language elsewhere, such as on a platform. If it
-    is given, it has priority over ``Accept-Language``, but not over the cookie.
+    language is English. ``usual`` is the reader's language elsewhere, such as on a platform.
+    ``usual`` has priority over ``Accept-Language``, but not over the cookie.
     """
     return (
         language_named(request.query_params.get(LANGUAGE_FIELD))

@@ -59,7 +59,7 @@ _NOT_SHOWN: Final = {
 class Identity:
     """The caller of a request; ``by_key`` is True if the service has keys.
 
-    ``refusal`` is the problem to answer with if the key is not valid. ``in_browser`` is True if a
+    ``refusal`` is the problem to send if the key is not valid. ``in_browser`` is True if a
     browser has added the key by itself, perhaps for a page of another origin.
     """
 
@@ -73,7 +73,7 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 
 
 class Access:
-    """The checks of callers.
+    """Checks who the callers are and what they may do.
 
     ``solutions`` and ``read_attempts`` say who may see solutions and attempts: nobody (False),
     tutors (None), or, while there are no keys, everybody (True).
@@ -165,7 +165,7 @@ class Access:
         return self.keys.token(caller, expires_at)
 
     def close(self) -> None:
-        """Write down the latest uses of keys, and stop the threads that look up keys."""
+        """Record the latest uses of keys, and stop the threads that look up keys."""
         if self.keys is not None:
             self.keys.close()
 

@@ -213,7 +213,7 @@ def routes(
 
 
 class _Regrades:
-    """Runs steps of regrades, one at a time, so that the service can record and grade meanwhile."""
+    """Runs one step of a regrade at a time, so that the service can record and grade meanwhile."""
 
     def __init__(self, ceiling: FeedbackLevel) -> None:
         self._ceiling = ceiling

@@ -62,7 +62,7 @@ _MOST_MECHANISMS: Final = 64
 
 
 class _Mechanisms:
-    """The most recently used mechanisms, by their numbers; dragging a slider reuses a mechanism."""
+    """The most recently used mechanisms. While a slider is dragged, a mechanism is used again."""
 
     def __init__(self) -> None:
         self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
@@ -217,7 +217,7 @@ def _table(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
-    """Return a table's frames for the response, and for the drawing (None if unreadable)."""
+    """Return the frames for the response, and for the drawing, if the table can be read."""
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
         written = table_to_draw(table.rows, scope, budget, body.angle_unit)

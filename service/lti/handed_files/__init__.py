@@ -1,1 +1,1 @@
-"""Grade files that students hand in at a platform, and send it reports (Asset Processor)."""
+"""Grade files that students hand in at a platform, and report there (Asset Processor)."""

@@ -38,7 +38,7 @@ class FileReporting:
         now: Callable[[], datetime] = utc_now,
         chance: Callable[[], float] = random.random,
     ) -> None:
-        """``now`` returns the time; ``chance`` a random number from 0 to 1 for each pause."""
+        """``now`` returns the time, ``chance`` a random number from 0 to 1 for each pause."""
         self._engine, self._catalogue = engine, catalogue
         self.now, self._chance = now, chance
         self._platform = PlatformFiles(

@@ -57,7 +57,7 @@ class ScoreSender:
         now: Callable[[], datetime] = utc_now,
         chance: Callable[[], float] = random.random,
     ) -> None:
-        """``now`` returns the time; ``chance`` a random number from 0 to 1 for each pause."""
+        """``now`` returns the time, ``chance`` a random number from 0 to 1 for each pause."""
         self._engine = engine
         self.now, self._chance = now, chance
         self._name = secrets.token_hex(8)

@@ -48,7 +48,7 @@ def log_config(form: Literal["text", "json"]) -> dict[str, Any]:
 
 
 class RequestIds(logging.Filter):
-    """Adds to a line the id of the request that is being answered."""
+    """Adds the id of the request that is being answered to a line of the log."""
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Add the request id; return True, so that the line is written."""

@@ -184,7 +184,7 @@ def distribution(book: Gradebook) -> list[PointsGroup]:
 
 
 def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
-    """Return each exercise's id and points, how many learners have points, and their mean."""
+    """Return each exercise's id and points, and the number and mean points of its learners."""
     found = []
     for i, column in enumerate(book.columns):
         earned = [row.points[i] for row in book.rows if row.points[i] is not None]

@@ -199,7 +199,7 @@ def choosing_page(
 def found(
     catalogue: Catalogue, language: Language, search: str, chosen: Mapping[str, str]
 ) -> Sequence[tuple[Exercise, str]]:
-    """Return pairs of exercise and points: first the chosen exercises, then those found."""
+    """Return the chosen exercises, then the exercises that a search finds, each with points."""
     words = search.lower().split()
 
     def has_words(each: Exercise) -> bool:

@@ -167,7 +167,7 @@ class _Launching:
         return known, begun
 
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
-        """Return the message in a token. Raises LtiError, and stores the refusal's name."""
+        """Return the message in a token. Raises LtiError after noting why the token is refused."""
         from service.lti.messages import key_id_of, message_in
         from service.lti.problems import LtiError
         from service.lti.registrations import note_refusal

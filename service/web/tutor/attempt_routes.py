@@ -36,7 +36,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
-        """Return the page of attempts. For a restricted key, it lists one exercise at a time."""
+        """Return the page of attempts. A restricted key sees one exercise at a time there."""
         caller = access.caller(request)
         require_reach(caller, exercise or None)
         shown = reachable_exercises(catalogue, caller)

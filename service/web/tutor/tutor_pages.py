@@ -100,7 +100,7 @@ def editor_page(
     can_write: bool,
     copied: str = "",
 ) -> bytes:
-    """Return the page of the editor with the text of a file, or of a copy of ``copied``."""
+    """Return the page of the editor with the text of a file, or with a copy of ``copied``."""
     return _page(
         "editor",
         assets,

@@ -71,7 +71,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """Return the home page for tutors. For a restricted key, it lists only its exercises."""
+        """Return the tutors' home page. A restricted key sees only that key's exercises there."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(
