@@ -1,4 +1,4 @@
-"""The clients, with and without ``await``. Their methods send the calls of ``calls``."""
+"""The clients, with and without ``await``. Their methods build and send the service's calls."""
 
 import asyncio
 import threading

@@ -10,10 +10,10 @@ from service.client.errors import GraderClientError
 class Retries:
     """The number of retries, and the waits before them in seconds.
 
-    The waits double from ``first_wait`` up to ``longest_wait``. By default they last 15 seconds in
-    all, in which a service can restart. Each wait is then shortened at random by up to half, so
-    that clients that failed together do not retry together. A wait that the service asks for is
-    added. If the service asks for more than ``longest_wait``, the client gives up.
+    The waits double from ``first_wait`` up to ``longest_wait``. By default, they last 15 seconds in
+    all, so that a service can restart meanwhile. Each wait is then shortened at random by up to
+    half, so that clients that failed together do not retry together. A wait that the service asks
+    for is added. If the service asks for more than ``longest_wait``, the client gives up.
     """
 
     number: int = 5

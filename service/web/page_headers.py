@@ -1,4 +1,4 @@
-"""The headers of the pages, among them the policy of what a browser may load and run."""
+"""The HTTP headers of the pages, with the policy that says what a browser may load and run."""
 
 from typing import Final
 

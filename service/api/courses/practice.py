@@ -1,4 +1,4 @@
-"""The check that an assignment lets a learner practise."""
+"""Check whether a learner's assignments let the learner practise."""
 
 from datetime import UTC, datetime
 from http import HTTPStatus

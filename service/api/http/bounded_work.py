@@ -1,4 +1,4 @@
-"""Slow work: in a thread, one piece at a time, with a short queue."""
+"""Do slow work in a thread, one piece at a time, with a short queue."""
 
 import asyncio
 from collections.abc import Callable

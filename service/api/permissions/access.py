@@ -141,9 +141,9 @@ class Access:
     def require_allowed_origin(self, request: Request, origins: Collection[str]) -> None:
         """Check that the request comes from a page that may record attempts. Raises ProblemError.
 
-        The pages of the service and of ``origins`` may do so. A browser sends the POST of any page
-        without asking the service first, and only hides the response from the page. Requests with a
-        key that the browser has not added by itself skip this check.
+        The pages of the service and of ``origins`` may record attempts. A browser sends the POST of
+        any page without asking the service first, and only hides the response from the page.
+        Requests with a key that the browser has not added by itself skip this check.
         """
         identity = self._identity(request)
         shows_key = bool(identity.caller.key_id) and not identity.in_browser

@@ -39,7 +39,7 @@ GENERIC: Final = Vocabulary(
 
 
 def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
-    """Return the reading of the text in this vocabulary."""
+    """Return how the text is read with the symbols of this vocabulary."""
     try:
         expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
     except ExpressionError as error:
@@ -57,7 +57,7 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
 
 
 def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
-    """Return how a grading reads the entries, within the work budget of one submission."""
+    """Return how the grader reads the entries, within the work budget of one submission."""
     entries = [(entry.text, entry.quantity) for entry in body.entries]
     cells = preview_entries(entries, exercise, body.part, body.angle_unit)
     return PreviewManyResponse(results=[_answer(cell) for cell in cells])

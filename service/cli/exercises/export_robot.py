@@ -16,7 +16,7 @@ from service.translations import say
 
 
 class ExportFormat(StrEnum):
-    """A program that can read the robot."""
+    """The format of an exported robot: a URDF file, or a script for the Robotics Toolbox."""
 
     URDF = "urdf"
     TOOLBOX = "toolbox"

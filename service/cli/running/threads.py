@@ -1,4 +1,4 @@
-"""Map a function over many items in several threads. It is for functions that wait for I/O."""
+"""Map a function that waits for I/O over many items in several threads."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator

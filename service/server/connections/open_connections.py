@@ -30,7 +30,7 @@ class OpenConnection(Protocol):
     unfinished: int
 
     def expire(self) -> None:
-        """Close the connection because its time is over."""
+        """Close the connection because its time limit has passed."""
 
     def reset(self) -> None:
         """Close the connection at once."""

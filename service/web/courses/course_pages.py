@@ -171,7 +171,7 @@ def roster_page(
 
 
 def distribution(book: Gradebook) -> list[PointsGroup]:
-    """Group the learners who have handed something in by their share of all points."""
+    """Group the learners with hand-ins by each learner's share of all points."""
     most = sum(each.points for each in book.columns)
     counts = [0] * _GROUPS
     for row in book.rows:

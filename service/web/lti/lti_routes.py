@@ -266,6 +266,6 @@ def cookie_name(known: "Registration", state: str) -> str:
 
 
 def set_cookie(answer: Response, begun: "NewLogin") -> None:
-    """Set the cookie of a login. Browsers accept it also from this machine without HTTPS."""
+    """Set the cookie of a login. From their own machine, browsers accept it without HTTPS, too."""
     name = cookie_name(begun.registration, begun.state)
     answer.set_cookie(name, begun.browser, _AGE, secure=True, httponly=True, samesite="none")

@@ -54,7 +54,7 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
 
     @router.post("/assignment")
     async def choose(request: Request) -> Response:
-        """Search exercises, or make the assignment of a resource link."""
+        """Search for exercises, or make the assignment of a resource link."""
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
         language = language_of(request, fields.get("locale", [""])[0])
@@ -121,7 +121,7 @@ class _NotYetError(Exception):
 
 
 def _rows(connection: Connection, ticket: LtiTicket) -> tuple[Row[Any], Row[Any]]:
-    """Return the rows of the context and of the link of a ticket. Raises LtiError."""
+    """Return the rows of a ticket's context and resource link. Raises LtiError."""
     of_context = (contexts.c.number == ticket.context) & (
         contexts.c.registration == ticket.registration
     )
@@ -136,7 +136,7 @@ def _rows(connection: Connection, ticket: LtiTicket) -> tuple[Row[Any], Row[Any]
 
 
 def form_lists(body: bytes) -> Mapping[str, list[str]]:
-    """Return the fields of a form, with all values of each."""
+    """Return all values of each field of a form, by field name."""
     try:
         return parse_qs(body.decode(errors="replace"), max_num_fields=_MOST_FIELDS)
     except ValueError:

@@ -59,7 +59,7 @@ class Picked:
     message: str = ""
 
     def with_message(self, message: str) -> "Picked":
-        """Return a copy with this error message."""
+        """Return a copy of the form's fields with this error message."""
         return replace(self, message=message)
 
 

@@ -1,4 +1,4 @@
-"""The route of the picker's form: search exercises, send links to the platform, or cancel."""
+"""The route of the picker's form: search for exercises, send links to the platform, or cancel."""
 
 import asyncio
 import logging
@@ -62,7 +62,7 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
 
     @router.post("/links")
     async def pick(request: Request) -> Response:
-        """Search exercises, or send the chosen links to the platform; none if the tutor cancels."""
+        """Search for exercises, or send the chosen links to the platform; none after a cancel."""
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
         language = language_of(request, fields.get("locale", [""])[0])
