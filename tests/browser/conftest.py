@@ -1,4 +1,4 @@
-"""Fixtures: a real server for all tests of a process, and two other origins."""
+"""Fixtures: a real server of the service, and web servers of two other origins."""
 
 import os
 import threading
@@ -16,7 +16,7 @@ from tests.browser.hostile import HOSTILE_EXERCISE
 
 @dataclass
 class Origin:
-    """A web server of another origin; ``pages`` has the texts of its pages by path."""
+    """A web server of another origin; ``pages`` maps paths to the texts of its pages."""
 
     address: str
     pages: dict[str, str] = field(default_factory=dict)
@@ -63,7 +63,7 @@ def origin() -> Iterator[Origin]:
 
 @pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory, other_origin: Origin) -> Iterator[str]:
-    """Return the address of a real service with the shipped exercises and a hostile one."""
+    """Return the address of a real service with the shipped exercises and a hostile exercise."""
     folder = tmp_path_factory.mktemp("exercises")
     (folder / "hostile.toml").write_text(HOSTILE_EXERCISE, encoding="utf-8")
     variables = {

@@ -1,4 +1,4 @@
-"""One browser for all tests of a process, and visits with it."""
+"""One browser for all tests of a process, and visits to pages with this browser."""
 
 import asyncio
 import os
@@ -45,7 +45,7 @@ def chromium() -> Chromium:
 
 @dataclass
 class Started:
-    """A browser, and the event loop of Playwright."""
+    """A started browser, and the event loop of Playwright."""
 
     browser: Browser
     loop: asyncio.AbstractEventLoop
@@ -68,10 +68,10 @@ def started_browser(chromium: Chromium) -> Iterator[Started]:
 
 @pytest.fixture
 def browser(started_browser: Started) -> Iterator[Browser]:
-    """The browser.
+    """The browser for tests.
 
-    Playwright leaves its event loop marked as running in this thread, so that no other loop could
-    be run there: the mark is taken away while tests without a browser run.
+    Playwright leaves its event loop marked as running in this thread, which prevents other loops.
+    The fixture removes this mark while tests without a browser run.
     """
     asyncio._set_running_loop(started_browser.loop)
     yield started_browser.browser
@@ -80,7 +80,7 @@ def browser(started_browser: Started) -> Iterator[Browser]:
 
 @dataclass
 class Visit:
-    """A page, and the browser's complaints about it."""
+    """A page, the browser's errors and warnings on it, and the addresses of its requests."""
 
     page: Page
     complaints: list[str] = field(default_factory=list)
@@ -92,28 +92,28 @@ READBACK: Final = "GPU stall due to ReadPixels"
 
 
 def complaint(line: ConsoleMessage) -> list[str]:
-    """Return the message of the console, if it is a complaint.
+    """Return a list with the console message, or an empty list if the test may ignore it.
 
-    A missing /favicon.ico is no complaint: a browser requests this icon if a page, such as a JSON
-    document, names no icon.
+    A missing /favicon.ico is ignored: a browser requests this file if a page, such as a JSON
+    document, does not name an icon.
     """
     is_known = READBACK in line.text or line.location["url"].endswith("/favicon.ico")
     return [f"{line.text} {line.location['url']}"] if is_serious(line) and not is_known else []
 
 
 def is_serious(line: ConsoleMessage) -> bool:
-    """True for an error or a warning."""
+    """True if the console message is an error or a warning."""
     return line.type in ("error", "warning")
 
 
 def failure(request: Request) -> list[str]:
-    """Return the failure of a request, unless the visitor left the page."""
+    """Return a list with the failure of a request; empty if the visitor has left the page."""
     return [] if request.failure == "net::ERR_ABORTED" else [f"{request.failure}: {request.url}"]
 
 
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
-    """Yield a function that opens a page in a new context; fail if any page had complaints."""
+    """Yield a function that opens a page in a new context; fail if one had an error or warning."""
     contexts: list[BrowserContext] = []
     visits: list[Visit] = []
 

@@ -106,7 +106,7 @@ def ten_minutes(page: Page, service: str) -> None:
 
 
 def frames(page: Page, service: str) -> None:
-    """Place frames, of which one breaks a rule."""
+    """Place frames; one of them breaks a rule."""
     open_exercise(page, service, "planar-rrr-frames")
     placed = ("1,+z,0,0,0,+x", "2,-z,l1,0,0,+x", "3,+z,l1+l2,0,0,+z")
     for i, text in enumerate(",".join(placed).split(",")):
@@ -117,7 +117,7 @@ def frames(page: Page, service: str) -> None:
 
 
 def slip(page: Page, service: str) -> None:
-    """Mark a cell in which there is no slip."""
+    """Mark a correct cell as the slip."""
     open_exercise(page, service, "find-the-slip-scara")
     page.get_by_role("button", name="mark row 3").click()
     page.get_by_role("button", name="Check").click()

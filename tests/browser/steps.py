@@ -21,7 +21,7 @@ def cells(page: Page, part: int = 0) -> Locator:
 
 
 def right_answers(exercise: Exercise) -> dict[str, list[str]]:
-    """Return the entries of each part in order, from the author's checks of right answers."""
+    """Return the entries of each part in order, from the author's checks with correct answers."""
     found: dict[str, list[str]] = {}
     for check in exercise.checks:
         if check.kind == "right":

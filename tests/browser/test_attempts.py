@@ -64,7 +64,7 @@ class Recording:
             return str(json.load(answer)["attempt"]["id"])
 
     def correct(self) -> None:
-        """Change the exercise so that a table without the half turn is right."""
+        """Change the exercise so that the correct table has no half turn."""
         text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
         changed = text.replace('["a2", "180deg",', '["a2", "0",').partition("[[checks]]")[0]
         assert "180deg" not in changed, "the exercise has changed"

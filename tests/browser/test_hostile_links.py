@@ -1,4 +1,4 @@
-"""Forged links: their answers are shown as text, or ignored."""
+"""Pages show the answers in forged links as text, or ignore them."""
 
 import base64
 import json

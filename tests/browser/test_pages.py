@@ -40,7 +40,7 @@ FORCED_FILL = """() => {
 
 
 def violations(shown: Page | Frame, axe: str) -> list[str]:
-    """Return the violations that axe-core finds: all in light mode, contrast in the others."""
+    """Return the violations that axe-core finds; in dark and forced colours, only of contrast."""
     page = shown.page if isinstance(shown, Frame) else shown
     shown.evaluate(f"({json.dumps(axe)}, 0)")
     shown.evaluate(FORCED_FILL)

@@ -1,4 +1,4 @@
-"""Blocks of a spreadsheet that are smaller than the table, and undo in free play."""
+"""Paste a part of a table from a spreadsheet; undo a change of the table in free play."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The start page: levels, search, and marks of what is done."""
+"""The start page: levels, search, and check marks for exercises that are done."""
 
 import re
 from collections.abc import Callable

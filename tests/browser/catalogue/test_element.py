@@ -1,4 +1,4 @@
-"""The element on pages of other sites: colours, fonts, read-only answers, messages, parts."""
+"""The exercise element on pages of other sites: colours, read-only answers, messages, parts."""
 
 import re
 from collections.abc import Callable

@@ -46,7 +46,7 @@ def administrator(database: str) -> str:
 
 
 def hand_in(link: str, address: str) -> None:
-    """Hand the right table in, with the key of a personal link."""
+    """Submit the correct table with the key from a personal link."""
     body = json.dumps({"exercise": "scara", "answers": {"table": RIGHT}}).encode()
     headers = {"Authorization": f"Bearer {link.partition('#')[2]}", "Idempotency-Key": "1"}
     path = f"{address}/v1/courses/robots/assignments/homework-1/attempts"
@@ -167,7 +167,7 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
 
 
 def _delete(page: Page, said: str, check: Callable[[], None]) -> None:
-    """Delete the course or assignment of a page; the page must first say what is deleted."""
+    """Delete the course or assignment of this page; the page must first say what it deletes."""
     page.get_by_text("Delete", exact=True).click()
     page.get_by_role("button", name="Delete the").click()
     expect(page.get_by_text(said)).to_be_visible()

@@ -1,4 +1,4 @@
-"""A tutor gives each learner numbers of their own, looks at them, and deals new ones."""
+"""A tutor gives each learner a variant of an exercise, looks at it, and deals another one."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The whole way: class list, links, hand-in, report, a late one, gradebook, regrade, new points."""
+"""A course from class list and links over hand-ins, one of them late, to regraded points."""
 
 import csv
 from collections.abc import Callable
@@ -22,12 +22,12 @@ LATE_BEFORE, LATE_AFTER = "3.13", "4"
 
 
 def day(days: int) -> str:
-    """Return the same time of another day, in the format of a form field."""
+    """Return the present time of day ``days`` days from now, in the format of a form field."""
     return f"{datetime.now(ZoneInfo('Europe/Berlin')) + timedelta(days=days):%Y-%m-%dT%H:%M}"
 
 
 def correct(folder: Path) -> None:
-    """Change the exercise, but not its checks: a table without the half turn is now right."""
+    """Change the exercise, but not its checks, so that the correct table has no half turn."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     changed = text.replace('["a2", "180deg",', '["a2", "0",')
     (folder / "scara.toml").write_text(changed, encoding="utf-8")
@@ -54,7 +54,7 @@ def set_up(tutor: Page, address: str, key: str) -> None:
 
 
 def links(tutor: Page, file: Path) -> dict[str, str]:
-    """Download the links; return them by name."""
+    """Download the personal links; return each link by the learner's name."""
     with tutor.expect_download() as downloading:
         tutor.get_by_role("button", name="Download links").click()
     downloading.value.save_as(file)

@@ -1,7 +1,7 @@
-"""How much work a page does for each picture while something in it moves.
+"""Measure the work of a page for each picture of an animation.
 
-Only work counts: passes over the styles, and processor time of scripts. How many pictures a second
-has depends on what else the machine does, so that number is only told.
+The work is the number of passes over the styles, and the processor time of scripts. The number of
+pictures per second depends on other programs on the machine, so this number is only printed.
 """
 
 from typing import Final, NamedTuple
@@ -24,7 +24,7 @@ _PICTURES: Final = """async (element, move) => {
 
 
 class Pace(NamedTuple):
-    """The pictures of one second, and what the page did for them."""
+    """The number of pictures in one second, and the page's work for them."""
 
     pictures: int
     style_passes: float
@@ -35,12 +35,12 @@ class Pace(NamedTuple):
 
 
 def pace(element: Locator, move: str | None = None) -> Pace:
-    """Measure one second of pictures.
+    """Measure the page's work while it draws pictures for one second.
 
     Args:
         element: An element of the page.
         move: A JavaScript function that changes the element before each picture. It gets the
-            element and the seconds so far.
+            element and the seconds since the start.
     """
     session = element.page.context.new_cdp_session(element.page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})

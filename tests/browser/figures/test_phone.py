@@ -1,4 +1,4 @@
-"""The page of an exercise on a phone shows the figure in the room for which figures are drawn."""
+"""On a phone, the page of an exercise shows the figure at the size for which it is drawn."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The model solution beside the student's own answers opens in the page, matrix by matrix."""
+"""A student opens the model solution beside the own answers, and compares matrix by matrix."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The pages on which lecturers run a course are translatable, and fit in the pseudo-language."""
+"""The course pages for lecturers are translatable, and longer texts fit on the screen."""
 
 import json
 from collections.abc import Callable

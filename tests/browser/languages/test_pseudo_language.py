@@ -1,4 +1,4 @@
-"""Pages in the pseudo-language: everything is translatable, and fits although it is longer."""
+"""Pages in the pseudo-language: every text is translatable, and longer texts fit on the screen."""
 
 from collections.abc import Callable, Iterator
 

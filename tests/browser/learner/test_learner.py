@@ -1,4 +1,4 @@
-"""A learner hands in on the page of a personal link, and on a course site of another origin."""
+"""A learner submits on the page of a personal link, and on a course site of another origin."""
 
 import re
 from collections.abc import Callable
@@ -65,9 +65,9 @@ def fill(page: Page, texts: list[str]) -> None:
 
 
 def lose_the_answer(route: Route) -> None:
-    """Let the service record a request, but give the page no answer.
+    """Let the service record a request, but send no response to the page.
 
-    If the page reloads meanwhile, it cancels the request itself.
+    If the page reloads meanwhile, the page cancels the request itself.
     """
     with suppress(Error):
         route.fetch()

@@ -1,4 +1,4 @@
-"""A learner takes hints at handed-in answers, sees their price, and compares with the solution."""
+"""After hand-ins, a learner takes hints, sees their price, and opens the model solution."""
 
 from collections.abc import Callable
 

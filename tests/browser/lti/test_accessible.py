@@ -30,8 +30,8 @@ def without_exercises(claims: dict[str, Any]) -> None:
 def framed(page: Page, text: str) -> Frame:
     """Return the frame of the service as soon as it has a text.
 
-    The frame moves to another process while it opens. A locator that began in the old one may wait
-    for ever, so the frames are looked at again and again.
+    The frame moves to another process while it opens. A locator that began in the old process may
+    wait for ever, so this function polls the frames.
     """
     while True:
         for each in page.frames:

@@ -14,7 +14,7 @@ KEPT = """() => {
 
 
 def sent_keys(course: Course) -> set[str]:
-    """Return a growing set of the keys that the pages of the course send from now on."""
+    """Return a set that will contain all keys that the pages of the course send from now on."""
     keys: set[str] = set()
 
     def note(request: Request) -> None:

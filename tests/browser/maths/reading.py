@@ -26,5 +26,5 @@ _TEXTS: Final = """() => {
 
 
 def typed_names(page: Page) -> list[str]:
-    """Return the texts of a page that have a name as it is typed, not typeset."""
+    """Return the texts of a page that contain a name such as theta1 without typesetting."""
     return [text.strip() for text in page.evaluate(_TEXTS) if _TYPED.search(text)]

@@ -24,7 +24,7 @@ def robot(page: Page) -> str:
 
 
 def model_cells(service: str, exercise: str) -> list[str]:
-    """Return the cells of the model solution, as a tutor on this machine gets them."""
+    """Return the cells of the model solution, which a tutor on this machine may see."""
     answered = httpx.get(f"{service}/v1/exercises/{exercise}/solution").raise_for_status()
     rows: list[dict[str, Any]] = answered.json()["parts"][0]["answer"]["rows"]
     return [str(row[name]) for row in rows for name in ("a", "alpha", "d", "theta")]
@@ -81,7 +81,7 @@ def test_a_student_solves_a_robot_and_takes_another(
 
 @pytest.mark.long
 def test_back_is_followed_though_a_robot_has_just_loaded(visit: Opening, service: str) -> None:
-    """The page is notified shortly after the address changes; a robot may be ready in between."""
+    """A robot may be ready after the address has changed, but before the page is notified of it."""
     page = visit().page
     page.goto(f"{service}/practice#practice-1-standard~5")
     expect(page.locator("#title")).to_have_text("Practice robot 5, level 1")

@@ -1,4 +1,4 @@
-"""A change of the answer after a check removes the marks that may no longer be right."""
+"""If a student changes a checked answer, the page removes verdicts that may be out of date."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""A slip is marked and mended by keyboard, on a phone, and with a screen reader's names."""
+"""A student marks and mends a slip: by keyboard, on a phone, and with names for screen readers."""
 
 from collections.abc import Callable
 

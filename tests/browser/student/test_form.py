@@ -1,4 +1,4 @@
-"""The student's form: repairs that the report proposes, a box to paste, and a free view."""
+"""The student's form: proposed repairs, a box for a whole table, and texts that stay visible."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The form of an exercise by keyboard: from an empty page to full marks, and to each slip."""
+"""The form of an exercise by keyboard: from an empty page to full marks, and to the first slip."""
 
 import re
 from collections.abc import Callable, Mapping

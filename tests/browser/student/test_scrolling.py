@@ -1,4 +1,4 @@
-"""Areas that scroll sideways have an arrow at each edge beyond which something is hidden."""
+"""Areas that scroll sideways have an arrow at each edge that hides something."""
 
 from collections.abc import Callable
 

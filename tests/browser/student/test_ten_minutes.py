@@ -1,4 +1,4 @@
-"""DH in ten minutes: six screens by keyboard, the links to them, and rows that are given."""
+"""DH in ten minutes: six screens by keyboard, links to the screens, and tables with given rows."""
 
 import re
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Files that a tutor chooses before the page's scripts have arrived are used all the same."""
+"""The page uses files that a tutor chose before the page's scripts had arrived."""
 
 from collections.abc import Callable
 from pathlib import Path
