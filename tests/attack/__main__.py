@@ -135,7 +135,7 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
 
 
 def _without(running: Service, pause: float, seconds: float) -> Waits:
-    """Return the waiting times of honest submissions without an attack."""
+    """Return the waiting times of honest submissions while nothing attacks the service."""
     with watched(running, pause, HONEST_ADDRESS) as (submissions, health):
         time.sleep(seconds)
     _print(f"nothing, pauses of {pause} s", submissions, health)

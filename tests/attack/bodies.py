@@ -115,7 +115,7 @@ def _entry(value: Any, random: Random) -> Any:
 
 
 def spoiled(value: Any, random: Random, share: float) -> Any:
-    """Return the value with a share of its entries, and sometimes a list, changed at random."""
+    """Return the value with a share of its entries, and sometimes the order of a list, changed."""
     if isinstance(value, dict):
         return {key: spoiled(each, random, share) for key, each in value.items()}
     if not isinstance(value, list):
@@ -152,7 +152,7 @@ def answers_of(model: Model, random: Random) -> dict[str, Any]:
 
 
 def submission(random: Random, number: int | None = None) -> Post:
-    """Return a random submission; with a ``number``, its entries are unique to that number."""
+    """Return a random submission; a ``number`` is added in its texts, which makes them unique."""
     model = drawn_model(random)
     body: dict[str, Any] = {"answers": answers_of(model, random)}
     if random.random() < 0.3:
@@ -170,7 +170,7 @@ def submission(random: Random, number: int | None = None) -> Post:
 
 
 def _make_unique(answers: dict[str, Any], number: int) -> None:
-    """Add 0 times the number to one text of each part."""
+    """Append ``+ 0*number`` to one text of each part, unless the answer to the part is one text."""
     for part, answer in answers.items():
         if isinstance(answer, str):
             continue
@@ -178,7 +178,7 @@ def _make_unique(answers: dict[str, Any], number: int) -> None:
 
 
 def _with_zero(value: Any, number: int) -> tuple[Any, bool]:
-    """Return the value with 0 times the number added to its first text, and True if it has one."""
+    """Return the value with ``+ 0*number`` in its first text, and True if the value has a text."""
     if isinstance(value, str) and value.strip():
         return f"{value} + 0*{number}", True
     if isinstance(value, dict | list):

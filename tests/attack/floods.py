@@ -25,7 +25,7 @@ Flood = Callable[[Service, ExitStack, float], str]
 
 
 def half_open(heads: int) -> Flood:
-    """Return a flood of ``heads`` connections that send half a head."""
+    """Return a flood of ``heads`` connections that send half of the head of a request."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         lines = [opened.enter_context(running.connect(HEAD, SOURCE)) for _ in range(heads)]
@@ -37,7 +37,7 @@ def half_open(heads: int) -> Flood:
 
 
 def half_bodies(bodies: int) -> Flood:
-    """Return a flood of ``bodies`` connections that send a large body without its end."""
+    """Return a flood of ``bodies`` connections that send a large body, but not its end."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = HEAD + b"Content-Length: 260000\r\n\r\n" + b" " * 250_000
@@ -164,9 +164,9 @@ def costly(
     *,
     again: bool = True,
 ) -> Flood:
-    """Return a flood of costly requests on 16 connections, each sent after the last answer.
+    """Return a flood on 16 connections: each sends costly requests, one after each response.
 
-    Unless ``again``, each request opens a new connection.
+    If ``again`` is false, each request opens a new connection.
     """
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
@@ -197,7 +197,7 @@ def costly(
 
 
 def _answer(line: socket.socket, until: float) -> bool:
-    """Read one answer; return False if the connection or the time ends before."""
+    """Read one response; return False if the connection closes first or the time is over."""
     received = b""
     while time.monotonic() < until:
         with suppress(TimeoutError):

@@ -50,7 +50,7 @@ class Name(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """Terms, each with its sign; at least two, or one that is negative."""
+    """A sum of signed terms: two or more terms, or one negative term."""
 
     terms: "tuple[tuple[int, Tree], ...]"
 
@@ -126,7 +126,7 @@ def _constant(tree: Number | Ratio | Turn) -> float:
 
 
 def numbers(random: Random, samples: int = 7) -> dict[str, Values]:
-    """Return random values of shape (samples,) for each name."""
+    """Return a dictionary from each name to random values of shape (samples,)."""
     return {name: np.array([random.uniform(0.25, 1.25) for _ in range(samples)]) for name in NAMES}
 
 

@@ -1,4 +1,4 @@
-"""Compare reports on submissions in many spellings with the report on the plain spelling."""
+"""Compare reports on an answer in many spellings with the report on its plain spelling."""
 
 import json
 import re
@@ -62,7 +62,7 @@ _TERM: Final = re.compile(r"\s*([+-]?)\s*([A-Za-z][A-Za-z_]*\d?|\d+deg|[\d.]+)")
 
 
 def exercise_of(trees: Sequence[Sequence[Tree]]) -> Exercise:
-    """Return an exercise whose answer is this matrix."""
+    """Return an exercise whose correct answer is this matrix."""
     plain = Writer(PLAIN, Random(0))
     # A list of texts is written in TOML as in JSON.
     rows = json.dumps([[plain.write(each) for each in row] for row in trees])
@@ -121,7 +121,7 @@ def _drawn(random: Random) -> Tree:
 
 
 def matrices(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """Submit a right matrix, and one with a changed sign, in a few formats; yield the outcomes."""
+    """Submit a correct matrix and a matrix with a changed sign in some formats; yield outcomes."""
     trees = [[_drawn(random) for _ in range(3)] for _ in range(random.randint(2, 3))]
     exercise = exercise_of(trees)
     spoiled = _spoiled(random, trees)
@@ -233,7 +233,7 @@ _HEADERS: Final = (
 
 
 def tables(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """Submit a table, right or with slips, as rows and pasted; yield the outcomes."""
+    """Submit a table with or without slips, as rows and as pasted text; yield the outcomes."""
     exercise, trees = _table(random)
     rows = _slips(random, trees)
     plain = Writer(PLAIN, random)

@@ -1,4 +1,4 @@
-"""Honest clients: measure how long they wait for their answers during an attack."""
+"""Honest clients: measure how long they wait for responses during an attack."""
 
 import http.client
 import threading
@@ -18,7 +18,7 @@ GRADE = f"/v1/exercises/{EXERCISE}/grade"
 
 @dataclass
 class Waits:
-    """The waiting times of answers in seconds, and the requests without an answer."""
+    """The waiting times for responses in seconds, and the failures of requests."""
 
     seconds: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -41,9 +41,9 @@ class Waits:
 def watched(
     running: Service, pause: float = 0.0, source: str = "127.0.0.2"
 ) -> Iterator[tuple[Waits, Waits]]:
-    """Run honest clients meanwhile; yield the waiting times of submissions and of health checks.
+    """Run honest clients during the block; yield the waits of submissions and of health checks.
 
-    Each client pauses for ``pause`` seconds after each answer.
+    Each client pauses for ``pause`` seconds after each response.
     """
     submissions, health = Waits(), Waits()
     over = threading.Event()

@@ -1,7 +1,8 @@
 """Generate texts, grids and whole requests, and check how the program reads them.
 
-Each case is read once, and again from empty caches after all others of its group; one in five is
-also read twice in a row. All readings must be equal, and only documented errors may be raised.
+The program reads all cases of a group; it reads every fifth case twice in a row. Then it reads each
+case again with empty caches. All readings of a case must be equal, and only documented errors may
+be raised.
 """
 
 import json
@@ -110,7 +111,7 @@ def _grid(random: Random) -> str:
 
 
 class Reading:
-    """Reads cases with the program, in this process."""
+    """Lets the program read cases in this process."""
 
     @cached_property
     def service(self) -> InProcess:
@@ -202,7 +203,7 @@ def group(chosen: Sequence[Case], reading: Reading) -> Found:
 
 
 def measured(case: Case, reading: Reading) -> Costly:
-    """Return the cost of a case from empty caches: the least of three measurements."""
+    """Return the cost of a case with empty caches: the least of three measurements."""
     ratios = []
     for _ in range(3):
         clear_caches()

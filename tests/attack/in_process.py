@@ -18,14 +18,14 @@ class Post(NamedTuple):
 
 
 class Reply(NamedTuple):
-    """The status and the body of an answer."""
+    """The status and the body of a response."""
 
     status: int
     body: bytes
 
 
 class InProcess:
-    """The application with an event loop of its own, called as a server would."""
+    """The application with its own event loop; it is called as a server calls it."""
 
     def __init__(self) -> None:
         self.catalogue = shipped_exercises()
@@ -37,7 +37,7 @@ class InProcess:
         self._loop.close()
 
     def post(self, post: Post) -> Reply:
-        """Return the answer to a request. Exceptions of the application are raised."""
+        """Return the response to a request. Raises the exceptions of the application."""
         return self._loop.run_until_complete(self._answer(post))
 
     async def _answer(self, post: Post) -> Reply:

@@ -1,8 +1,8 @@
-"""`python -m tests.attack.memory --count 1000000`: does the memory grow with many requests?
+"""`python -m tests.attack.memory --count 1000000`: test if many requests make the memory grow.
 
 Send requests to the routes of the service in this process: right and wrong tables and matrices,
 pasted texts, previews, and hostile requests. No two are equal. Exit with 1 if the memory after the
-warm-up grows by more than is allowed, or if an answer is a server error. With ``--http``, send the
+warm-up grows by more than is allowed, or if a response is a server error. With ``--http``, send the
 requests over a connection to a separate process.
 """
 

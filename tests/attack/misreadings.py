@@ -1,9 +1,9 @@
-"""`python -m tests.attack.misreadings`: is a formula ever read as another one?
+"""`python -m tests.attack.misreadings`: test if the program reads a formula as another one.
 
 Write each random formula in every spelling, and matrices of formulas in every grid format. The
-program must read the value that an oracle of the tests computes, or refuse the text. A submission
-must get the verdicts and points of the same answer in plain spelling, and a changed sign must
-never be right. Exit with 1 if a text was misread, or if too many were refused.
+program must read the value that an oracle of the tests computes, or refuse the text. An answer
+must get the same verdicts and points in every spelling, and an entry with a changed sign must be
+wrong. Exit with 1 if the program misread a text, or refused too many.
 """
 
 import argparse

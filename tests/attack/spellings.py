@@ -37,7 +37,7 @@ Written = tuple[str, int]
 
 @dataclass(frozen=True)
 class Spelling:
-    """One way of writing formulas; where it has several variants, one is drawn at random."""
+    """One way of writing formulas. A field with several variants lets the writer draw one."""
 
     names: Callable[[Random, str, str], str]
     times: tuple[str, ...] = ("*",)
@@ -282,7 +282,7 @@ class Writer:
         return text
 
     def _product(self, factors: tuple[Tree, ...]) -> str:
-        """Return a product; numbers come first if the spelling may omit the sign of a product."""
+        """Return a product as text; numbers come first if the spelling may omit the times sign."""
         marked = not set(self._s.times) & {"", " ", r" \, "}
         ordered = factors if marked else sorted(factors, key=_place_in_product)
         text = ""
@@ -418,12 +418,12 @@ def _place_in_product(each: Tree) -> int:
 
 
 def _may_touch(left: str, right: str) -> bool:
-    """True if a product may be written without a sign or blank between its factors."""
+    """True if two factors may be written without a sign or blank between them."""
     if right[0] in "([" or left[-1] in ")]":
         return True
     return right[0].isalpha() and (left[-1].isdigit()) and right[0] not in "eE"
 
 
 def _is_bare(text: str, spelling: Spelling) -> bool:
-    """True if a text may end with a function's argument that has no brackets."""
+    """True if a text may end with the argument of a function without brackets."""
     return bool(spelling.bare) and text[-1] not in ")]}"

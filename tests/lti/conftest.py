@@ -1,4 +1,4 @@
-"""A platform of our own, and a service where it is registered."""
+"""Our own LTI platform for tests, and a service at which this platform is registered."""
 
 import asyncio
 import re
@@ -41,7 +41,7 @@ RECORDED = (
 
 @pytest.fixture(scope="session")
 def one_platform() -> Iterator[Platform]:
-    """A platform for all tests of a process."""
+    """Start one platform for all tests of a process."""
     platform = Platform()
     with running(platform.app()) as port:
         platform.port = port
@@ -50,7 +50,7 @@ def one_platform() -> Iterator[Platform]:
 
 @pytest.fixture
 def platform(one_platform: Platform) -> Iterator[Platform]:
-    """The platform with its usual habits and keys."""
+    """Return the platform; after the test, reset its behaviour, keys and records."""
     keys = list(one_platform.keys)
     # The service memoizes keys by their address.
     one_platform.visit += 1
@@ -66,7 +66,7 @@ def platform(one_platform: Platform) -> Iterator[Platform]:
 
 @dataclass(frozen=True)
 class Begun:
-    """A begun login in a browser: the query that it sends to the platform, and its cookies."""
+    """A begun login in a browser: the query for the platform, and the cookies of the service."""
 
     asked: Mapping[str, str]
     cookies: str
@@ -106,7 +106,7 @@ class Tool:
         return Begun({name: each[0] for name, each in query.items()}, cookies, answer)
 
     def post(self, state: str, token: str, cookies: str, **more: str) -> httpx.Response:
-        """Send a message to the launch."""
+        """Post a message to the launch route of the service."""
         headers = {
             "cookie": cookies,
             "origin": self.platform.address,
@@ -116,7 +116,7 @@ class Tool:
         return self.send("POST", "/lti/launch", data=fields, headers=headers)
 
     def launch(self, user: str = "ada", link: str = "link-1", **more: str) -> httpx.Response:
-        """Go the whole way of a launch, over the platform's own page."""
+        """Log in, get the platform's page, and post its form to the service."""
         begun = self.login(user, link, **more)
         # Reading the certificates of the authorities takes longer than a launch.
         page = httpx.get(begun.answer.headers["location"], timeout=60, verify=False)
@@ -143,7 +143,7 @@ def services(
 
 @pytest.fixture(scope="session")
 def own_key(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """The row of a key that signs: to make one takes longer than a test."""
+    """The database row of one signing key for all tests: making a key takes longer than a test."""
     store = AttemptStore.open(new_file(tmp_path_factory.mktemp("own-key")))
     in_transaction(store.engine, lambda it: ensure_key(it, SECRET, datetime.now(UTC)))
     with store.engine.connect() as connection:
@@ -160,7 +160,7 @@ def tool(
     catalogue: Mapping[str, Exercise],
     platform: Platform,
 ) -> Tool:
-    """The service, in the kind of database of the parameter, where the platform is registered."""
+    """The service with the registered platform; the parameter is the kind of its database."""
 
     def build(store: AttemptStore, keys: KeyRing) -> Any:
         access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)

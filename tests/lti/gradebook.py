@@ -1,4 +1,4 @@
-"""The gradebook of our own platform (AGS), with a switch for each habit of real platforms."""
+"""The gradebook of our own platform (AGS), with switches for the behaviour of real platforms."""
 
 import asyncio
 import json
@@ -23,7 +23,7 @@ Trouble = tuple[int, dict[str, str]]
 
 @dataclass
 class Item:
-    """A line item; ``grades`` are points and the share of the maximum, by user."""
+    """A line item; ``grades`` maps a user to the score in per cent of the maximum, or None."""
 
     link: str
     label: str = ""
@@ -33,9 +33,10 @@ class Item:
 
 @dataclass
 class Gradebook:
-    """Line items, access tokens and scores. The fields after ``received`` are the switches.
+    """Line items, access tokens and scores; the other fields change the platform's behaviour.
 
-    ``received`` are the accepted scores in their order; ``asked`` counts all requests by kind.
+    ``received`` are the accepted scores in the order of arrival; ``asked`` are the kinds of all
+    requests, ``refused`` the refusals.
     """
 
     address: Callable[[], str]
@@ -70,7 +71,7 @@ class Gradebook:
         self.items["1"] = Item("link-1")
 
     def reset(self) -> None:
-        """Begin again without scores, with the usual habits."""
+        """Remove all scores, and restore the usual behaviour."""
         self.__dict__.update(Gradebook(self.address, self.roster_token).__dict__)
 
     def url(self, item: str) -> str:
@@ -78,12 +79,12 @@ class Gradebook:
         return f"{self.address()}/items/{item}" + (f"?{self.query}" if self.query else "")
 
     def grades(self, item: str = "1") -> dict[str, float | None]:
-        """Return the grades of a line item by the names of our users."""
+        """Return the grades of a line item, by the user names that tests use."""
         found = self.items[item].grades
         return {user.removeprefix("user "): grade for user, grade in found.items()}
 
     def routes(self) -> APIRouter:
-        """Return the routes of the services."""
+        """Return the routes of the gradebook and of access tokens."""
         router = APIRouter()
 
         @router.post("/token")

@@ -1,6 +1,6 @@
-"""A platform of our own over real HTTP: a course with links, and switches for its habits.
+"""Our own LTI platform over real HTTP: a course with links, and switches for its behaviour.
 
-``Platform.habits`` changes the claims of messages; tests add what they need.
+The functions in ``Platform.habits`` change the claims of messages; tests add such functions.
 """
 
 import html
@@ -46,9 +46,9 @@ Habit = Callable[[dict[str, Any]], None]
 
 
 def deep_linking(address: str, **settings: Any) -> Habit:
-    """Return the habit of asking for links that are sent to ``address``.
+    """Return a habit that turns a launch into a deep-linking request with this return address.
 
-    A setting that is None is left out.
+    A setting is left out if it is None.
     """
     asked = {
         "deep_link_return_url": address,
@@ -74,7 +74,7 @@ def rsa_key(bits: int = 2048) -> rsa.RSAPrivateKey:
 
 
 def public_jwk(key: Any, key_id: str, **more: Any) -> dict[str, Any]:
-    """Return the public half of a key as platforms publish it."""
+    """Return the public part of a key as platforms publish it."""
     jwk = RSAAlgorithm.to_jwk(key.public_key(), as_dict=True)
     return {**jwk, "kid": key_id, "alg": "RS256", "use": "sig", **more}
 
@@ -83,8 +83,8 @@ def public_jwk(key: Any, key_id: str, **more: Any) -> dict[str, Any]:
 class Platform:
     """The platform. ``fetched`` has the requested paths, ``keys`` the keys that it publishes.
 
-    ``storage`` is true if its pages have the platform's storage. ``members`` is its roster, sent in
-    pages of ``page_size``; ``next_page`` replaces the address of the second page.
+    ``storage`` is true if its pages offer storage to tools. ``members`` is the roster, sent in
+    pages of ``page_size``; ``next_page`` replaces the address of the second page of the roster.
     """
 
     key: Any = field(default_factory=rsa_key)
@@ -113,7 +113,7 @@ class Platform:
 
     @property
     def registration(self) -> dict[str, Any]:
-        """The values that an operator registers."""
+        """The data with which an operator registers the platform at the service."""
         return {
             "id": "moodle",
             "name": "Moodle of the university",
@@ -129,7 +129,7 @@ class Platform:
         }
 
     def login(self, user: str = "ada", link: str = "link-1", **more: str) -> dict[str, str]:
-        """Return the fields with which a login begins."""
+        """Return the fields of the request that begins a login."""
         return {
             "iss": self.address,
             "client_id": CLIENT,
@@ -141,7 +141,7 @@ class Platform:
         }
 
     def claims(self, user: str, link: str, nonce: str) -> dict[str, Any]:
-        """Return the claims of a message, after the habits of the platform."""
+        """Return the claims of a message, as changed by the platform's habits."""
         now = int(time.time())
         claims = {
             "iss": self.address,

@@ -28,7 +28,7 @@ SCORE = "https://purl.imsglobal.org/spec/lti-ags/scope/score"
 
 @dataclass
 class Registrar:
-    """A platform that registers tools; ``changes`` are changes of its configuration."""
+    """A platform that registers tools; ``changes`` replaces values of its configuration."""
 
     token: str = "one-time-token"
     port: int = 0
@@ -103,7 +103,7 @@ def registrar(one_registrar: Registrar) -> Registrar:
 
 
 def invited(tool: Tool, *, waits: bool = False, address: str = ADDRESS) -> str:
-    """Return the text of a new invitation."""
+    """Return the secret text in the link of a new invitation."""
     now = datetime.now(UTC)
     link = tool.do(
         lambda it: invite(it, "Uni <X>", address, "Europe/Berlin", now, days=7, waits=waits)
@@ -113,7 +113,7 @@ def invited(tool: Tool, *, waits: bool = False, address: str = ADDRESS) -> str:
 
 
 def opened(tool: Tool, registrar: Registrar, text: str, **more: str) -> httpx.Response:
-    """Open the link as a platform does, and press the button."""
+    """Open the invitation as a platform does, and confirm it; return the response."""
     fields = {
         "invitation": text,
         "openid_configuration": f"{registrar.address}/configuration",

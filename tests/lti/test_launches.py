@@ -1,4 +1,4 @@
-"""Launches of learners, tutors and visitors, from the platform's login to what they see."""
+"""Launches of learners, tutors and visitors, from the platform's login to the page they see."""
 
 import re
 from typing import Any

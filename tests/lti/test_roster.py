@@ -1,4 +1,4 @@
-"""Rosters of platforms: pages, names, renamed and unenrolled learners."""
+"""Rosters of platforms: rosters in several pages, renamed learners, and unenrolled learners."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The files that students hand in at our own platform (Asset Processor), with its switches."""
+"""The files that students submit at our own platform (Asset Processor), and faults on demand."""
 
 import base64
 import hashlib
@@ -19,9 +19,9 @@ LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
 
 @dataclass
 class FileStore:
-    """Files by id, the handler of notices, and the reports in their order.
+    """Files by id, the handlers of notices, and the reports in the order of arrival.
 
-    If ``other_host`` is set, the platform has its files there, and redirects requests to that host.
+    If ``other_host`` is set, the files are on that host, and the platform redirects requests to it.
     """
 
     platform: "Platform"
@@ -34,7 +34,7 @@ class FileStore:
     trouble: dict[str, list[int]] = field(default_factory=dict)
 
     def reset(self) -> None:
-        """Begin again without files."""
+        """Remove all files and reports, and restore the usual behaviour."""
         self.__dict__.update(FileStore(self.platform).__dict__)
 
     def routes(self) -> APIRouter:
@@ -88,7 +88,7 @@ class FileStore:
         return None
 
     def notice(self, *names: str, user: str = "ada", notice: str = "notice-1") -> dict[str, Any]:
-        """Return the claims of the notice that a user has handed in files."""
+        """Return the claims of a notice which says that a user has submitted files."""
         from tests.lti.platform import CLIENT, DEPLOYMENT
 
         address, now = self.platform.address, int(time.time())

@@ -1,4 +1,4 @@
-"""A platform by others, the library lti1p3platform: its messages, gradebook and roster over HTTP.
+"""An independent platform, built with the library lti1p3platform, with its services over HTTP.
 
 The library checks and makes tokens and messages. This module has the parts that the library leaves
 to its users: the storage, and the routes that call the library's handlers.
@@ -39,7 +39,7 @@ _FORM: Final = "application/x-www-form-urlencoded"
 
 
 class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
-    """The registration of our service at the other platform, with the platform's key."""
+    """The registration of our service at the independent platform, and the platform's key."""
 
     def init_platform_config(self, **kwargs: Any) -> None:
         platform = kwargs["platform"]
@@ -50,7 +50,7 @@ class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
         self.sign_with(platform.key)
 
     def sign_with(self, key: Any) -> None:
-        """Change the platform's key: messages signed with the old key are no longer accepted."""
+        """Change the platform's key; then the old key's signatures are no longer accepted."""
         private = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
         public = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)
         self._registration.set_platform_public_key(public.decode())
@@ -61,21 +61,21 @@ class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
 
 
 class Launch(LTIAdvantageMessageLaunchAbstract):  # type: ignore[misc]
-    """A launch that returns the fields of its form."""
+    """A launch that returns the fields of its form instead of a page."""
 
     def render_launch_form(self, launch_data: dict[str, Any], **_: Any) -> Any:
         return launch_data
 
 
 class Preflight(Request):  # type: ignore[misc]
-    """The request that our login has sent to the platform."""
+    """The login request that our service sends to the platform."""
 
     def build_metadata(self, request: Any) -> Any:
         return {"get_data": request, "form_data": {}}
 
 
 class Called(Request):  # type: ignore[misc]
-    """A request for a service of the platform, and its JSON."""
+    """A request to a service of the platform, and the JSON in its body."""
 
     def build_metadata(self, request: Any) -> Any:
         asked, body = request
@@ -87,9 +87,9 @@ class Called(Request):  # type: ignore[misc]
 
 @dataclass
 class OtherPlatform:
-    """The storage of the platform; ``asked`` counts the requests by kind.
+    """The platform's line items, scores and members; ``asked`` are the kinds of all requests.
 
-    ``makes_items`` is true if the service may make line items.
+    ``makes_items`` is true if our service may make line items.
     """
 
     configuration: Configuration
@@ -158,7 +158,7 @@ class OtherPlatform:
 
 
 class Grades(AssignmentsGradesService):  # type: ignore[misc]
-    """The gradebook."""
+    """The platform's gradebook (AGS)."""
 
     def __init__(self, platform: OtherPlatform, request: Called) -> None:
         items, makes_items = f"{platform.address}/items", platform.makes_items
@@ -170,7 +170,7 @@ class Grades(AssignmentsGradesService):  # type: ignore[misc]
     def find_lineitems(
         self, page: int = 1, resource_link_id: str = "", limit: int | None = None
     ) -> Any:
-        """Return one line item on each page."""
+        """Return the line item on this page: pages have one line item each."""
         del limit
         listed = list(self._platform.items.values())[page - 1 :]
         mine = [each for each in listed[:1] if each["resourceLinkId"] == resource_link_id]
@@ -206,7 +206,7 @@ class Grades(AssignmentsGradesService):  # type: ignore[misc]
 
 
 class Roster(NamesRoleProvisioningService):  # type: ignore[misc]
-    """The roster."""
+    """The platform's roster (NRPS)."""
 
     def __init__(self, platform: OtherPlatform, request: Called) -> None:
         url = f"{platform.address}/members"

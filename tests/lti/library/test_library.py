@@ -1,4 +1,4 @@
-"""A launch and links for a platform by others: the library lti1p3platform."""
+"""A launch and deep links for an independent platform, built with the library lti1p3platform."""
 
 import jwt
 import pytest

@@ -1,4 +1,4 @@
-"""Scores and the roster of a platform by others: the library lti1p3platform."""
+"""Scores and the roster of an independent platform, built with the library lti1p3platform."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,13 +22,13 @@ LEARNER = [f"{MEMBER}#Learner"]
 
 @dataclass
 class Course:
-    """A course at the other platform; its learners hand in."""
+    """A course at the independent platform, with learners who submit answers."""
 
     other: OtherPlatform
     journey: Journey
 
     def launch(self, user: str) -> None:
-        """Launch by the library, which gives the addresses of its services."""
+        """Let the library launch; the message has the addresses of the platform's services."""
         tool, other = self.journey.tool, self.other
         begun = tool.login(user)
         launch = Launch(Preflight(begun.asked), other.configuration)
@@ -44,7 +44,7 @@ class Course:
         self.journey.tokens[user] = {"authorization": f"Bearer {token}"}
 
     def score(self, user: str, item: str = "i0") -> float | None:
-        """Return what the platform has as a learner's points."""
+        """Return the points that the platform has for a learner."""
         found: float | None = self.other.scores[item][f"user {user}"].get("scoreGiven")
         return found
 
@@ -64,7 +64,7 @@ def course(tool: Tool, journey: Journey) -> Iterator[Course]:
 
 @pytest.mark.long
 def test_scores_arrive_at_a_platform_by_others(course: Course) -> None:
-    """The platform has no line item: the first score makes one. The last score counts."""
+    """The platform has no line item, so the first score makes one. The latest score counts."""
     other, journey = course.other, course.journey
     course.launch("ada")
     attempt = journey.hand_in()

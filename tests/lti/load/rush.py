@@ -1,9 +1,9 @@
-"""`python -m tests.lti.load.rush`: a class of 200 opens its exercise from the course in a minute.
+"""`python -m tests.lti.load.rush`: 200 students open an exercise from their course in a minute.
 
-Each student logs in at the platform, launches, and asks for all that the first page needs. Before
-that, a tenth of the students come with new browsers, which also ask for the scripts. All students
-have one address, as on a campus. Print the waiting times and the processor time of the service for
-one student. Exit with 1 if an answer is a failure, or if a view costs more than 300 ms.
+Each student logs in at the platform, launches, and requests all that the first page needs. Before
+that, a tenth of the students come with new browsers, which also request the scripts. All students
+have one address, as on a campus. Print the waiting times and the processor time of the service per
+student. Exit with 1 if a request fails, or if a view takes more than 300 ms of processor time.
 """
 
 import argparse
@@ -43,7 +43,7 @@ _LIMITS: Final = httpx.Limits(max_connections=6)
 
 @dataclass
 class Rush:
-    """The results of a class: seconds from the login to the view, and answers that are failures."""
+    """The results of a class: seconds from login to view, failures, and the number of requests."""
 
     waits: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -62,7 +62,7 @@ class Browser:
         self._client, self._platform, self._rush = client, platform, rush
 
     async def view(self, user: str, *, is_new: bool) -> None:
-        """Open the exercise. A new browser asks for all scripts; others have them."""
+        """Open the exercise. A new browser requests all scripts; another one has cached them."""
         began = time.perf_counter()
         try:
             await self._view(user, is_new=is_new)
@@ -115,7 +115,7 @@ async def rush(
 ) -> Rush:
     """Let users open the exercise, evenly spread over some seconds.
 
-    ``mounts`` are ways to addresses that are not served over HTTP.
+    ``mounts`` maps an address to the transport for it, if no server listens there.
     """
     told = Rush()
 
@@ -141,7 +141,7 @@ def processor_time(running: Service) -> float:
 
 
 def measure(kind: str, students: int, seconds: float, workers: int) -> list[str]:
-    """Let a tenth of a class come, then all, then all in less time; return the missed limits."""
+    """Let a tenth of a class come, then all, then all faster; return faults and missed limits."""
     broken = []
     with (
         tempfile.TemporaryDirectory() as name,

@@ -38,7 +38,7 @@ class Clock:
 
 @dataclass
 class Journey:
-    """Learners of a course who hand in, and a service that sends their scores."""
+    """Learners who submit answers, and a service that sends their scores to the platform."""
 
     tool: Tool
     clock: Clock
@@ -55,7 +55,7 @@ class Journey:
         self.tokens[user] = {"authorization": f"Bearer {token_of(page)}"}
 
     def place(self, user: str = "ada", number: int = 0) -> tuple[str, str]:
-        """Return the course and an assignment of a learner."""
+        """Return the ids of a learner's course and of one of its assignments."""
         view = self.tool.send("GET", "/v1/me", headers=self.tokens[user]).json()
         course = view["courses"][0]
         return course["id"], course["assignments"][number]["id"]
@@ -67,7 +67,7 @@ class Journey:
         exercise: str = "planar-rr",
         number: int = 0,
     ) -> dict[str, Any]:
-        """Hand in; return the recorded attempt."""
+        """Submit answers as a learner; return the recorded attempt."""
         if user not in self.tokens:
             self.launch(user)
         course, assignment = self.place(user, number)
@@ -91,11 +91,11 @@ class Journey:
         return float(total)
 
     def learner(self, user: str = "ada") -> str:
-        """Return the pseudonym of a user."""
+        """Return the pseudonym that the service uses for a user of the platform."""
         return pseudonym("moodle", f"user {user}", SECRET)
 
     def known(self, user: str = "ada") -> dict[str, Any]:
-        """Return all stored data about the learner of a platform's user."""
+        """Return all data that the service stores about a user of the platform."""
         with self.tool.store.engine.connect() as connection:
             return everything_of(connection, self.learner(user))
 
@@ -121,7 +121,7 @@ class Journey:
         return self.tokens["tutor"]
 
     def send(self, most: int = 1000) -> int:
-        """Send what is due now; return the number of tries."""
+        """Send all scores that are due now; return the number of tries."""
         for i in range(most):
             if not self.sender.send_next():
                 return i
@@ -144,7 +144,7 @@ class Journey:
 
 @pytest.fixture
 def journey(tool: Tool) -> Journey:
-    """A service in the kind of database of the parameter of ``tool``, and its platform."""
+    """Return a journey whose clock is also the clock of the platform's gradebook."""
     clock = Clock()
     sender = ScoreSender(tool.store.engine, SECRET, clock.now, lambda: 1.0)
     made = Journey(tool, clock, sender)

@@ -1,10 +1,10 @@
-"""A process whose children send scores until it kills them.
+"""A process that starts senders of scores as child processes, and kills them on command.
 
 ``python -m tests.lti.scores.replica URL FILE SECRET``
 
-The file has the seconds that are added to the time of this machine. Each line of the input is
-``start`` or ``kill`` with a number of children; each is answered with a line. A child begins at
-once, because its parent has imported the service already.
+FILE has the seconds that are added to the time of this machine. Each line of the input is
+``start`` or ``kill`` with a number of children; the process answers with the line ``done``. A child
+begins at once, because its parent has already imported the service.
 """
 
 import os

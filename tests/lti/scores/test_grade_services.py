@@ -40,7 +40,7 @@ def test_scores_is_a_part_of_the_path() -> None:
 def test_a_failing_platform_is_asked_ever_more_rarely(
     journey: Journey, trouble: tuple[int, dict[str, str]]
 ) -> None:
-    """The pauses between the tries grow. When the platform works again, all scores arrive."""
+    """The pauses between tries grow. When the platform works again, all scores arrive."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.trouble = trouble
@@ -70,7 +70,7 @@ def test_the_platform_says_how_long_to_wait(journey: Journey) -> None:
 
 
 def test_a_score_waits_for_an_unreachable_platform(journey: Journey) -> None:
-    """Nobody listens at the line item's address."""
+    """No server listens at the line item's address."""
     journey.hand_in()
     gone = update(tables.line_items).values(url="http://127.0.0.1:1/items/1")
     journey.tool.do(lambda it: it.execute(gone))
@@ -105,7 +105,7 @@ def test_a_token_is_used_until_shortly_before_its_end(journey: Journey) -> None:
 
 
 def test_a_refused_token_is_renewed_once(journey: Journey) -> None:
-    """The sender tries once more with a new token, and then waits."""
+    """If the platform refuses a token, the sender tries once with a new token, and then waits."""
     journey.gradebook.lifetime = -1
     journey.hand_in()
     assert journey.send() == 1
@@ -115,7 +115,7 @@ def test_a_refused_token_is_renewed_once(journey: Journey) -> None:
 
 
 def test_the_audience_of_the_token(journey: Journey) -> None:
-    """Brightspace wants its own audience. Without it, scores wait and the tutor reads why."""
+    """Brightspace requires its own audience. Without this audience, scores wait with a reason."""
     journey.gradebook.audience = "https://api.brightspace.example/auth/token"
     journey.hand_in()
     journey.send()
@@ -131,7 +131,7 @@ def test_the_audience_of_the_token(journey: Journey) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("status", [400, 403, 404, 422])
 def test_the_score_of_a_learner_waits_for_the_enrolment(journey: Journey, status: int) -> None:
-    """A refused score stays refused until the learner launches again."""
+    """The service does not send a refused score again until the learner launches again."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.enrolled = {"user grace"}

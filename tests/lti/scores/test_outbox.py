@@ -1,4 +1,4 @@
-"""The scores of a regrade, at the pace of the platform, and a hand-in meanwhile."""
+"""A regrade queues many scores for a slow platform; the score of a new hand-in goes first."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -16,7 +16,7 @@ PACE = (20, 10)
 
 
 def enrol_many(journey: Journey, number: int) -> None:
-    """Give further learners the attempt of ada, and queue their scores as a regrade does."""
+    """Copy Ada's attempt for further learners, and queue their scores as a regrade does."""
     [row] = journey.tool.do(lambda it: it.execute(select(attempts)).all())
     names = [f"{i:05}" for i in range(number)]
     of_platform = [
@@ -36,7 +36,7 @@ def enrol_many(journey: Journey, number: int) -> None:
 
 
 def sent_while(journey: Journey, ended: Callable[[], bool]) -> int:
-    """Send what is due, and set the clock to the next moment; return the number of tries."""
+    """Send scores until ``ended``, and skip the pauses between them; return the number of tries."""
     tries = 0
     while not ended():
         if journey.sender.send_next():

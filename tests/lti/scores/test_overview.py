@@ -11,7 +11,7 @@ from tests.lti.scores.conftest import Journey
 
 
 def refused_and_sent(journey: Journey) -> str:
-    """Send one score that arrives and one that does not; return the course."""
+    """Send a score that is refused and a score that is accepted; return the id of the course."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.enrolled = {"user grace"}

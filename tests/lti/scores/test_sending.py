@@ -1,4 +1,4 @@
-"""Replicas send scores. They are killed when the platform has a score but has not answered yet."""
+"""Tests kill the replicas that send scores: before the platform responds to a score."""
 
 import asyncio
 import random
@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[3]
 
 
 class Replicas:
-    """Two processes that send, and the clock that they share with the platform."""
+    """Two processes that send scores, and the clock that they share with the platform."""
 
     def __init__(self, journey: Journey, folder: Path) -> None:
         self._file = folder / "added"
@@ -78,7 +78,7 @@ def replicas(journey: Journey, tmp_path: Path) -> Iterator[Replicas]:
 
 
 class Round:
-    """A round: the replicas are killed when the platform gets the score with this number."""
+    """A round: ``killed`` replicas are killed when the platform gets score number ``at``."""
 
     def __init__(self, replicas: Replicas, at: int, killed: int) -> None:
         self._replicas, self._at, self._killed = replicas, at, killed
@@ -86,7 +86,7 @@ class Round:
         self.received = 0
 
     def answer(self) -> None:
-        """Kill replicas before the platform answers."""
+        """Count a score; if it is number ``at``, kill replicas before the platform responds."""
         with self._lock:
             if self.received + 1 == self._at:
                 self._replicas.kill(self._killed)
@@ -98,7 +98,7 @@ class Round:
 
 
 def killed(journey: Journey, replicas: Replicas, rounds: int) -> str:
-    """Change scores in each round, kill the senders at one of the scores, check the platform."""
+    """In each round, change scores, kill senders while they send one, and check the gradebook."""
     choose = random.Random(rounds)
     ids = {user: journey.hand_in(user) for user in USERS}
     most = ids["ada"]["max_points"]
@@ -141,7 +141,7 @@ def _wait(until: Callable[[], bool]) -> None:
 def test_the_service_sends_what_it_has_committed(
     journey: Journey, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The thread wakes up after the commit, long before its next regular look at the queue."""
+    """A commit wakes the sending thread, long before its next regular look at the queue."""
     monkeypatch.setattr("service.lti.scores.sending._LOOK", 3600)
     # A closed one takes no note away.
     closed = BackgroundSending(journey.tool.store.engine, journey.sender, QUEUED)
@@ -163,7 +163,7 @@ def test_the_service_sends_what_it_has_committed(
 def test_all_listen_before_a_thread_begins(
     catalogue: Mapping[str, Exercise], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A commit iterates over the listeners, so all must be added before a thread begins."""
+    """A commit iterates over its listeners, so all of them must be added before a thread starts."""
     store = AttemptStore.open(new_file(tmp_path))
     keys = KeyRing(store.engine, Secret(SECRET_TEXT))
     access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)
