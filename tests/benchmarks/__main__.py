@@ -63,7 +63,7 @@ START_SECONDS = {"dh-grader --help": 0.3, "dh-grader grade, one file": 0.8}
 
 
 def in_process() -> dict[str, float]:
-    """Measure each line that needs no server, as a multiple of the floor."""
+    """Return the figures that need no server, as multiples of the floor."""
     exercise = load_catalogue(shipped_folder())["stanford-arm"]
     free = with_free_frames("stanford-arm")
     vocabulary = exercise.vocabulary
@@ -123,7 +123,7 @@ def print_budgets(*, with_server: bool) -> None:
 
 
 def add_starts(printed: Table) -> None:
-    """Add the processor time of whole processes, also as multiples of an import of numpy."""
+    """Add the processor time of each command, in seconds and as a multiple of numpy's import."""
     times = starts.start_seconds()
     numpy_alone = next(iter(times.values()))
     for what, seconds in times.items():
@@ -183,7 +183,7 @@ def add_server_lines(printed: Table) -> None:
 
 
 def print_comparison(there: Path, rounds: int, *, with_server: bool) -> bool:
-    """Print each line of this checkout and another one; return True if none is slower here."""
+    """Print each figure of this and the other checkout; return True if none is slower here."""
     lines = paired.compare(there, rounds, with_server=with_server)
     printed = Table(f"median of {rounds}, × floor", "here", str(there), "here / there", "")
     for line in lines:

@@ -81,10 +81,10 @@ def standing_still() -> list[list[str]]:
 
 
 def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
-    """Return the matrix with 0 times a number added to each text, so that no cache knows it.
+    """Return the matrix with ``+ 0*number`` appended to each text, so that no cache knows the text.
 
-    The numbers are decimals, or integers if ``point`` is empty. With integers, a wrong entry is
-    never taken for a rounded one.
+    The numbers are decimals, or integers if ``point`` is empty. With integers, the grader
+    never takes a wrong entry for a rounded one.
     """
     return [
         [f"{text} + 0*{abs(i) + 2}{point}{j}{k}" for k, text in enumerate(row)]

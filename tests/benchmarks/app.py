@@ -1,6 +1,6 @@
 """`python -m tests.benchmarks.app serve …`: `dh-grader serve …` with two more routes.
 
-One only validates a body, the other returns the processor time of its process.
+The first route only validates a body; the second returns the processor time of its process.
 """
 
 import time
@@ -15,7 +15,7 @@ from service.server.installed import installed_app
 
 
 class Trivial(BaseModel):
-    """The schema of a trivial request: that of a submission."""
+    """The body of a trivial request; its schema is that of a submission."""
 
     answers: dict[str, Any]
 

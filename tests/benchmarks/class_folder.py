@@ -1,4 +1,4 @@
-"""Write a folder with the submissions of a class, and a few broken ones that must harm no other.
+"""Write a folder with the submissions of a class; a few broken ones must not affect the others.
 
 ``python -m tests.benchmarks.class_folder --count 1000`` grades such a folder as a tutor would, and
 prints the time and the memory.
@@ -52,7 +52,7 @@ def write_class(folder: Path, count: int) -> None:
 
 
 def _write_student(folder: Path, i: int) -> None:
-    """Write a submission as one of the platforms exports it.
+    """Write the submission of student ``i`` in the layout that one of four platforms exports.
 
     One table in three and one pose in five have a slip. No two poses have the same text.
     """

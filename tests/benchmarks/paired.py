@@ -16,7 +16,7 @@ TOLERATED = 1.03
 
 @dataclass(frozen=True)
 class Comparison:
-    """One line of the benchmark in both checkouts: medians, in multiples of the floor."""
+    """One figure of the benchmark: its median in both checkouts, as a multiple of the floor."""
 
     what: str
     here: float
@@ -32,7 +32,7 @@ class Comparison:
 
 
 def python_of(checkout: Path) -> str:
-    """The Python of a checkout's own environment."""
+    """Return the Python in the checkout's virtual environment."""
     if checkout == HERE:
         return sys.executable
     folder = checkout / ".venv" / ("Scripts" if sys.platform == "win32" else "bin")
@@ -40,7 +40,7 @@ def python_of(checkout: Path) -> str:
 
 
 def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
-    """Measure each line of a checkout's benchmark once, as a multiple of its floor."""
+    """Return all figures of a checkout, measured once, as multiples of its floor."""
     options = [] if with_server else ["--no-server"]
     result = subprocess.run(
         [python_of(checkout), "-P", str(PROBE), *options],
@@ -52,7 +52,7 @@ def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
 
 
 def compare(there: Path, rounds: int, *, with_server: bool) -> list[Comparison]:
-    """Measure both checkouts in turn for some rounds; return the lines that both have."""
+    """Measure both checkouts in turn for some rounds; return the figures that both have."""
     pairs = [
         (measured(HERE, with_server=with_server), measured(there, with_server=with_server))
         for _ in range(rounds)

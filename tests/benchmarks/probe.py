@@ -1,7 +1,7 @@
-"""Measure one checkout once, and print each line of its benchmark as JSON.
+"""Measure one checkout once, and print the figures of its benchmark as JSON.
 
-``paired.py`` runs this file with the Python and in the folder of the checkout to be measured, which
-may be an older one. So it uses that checkout's own ``tests.benchmarks`` for all but the timing.
+``paired.py`` runs this file with the Python and in the folder of the measured checkout. The
+checkout may be older, so this file uses the ``tests.benchmarks`` there for all but the timing.
 """
 
 import json
@@ -21,7 +21,7 @@ TIMING = runpy.run_path(str(Path(__file__).with_name("timing.py")))
 
 
 def in_process() -> dict[str, float]:
-    """Measure the lines that need no server, as multiples of the floor."""
+    """Return the figures that need no server, as multiples of the floor."""
     if hasattr(lines, "BUDGETS"):
         return lines.in_process()
     # In an older checkout, this function returns milliseconds, with the floor as the first line.
@@ -38,7 +38,7 @@ def _thousandth_of(timer: Callable[[Callable[..., object]], float]) -> Callable[
 
 
 def over_http() -> dict[str, float]:
-    """Measure the lines that need a server: POSTs relative to trivial ones, and the start."""
+    """Return the figures that need a server: graded POSTs relative to trivial ones, and a start."""
     server.SECONDS = SECONDS_OF_POSTS
     figures = {}
     for what, bodies in server.BODIES.items():

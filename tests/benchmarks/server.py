@@ -42,29 +42,29 @@ CLOCK = "/processor-seconds"
 
 
 def right_tables(i: int) -> bytes:
-    """Return a body with a right table, in the spelling of student ``i``."""
+    """Return a request body with a correct table, in the spelling of a student."""
     wrong_ones = i // 2 + 1
     return json.dumps({"answers": {"table": table(one_student_s_table(i + wrong_ones))}}).encode()
 
 
 def tables(i: int) -> bytes:
-    """Return a body with the table of student ``i``; one in three has a wrong cell."""
+    """Return a request body with the table of student ``i``; one in three has a wrong cell."""
     return json.dumps({"answers": {"table": table(one_student_s_table(i))}}).encode()
 
 
 def tables_and_poses(i: int) -> bytes:
-    """Return a body with a table, and a pose in which every entry is a new text."""
+    """Return a request body with a table and a pose, in which every entry is a new text."""
     answers = {"table": table(one_student_s_table(i)), "pose": distinct(T06, i)}
     return json.dumps({"answers": answers}).encode()
 
 
 def attempts(i: int) -> bytes:
-    """Return a body as ``tables`` does, with a new learner."""
+    """Return a request body with a table, from a new learner for each ``i``."""
     return json.dumps(json.loads(tables(i)) | {"learner": f"learner {i}"}).encode()
 
 
 def hand_ins(i: int) -> bytes:
-    """Return a body as ``tables`` does, of one of the learners of the course."""
+    """Return a request body with a table, from one of the learners in the course."""
     learner = {"exercise": "stanford-arm", "learner": f"u{i % LEARNERS}"}
     return json.dumps(json.loads(tables(i)) | learner).encode()
 
@@ -140,13 +140,13 @@ async def _posted(port: int, path: str, messages: list[bytes]) -> tuple[int, flo
 
 
 def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
-    """Return the numbers of trivial and of graded POSTs per second; all bodies differ."""
+    """Return how many trivial and how many graded POSTs the server answers in a second."""
     trivial, graded = _in_turn({TRIVIAL: body, GRADE: body})
     return {"trivial": trivial, "graded": graded}
 
 
 def recorded_per_second() -> dict[str, float]:
-    """Return the numbers of graded and of recorded POSTs per second, with SQLite."""
+    """Return how many POSTs a server with SQLite grades, or records, in a second."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         graded, recorded = _in_turn({GRADE: tables, RECORD: attempts}, DH_GRADER_DATABASE=database)
@@ -154,7 +154,7 @@ def recorded_per_second() -> dict[str, float]:
 
 
 def handed_in_per_second() -> dict[str, float]:
-    """Return the numbers of graded POSTs and of hand-ins in an assignment, with SQLite."""
+    """Return how many POSTs a server with SQLite grades, or takes as hand-ins, in a second."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         _set_up_course(database)
@@ -191,8 +191,8 @@ def _set_up_course(database: str) -> None:
 def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> Iterator[float]:
     """Yield the number of POSTs per second for each path, measured in turn on one server.
 
-    For the first path, this is the median of all rounds. For another path, it is this median times
-    the median ratio of both paths in one round, so that ratios are right if the machine slows down.
+    For the first path, this number is the median of all rounds. For another path, it is that median
+    times the median ratio to the first path in a round: ratios change little if the machine does.
     """
     messages = {
         path: [body(i) for i in range(100 + ROUNDS * MOST)] for path, body in bodies.items()
@@ -212,7 +212,7 @@ def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> I
 
 
 def graded_per_second(workers: int) -> float:
-    """Return the number of graded POSTs per second with some workers; all bodies differ."""
+    """Return the number of graded POSTs per second with this number of workers."""
     messages = [tables(i) for i in range(400 + ROUNDS * MOST)]
     with running_server(workers) as port:
         asyncio.run(_per_second(port, messages[:400]))

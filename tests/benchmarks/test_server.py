@@ -1,4 +1,4 @@
-"""The benchmark's server starts as the service does, and answers what is measured."""
+"""The benchmark's server starts like the service, and answers the requests that are measured."""
 
 import asyncio
 import time

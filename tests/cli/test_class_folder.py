@@ -153,7 +153,7 @@ def children(pid: int) -> list[int]:
 
 
 def workers(pid: int) -> list[int]:
-    """The worker processes, without Python's resource tracker."""
+    """Return the ids of the worker processes, without Python's resource tracker."""
     return [each for each in children(pid) if b"spawn_main" in command_of(each)]
 
 

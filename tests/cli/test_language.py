@@ -41,7 +41,7 @@ SAME = re.compile(r"\\?\[[^\]]*\]")
 
 
 def process(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run Python in an environment without any other locale."""
+    """Run Python in an environment with no locale except the one in ``environment``."""
     kept = {name: value for name, value in os.environ.items() if name not in VARIABLES}
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
@@ -54,7 +54,7 @@ def process(*arguments: object, **environment: str) -> subprocess.CompletedProce
 
 
 def all_help(code: str) -> str:
-    """Return the help of all commands in a language, as one line without frames."""
+    """Return the help of all commands in a language, as one line."""
     # Wide enough for each text to stay on one line.
     wide = {"COLUMNS": "2000", "DH_GRADER_LANGUAGE": code}
     result = process("-c", ALL_HELP, code, **wide)
@@ -241,7 +241,7 @@ def test_the_list_of_exercises_is_in_the_language() -> None:
 
 
 def plain_words(node: ast.AST) -> Iterator[str]:
-    """Yield the texts in a printed value, without the results of calls."""
+    """Yield the string literals in a printed expression, but not those inside calls."""
     match node:
         case ast.Call(func=ast.Name(id="Text"), args=[text, *_]):
             yield from plain_words(text)

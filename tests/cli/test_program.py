@@ -50,7 +50,7 @@ def test_help_names_every_command_and_the_program() -> None:
 
 
 def loaded(*arguments: object) -> tuple[set[str], bytes]:
-    """Run a command; return the modules that it has imported, and its output."""
+    """Run a command; return the names of the modules that it imports, and its output."""
     probe = (
         "import sys; from service.cli import main\n"
         "try: main()\n"

@@ -16,7 +16,7 @@ POINTS = "8.67 / 32 points"
 
 
 def report(program: Path, folder: Path) -> str:
-    """Return the figures of one installation. Raises AssertionError if its points are wrong."""
+    """Return the version of an installed program; check the points that the program gives."""
     graded = run(program, "grade", SUBMISSION, "--exercise", "stanford-arm", cwd=folder)
     assert graded.returncode == 1, graded.stderr
     assert POINTS in graded.stdout
@@ -24,7 +24,7 @@ def report(program: Path, folder: Path) -> str:
 
 
 def newcomer(folder: Path) -> str:
-    """Return the figures of a fresh clone in which the README's first two commands were run."""
+    """Install a fresh clone with the README's first two commands; check it, return its version."""
     checked("git", "clone", "--quiet", ROOT, folder, cwd=ROOT)
     for command in COMMANDS[:2]:
         checked(*command.split(), cwd=folder)

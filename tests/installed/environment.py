@@ -46,9 +46,9 @@ def build(folder: Path) -> Path:
 
 
 def environment(folder: Path, python: str = sys.executable) -> Path:
-    """Create a virtual environment that uses the packages of this one; return its bin folder.
+    """Create a virtual environment with this environment's packages; return its bin folder.
 
-    So a test needs no network. Compiled packages work only for this version of Python.
+    A test with it needs no network. Compiled packages work only in this version of Python.
     """
     if not folder.exists():
         checked(python, "-m", "venv", "--without-pip", folder, cwd=ROOT)
@@ -64,7 +64,7 @@ def install(wheel: Path, programs: Path) -> None:
 
 
 def other_pythons() -> list[str]:
-    """Return the supported Pythons of this machine with another version than this one."""
+    """Return the Pythons on this machine whose version is supported, but not the running one."""
     names = [f"python3.{minor}" for minor in range(OLDEST[1], 20)]
     found = [path for name in names if (path := shutil.which(name))]
     found += map(str, Path.home().glob(".pyenv/versions/3.*/bin/python"))

@@ -1,4 +1,4 @@
-"""Submissions to a platform, right, wrong and hostile, as files in a folder."""
+"""Write submissions to a platform into a folder: correct, wrong, unreadable and hostile files."""
 
 import json
 from collections.abc import Callable
@@ -30,11 +30,11 @@ def unreadable(folder: Path) -> None:
 
 
 def missing(folder: Path) -> None:
-    """Submit nothing."""
+    """Write no file."""
 
 
 def hostile(folder: Path) -> None:
-    """Write hostile file names and texts, and a right table."""
+    """Write a correct answer, and files with hostile names and texts."""
     write(folder, {"table": {"rows": ROWS}, "pose": WRITTEN})
     for name in (
         f"$(touch {MARK}).json",
@@ -62,7 +62,7 @@ SORTS: Final[dict[str, Callable[[Path], None]]] = {
 
 
 def assert_nothing_ran(place: Path, *texts: str) -> None:
-    """Check that no name was run as a command of a shell, a terminal, a build or a page."""
+    """Check that no file name or text was run by a shell, a terminal, a build or a page."""
     assert not list(place.rglob(MARK))
     for text in texts:
         assert "\x1b" not in text

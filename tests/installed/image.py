@@ -58,7 +58,7 @@ class Builder:
         return done.stdout.strip()
 
     def stand_in(self, folder: Path, name: str) -> None:
-        """Build a Debian with Python, under the name of the base image."""
+        """Build an image of Debian with Python, and give it the name of the base image."""
         options = ("--variant=minbase", f"--include={PACKAGES}", SUITE, str(folder))
         subprocess.run(("debootstrap", *options), stdout=subprocess.DEVNULL, check=True)
         (folder / "usr/bin/python").symlink_to("python3")
@@ -81,7 +81,7 @@ class Builder:
 
 
 def settings_of(dockerfile: str) -> tuple[str, list[str]]:
-    """Return the user of the image and its environment variables."""
+    """Return the user and the environment variables that a Dockerfile sets."""
     final = dockerfile.rpartition("\nFROM ")[2].replace("\\\n", " ")
     user = re.findall(r"^USER (\S+)", final, re.MULTILINE)[-1]
     pairs = " ".join(re.findall(r"^ENV (.*)", final, re.MULTILINE)).split()
@@ -90,7 +90,7 @@ def settings_of(dockerfile: str) -> tuple[str, list[str]]:
 
 
 def main() -> int:
-    """Build and try the image, and print the results; return 1 if something is wrong."""
+    """Build the image, run the service in it, and print the results; return 1 if one is wrong."""
     dockerfile = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     base = re.findall(r"^FROM ([^\s@]+)", dockerfile, re.MULTILINE)[-1]
     user, environment = settings_of(dockerfile)
@@ -115,7 +115,7 @@ def main() -> int:
 
 
 def report(seen: str, user: str) -> int:
-    """Print the results; return 1 if something is wrong."""
+    """Print the results in the output of the image; return 1 if one is wrong."""
     uid, *others = seen.splitlines()
     graded = next(json.loads(line) for line in others if line.startswith("{"))
     points = graded["report"]["points"]

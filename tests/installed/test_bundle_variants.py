@@ -1,4 +1,4 @@
-"""Bundles with variants: each student sees and answers numbers of their own."""
+"""Bundles with variants: each student gets an exercise with their own numbers."""
 
 import json
 import os
@@ -38,12 +38,12 @@ def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
 
 
 def variant_of(folder: Path, seeds: Mapping[str, str]) -> Exercise:
-    """Return the variant with these seeds."""
+    """Return the variant of the exercise in a folder for these seeds."""
     return hidden_variant(load_exercise(folder / "arm.toml"), seeds["arm"])
 
 
 def answers(folder: Path, seeds: Mapping[str, str]) -> dict[str, Any]:
-    """Return the model answer of a variant."""
+    """Return the model answer to the variant for these seeds."""
     return {"answers": {"table": solve(variant_of(folder, seeds)).parts[0].answer}}
 
 

@@ -36,7 +36,7 @@ def test_the_program_is_the_installed_one(programs: Path, tmp_path: Path) -> Non
 
 
 async def posted(body: dict[str, Any]) -> Any:
-    """Return the report on a body over HTTP."""
+    """Return the report that the service sends for a request body."""
     transport = httpx.ASGITransport(create())
     async with httpx.AsyncClient(transport=transport, base_url="http://service") as client:
         return (await client.post("/v1/exercises/planar-rrr/grade", json=body)).json()

@@ -1,8 +1,8 @@
 """`python -m tests.load`: 200 clients submit for a minute; measure grading and recording.
 
 Print throughput, p50 and p99 of each load, and the throughput as a share of that of trivial POSTs.
-Exit with 1 if an answer is a failure, if an attempt is lost or recorded twice, or if an attack with
-the costliest bodies makes the p99 more than five times as long.
+Exit with 1 if a request fails, if an attempt is lost or recorded twice, or if an attack with the
+costliest bodies makes the p99 more than five times as long.
 """
 
 import argparse
@@ -28,7 +28,7 @@ MIXED = Mix(recorded=0.5)
 
 
 def misrecorded(url: str, results: dict[str, str]) -> list[str]:
-    """Return the differences between the database and the ids that clients received."""
+    """Return errors: attempts that are lost, recorded twice, or were not confirmed to a client."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
@@ -47,7 +47,7 @@ def misrecorded(url: str, results: dict[str, str]) -> list[str]:
 def replicas(
     folder: Path, number: int, workers: int, url: str, **settings: str
 ) -> Iterator[list[Service]]:
-    """Run ``number`` services with one database, each with workers and a trivial route."""
+    """Run ``number`` services on one database; each has some workers and a trivial route."""
     with ExitStack() as stack:
         running = []
         for i in range(number):
@@ -68,7 +68,7 @@ def replicas(
 
 @contextmanager
 def attacked(running: Sequence[Service], seconds: float) -> Iterator[None]:
-    """Send the costliest bodies on 16 connections meanwhile."""
+    """Send the costliest bodies on 16 connections while the body of the ``with`` runs."""
     with ExitStack() as opened:
         until = time.monotonic() + seconds
         thread = threading.Thread(target=lambda: costly()(running[0], opened, until))
@@ -79,7 +79,7 @@ def attacked(running: Sequence[Service], seconds: float) -> Iterator[None]:
 
 @contextmanager
 def database(kind: str, folder: Path) -> Iterator[str]:
-    """Yield the URL of a new database of a kind."""
+    """Yield the URL of a new database, such as SQLite or PostgreSQL."""
     if kind == "sqlite":
         yield new_file(folder)
         return
@@ -88,7 +88,7 @@ def database(kind: str, folder: Path) -> Iterator[str]:
 
 
 def load(kind: str, number: int, workers: int, clients: int, seconds: float) -> list[str]:
-    """Run the loads one after the other and print figures; return the broken promises."""
+    """Run the loads one after the other and print figures; return faults and missed limits."""
     broken: list[str] = []
     rows: list[tuple[str, Results]] = []
     with (

@@ -1,4 +1,4 @@
-"""Clients that submit one request after the other, each from an address of its own."""
+"""Clients that send one request after the other; each client has its own address."""
 
 import asyncio
 import json
@@ -24,7 +24,7 @@ TRIES: Final = 300
 
 @dataclass
 class Results:
-    """The answers to clients: waiting times in seconds, failures, and ids of attempts by keys."""
+    """The responses to clients: waits in seconds, failures, and attempt ids by request key."""
 
     waits: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -47,7 +47,7 @@ class Results:
 
 @dataclass(frozen=True)
 class Mix:
-    """The shares of recorded and of trivial requests; all others are only graded."""
+    """The shares of recorded and of trivial requests; all other requests are only graded."""
 
     recorded: float = 0.0
     trivial: float = 0.0
@@ -77,7 +77,7 @@ class Client:
         self._lines: dict[int, tuple[asyncio.StreamReader, asyncio.StreamWriter]] = {}
 
     async def submit(self, until: float) -> None:
-        """Submit until a time of ``time.perf_counter()``, and finish the last request."""
+        """Send requests until ``time.perf_counter()`` is ``until``, and finish the last request."""
         for i in range(1_000_000):
             if time.perf_counter() > until:
                 break
@@ -115,7 +115,7 @@ class Client:
         self._results.attempts[key] = found
 
     async def _post(self, path: str, body: dict[str, object], key: str = "") -> str:
-        """Post to each service in turn; return the id of the attempt, or "" without an answer."""
+        """Post to the next service; return the id of the attempt, or "" if there is none."""
         self._turn += 1
         port = self._ports[self._turn % len(self._ports)]
         content = json.dumps(body).encode()

@@ -1,8 +1,8 @@
 """`python -m tests.load.wrong_answers`: measure the service with mostly wrong answers.
 
 A course server sends tables with slips over eight connections from one address, then 120 students
-submit in the same instant. Both are compared with grading alone, in this process. Exit with 1 if
-the service is slower than promised. Run nothing else meanwhile.
+submit in the same instant. Compare both with grading the same tables in this process. Exit with
+1 if the service is slower than promised. Run nothing else meanwhile.
 """
 
 import argparse
@@ -46,7 +46,7 @@ class Body(NamedTuple):
 
 
 def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: int) -> Any:
-    """Return the rows with ``slips`` cells changed, each as a student might."""
+    """Return the rows after ``slips`` changes of cells, such as students make."""
     changed = [dict(row) for row in rows]
     for _ in range(slips):
         row, column = choose.choice(changed), choose.choice(_COLUMNS)
@@ -57,7 +57,7 @@ def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: in
 
 @cache
 def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
-    """Return each part of these exercises that asks for a table, with the right rows."""
+    """Return all parts of these exercises that ask for a table, each with the correct rows."""
     shipped = shipped_exercises()
     return [
         (exercise, part.id, dict[str, Any](solved(exercise).answers)[part.id]["rows"])
@@ -68,9 +68,9 @@ def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
 
 
 def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Iterator[Body]:
-    """Yield tables of exercises without end; the share ``wrong`` has one to four slips.
+    """Yield tables of exercises without end; the share ``wrong`` of them has one to four slips.
 
-    The exercises are those with these ``names``; by default all shipped ones.
+    ``names`` are the ids of the exercises; by default all shipped exercises.
     """
     choose, models = random.Random(seed), _models(names)
     while True:
@@ -83,7 +83,7 @@ def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Ite
 
 
 def in_process(bodies: Sequence[Body], catalogue: dict[str, Exercise]) -> list[float]:
-    """Return the processor seconds of each grading alone, without the server."""
+    """Return the processor seconds for grading each body in this process, without a server."""
     found = []
     for exercise, content in bodies:
         body = validated(GradeRequest, json.loads(content), ())
@@ -153,7 +153,7 @@ async def _at_once(running: Service, bodies: Sequence[Body]) -> float:
 
 
 def measure(count: int, seed: int) -> list[str]:
-    """Print the figures; return the broken promises."""
+    """Print the figures; return the missed limits."""
     catalogue = dict(shipped_exercises())
     drawn = tables(seed, 1.0)
     warm = [next(drawn) for _ in range(100)]

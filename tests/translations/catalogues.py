@@ -1,7 +1,7 @@
 """Bring the catalogues of all languages up to date with the sentences in the source.
 
-``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes those
-that no source has any more, and compiles the ``.mo`` files that the program reads. Sentences
+``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes
+those that are no longer in the source, and compiles the ``.mo`` files for the program. Sentences
 without a translation stay empty; nothing is guessed. The command writes these sentences to
 ``untranslated.json``, with an empty text for each language. Fill the texts in, and run the command
 again.
@@ -53,8 +53,8 @@ _QUOTED: Final = re.compile(r"`[^`]+`")
 def extracted(domain: str) -> Catalog:
     """Return the sentences of a domain in the source, with their files.
 
-    The sentences below ``service/web`` are those of pages, and those below ``service/cli`` with
-    the help texts are those of the command line; all others are those of reports.
+    Sentences in ``service/web`` belong to the domain of pages. Help texts and sentences in
+    ``service/cli`` belong to that of the command line, all other sentences to that of reports.
     """
     found = Catalog(charset="utf-8", fuzzy=False)
     for file, method in _files(domain):
@@ -111,7 +111,7 @@ def _domain(file: Path) -> str:
 
 
 def catalogue(code: str, domain: str) -> Catalog:
-    """Return the committed catalogue of a language; empty if there is none."""
+    """Return the committed catalogue of a language, or an empty catalogue if there is none."""
     file = FOLDER / code / f"{domain}.po"
     if not file.is_file():
         return Catalog(locale=code, domain=domain, charset="utf-8", fuzzy=False)
@@ -164,7 +164,7 @@ def as_mo(found: Catalog) -> bytes:
 
 
 def write(code: str, domain: str, found: Catalog) -> None:
-    """Write both files of a catalogue; compile the second one from the text of the first."""
+    """Write the ``.po`` file of a catalogue, and compile its ``.mo`` file from the ``.po`` file."""
     (FOLDER / code).mkdir(exist_ok=True)
     text = as_po(found)
     (FOLDER / code / f"{domain}.po").write_bytes(text)
@@ -173,7 +173,7 @@ def write(code: str, domain: str, found: Catalog) -> None:
 
 
 def faults(found: Catalog) -> Iterator[str]:
-    """Yield what is wrong with the translations of a catalogue, a line for each sentence.
+    """Yield the faults in the translations of a catalogue, one line for each wrong translation.
 
     A translation must have the same placeholders and the same texts between backticks as its
     sentence. It must begin and end with a blank exactly where the sentence does.
@@ -201,7 +201,7 @@ def _ends(text: str) -> tuple[bool, bool]:
 
 
 def _missing(code: str, domain: str) -> list[dict[str, Any]]:
-    """Return the sentences without a translation, each with an empty one to be filled in."""
+    """Return the sentences without a translation, each with an empty text to be filled in."""
     plurals = catalogue(code, domain).num_plurals
     found = []
     for message in updated(code, domain):
@@ -229,7 +229,7 @@ def untranslated() -> list[dict[str, Any]]:
 
 
 def filled(found: Catalog, translations: Iterable[tuple[Any, Any]]) -> Catalog:
-    """Return the catalogue with these translations, each a sentence and its text."""
+    """Return the catalogue with these translations: pairs of a sentence and its translation."""
     for sentence, text in translations:
         message = found.get(tuple(sentence) if isinstance(sentence, list) else sentence)
         if message is None:

@@ -1,4 +1,4 @@
-"""German translations of a few sentences, which a test writes by hand."""
+"""German for tests: each test writes the translations of a few sentences."""
 
 from collections.abc import Mapping
 from gettext import NullTranslations
@@ -23,7 +23,7 @@ class _Words(NullTranslations):
 
 
 def german(words: Mapping[str, str]) -> Language:
-    """Return German with these translations of templates."""
+    """Return the language German with these translations from English, and no others."""
     # Another name: templates are cached by language, and later tests need the whole German.
     made = Language("de", "Deutsch in Tests", "de")
     made.__dict__["translation"] = _Words(words)
@@ -31,20 +31,20 @@ def german(words: Mapping[str, str]) -> Language:
 
 
 def offer_german(patch: pytest.MonkeyPatch, words: Mapping[str, str]) -> Language:
-    """Let the service offer German with these translations."""
+    """Let the service offer German with only these translations."""
     made = german(words)
     patch.setitem(cast("dict[str, Language]", LANGUAGES), "de", made)
     return made
 
 
 def as_sentence(text: str) -> str:
-    """Return a plain text as a sentence without values."""
+    """Return a plain text as a ``Sentence`` without values; leave other texts as they are."""
     is_plain = not isinstance(text, Sentence) and not {"{", "}"} & set(text)
     return Sentence(text) if is_plain else text
 
 
 def messages_in(report: Report | Mapping[str, Any]) -> list[str]:
-    """Return the messages of lost points of a report or its JSON."""
+    """Return the messages about lost points in a report, or in the JSON of a report."""
     if isinstance(report, Report):
         return [each.message for part in report.parts for each in part.lost]
     return [each["message"] for part in report["parts"] for each in part["lost"]]

@@ -21,7 +21,7 @@ _MORE: Final = " ťéxť"
 
 
 class PseudoTranslation(NullTranslations):
-    """Every sentence, with accents."""
+    """Translations into the pseudo-language: each sentence, with accents."""
 
     def gettext(self, message: str) -> str:
         """Return a text with accents that is a third longer."""
@@ -33,7 +33,7 @@ class PseudoTranslation(NullTranslations):
         return told + _MORE * max(1, round(letters / 3 / len(_MORE)))
 
     def ngettext(self, one: str, many: str, count: int) -> str:
-        """Return the text for a count with accents."""
+        """Return the singular or plural text for a count, with accents."""
         return self.gettext(one if count == 1 else many)
 
 

@@ -1,4 +1,4 @@
-"""Every message of a report is a sentence, so that it can be told in another language."""
+"""Every message of a report is a ``Sentence``, so that it can be translated."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -26,10 +26,10 @@ _WORDS = re.compile(r"[^\W\d_]{3,} [^\W\d_]{2,}")
 
 
 class Pseudo:
-    """A language that is English in capital letters."""
+    """A language for tests: English in capital letters."""
 
     def gettext(self, message: str, /) -> str:
-        """Return the template in capital letters, with its values as they are."""
+        """Return the template in capital letters, with unchanged placeholders."""
         pieces = []
         for text, name, _, _ in Formatter().parse(message):
             pieces.append(text.upper().replace("{", "{{").replace("}", "}}"))
@@ -43,7 +43,7 @@ class Pseudo:
 
 @cache
 def reports() -> tuple[PartReport, ...]:
-    """Return the reports on the answers of docs/sentences.md."""
+    """Return the reports on the example answers in docs/sentences.md."""
     catalogue = exercises()
     return tuple(
         part
@@ -56,7 +56,7 @@ def reports() -> tuple[PartReport, ...]:
 
 
 def said_of(part: PartReport) -> Iterator[tuple[str, str]]:
-    """Yield the sentences of a report on a part with their codes."""
+    """Yield the texts in the report on a part, each with the code of its message."""
     for message, _, _ in messages_of(part):
         yield message.message, message.code
         for correction in (message.correction, *(each.correction for each in message.places or ())):
@@ -73,9 +73,9 @@ def said_of(part: PartReport) -> Iterator[tuple[str, str]]:
 
 @cache
 def texts() -> Mapping[str, str]:
-    """Return the texts of all examples of docs/sentences.md, messages and corrections, with codes.
+    """Return all messages and corrections for the examples in docs/sentences.md, with codes.
 
-    A plain text replaces an equal sentence.
+    A plain text replaces a ``Sentence`` with the same text.
     """
     given = [*said_of_formulas(formulas())]
     given += said_of_pasted(pasted_texts(), exercises()["planar-rr"])
@@ -89,12 +89,12 @@ def texts() -> Mapping[str, str]:
 
 
 def sentences() -> list[Sentence]:
-    """Return the texts that are sentences."""
+    """Return those texts that are a ``Sentence``."""
     return [each for each in texts() if isinstance(each, Sentence)]
 
 
 def leaves(sentence: Sentence) -> Iterator[tuple[str, str]]:
-    """Yield the values that a sentence and the sentences in it show, with their names."""
+    """Yield the names and values that a sentence shows, also those in nested sentences."""
     is_plural = sentence.plural and sentence.values["count"] != 1
     template = sentence.plural if is_plural else sentence.template
     for name, value in sentence.values.items():
@@ -105,7 +105,7 @@ def leaves(sentence: Sentence) -> Iterator[tuple[str, str]]:
 
 
 def is_prose(value: str) -> bool:
-    """True if a value has English words; the names of characters are those of Unicode."""
+    """True if a value has English words and is not the Unicode name of a character."""
     try:
         lookup(value)
     except KeyError:

@@ -1,4 +1,4 @@
-"""Sentences and what becomes of them in another language."""
+"""A ``Sentence`` and its translation into another language."""
 
 import copy
 import pickle
@@ -21,7 +21,7 @@ class German(NullTranslations):
     }
 
     def gettext(self, message: str) -> str:
-        """Return the German template; an unknown one stays."""
+        """Return the German template, or the English one if there is no translation."""
         return self.words.get(message, message)
 
     def ngettext(self, one: str, many: str, count: int) -> str:

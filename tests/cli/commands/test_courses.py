@@ -1,4 +1,4 @@
-"""`dh-grader courses`: counts, refusals in words, and the note about links to this machine."""
+"""`dh-grader courses`: counts, readable refusals, and the note that links lead to this machine."""
 
 from pathlib import Path
 

@@ -35,7 +35,7 @@ def run(*arguments: str) -> Result:
 
 
 def refused(host: str | None = "0.0.0.0", **options: Any) -> str:
-    """The reason why the service does not start; empty if it starts."""
+    """Return the reason for which the service does not start, or "" if it starts."""
     try:
         installed_app(load_settings(**options), host)
     except SettingsError as error:

@@ -1,4 +1,4 @@
-"""Variants on the command line: check many seeds, deploy some, show and grade one."""
+"""Variants on the command line: check and deploy many, show one, and grade one."""
 
 import json
 import re

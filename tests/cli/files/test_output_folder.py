@@ -1,4 +1,4 @@
-"""A folder is written completely or not at all, and foreign files are not touched."""
+"""A command writes its output folder completely or not at all, and leaves foreign files alone."""
 
 import os
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""``dh-grader grade --server`` with a real server process, which is also killed during a run."""
+"""``dh-grader grade --server`` with a real server process; one test kills the server in a run."""
 
 import json
 import signal
@@ -35,7 +35,7 @@ id = "stanford-arm"
 
 @pytest.fixture
 def homework(tmp_path: Path) -> Path:
-    """A folder of right, wrong, unreadable, unusable and missing answers."""
+    """A folder with correct, wrong, unreadable, unusable and missing answers."""
     folder = tmp_path / "class"
     folder.mkdir()
     entries = [*POSITION, "q1", "a1 c1 +", "1/0", "0", 0]

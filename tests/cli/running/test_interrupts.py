@@ -1,4 +1,4 @@
-"""A signal always ends a run, even if Python drops its exception."""
+"""A signal always ends a run, even if Python drops the exception that the signal raises."""
 
 import os
 import signal
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no signals between 
 
 @pytest.fixture(autouse=True)
 def _interrupts_enabled() -> Iterator[None]:
-    """Handle interrupts as in a terminal: in the background, a suite ignores them."""
+    """Handle interrupts as in a terminal, because a test run in the background ignores them."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)

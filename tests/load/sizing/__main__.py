@@ -39,7 +39,7 @@ def processor_time(running: Service) -> float:
 
 
 def each(running: Service, send: Send, count: int) -> float:
-    """Return the processor seconds of the service for each of ``count`` requests."""
+    """Return the service's processor time in seconds for one request: the mean of ``count``."""
     line = http.client.HTTPConnection("127.0.0.1", running.port, timeout=ANSWER)
     send(line, -1)
     began = processor_time(running)
@@ -50,7 +50,7 @@ def each(running: Service, send: Send, count: int) -> float:
 
 
 def answered(line: http.client.HTTPConnection, method: str, path: str, body: bytes = b"") -> bytes:
-    """Return the body of an answer that is no failure."""
+    """Send a request that must succeed; return the body of the response."""
     line.request(method, path, body or None)
     response = line.getresponse()
     content = response.read()
@@ -59,7 +59,7 @@ def answered(line: http.client.HTTPConnection, method: str, path: str, body: byt
 
 
 def measured(running: Service, count: int) -> Costs:
-    """Return the processor times of each kind of request."""
+    """Return the processor times of each kind of request, in seconds."""
     catalogue = dict(shipped_exercises())
 
     def graded(bodies: list[Body], route: str) -> Numbers:

@@ -1,9 +1,9 @@
-"""Simulate a class that hands in before a deadline: the waits with a number of processes.
+"""Simulate a class that submits before a deadline: how long students wait for a service.
 
-The model: a week of work, and a power law for the times of hand-in, half of them on the last day.
-So about one in six hand-ins falls into the last hour, and one in 27 into the last minute. Before
-the hand-in, a student types the answers (each pause is a preview) and checks them; some are wrong.
-Each student gets a random process, because connections do. A process takes one request at a time.
+In the model, students work for a week. The times of submission follow a power law: half of the
+students submit on the last day, about one in six in the last hour, and one in 27 in the last
+minute. Before that, a student types the answers (each pause sends a preview) and checks them; some
+are wrong. Each student's connection goes to a random process, which answers one request at a time.
 """
 
 from collections.abc import Mapping
@@ -33,9 +33,9 @@ REQUESTS: Final[Mapping[str, tuple[int, float]]] = {
 
 @dataclass(frozen=True)
 class Waits:
-    """Seconds from a hand-in of the last hour to its answer, and the load of the busiest minute.
+    """The waits in seconds for responses to hand-ins in the last hour, and the greatest load.
 
-    ``busiest`` is the share of the time of all processes that the requests of that minute need.
+    ``busiest`` is the share of their time in which all processes work in the busiest minute.
     """
 
     median: float
@@ -45,7 +45,7 @@ class Waits:
 
 
 def before_deadline(students: int, choose: np.random.Generator) -> Numbers:
-    """Return for each student how many seconds before the deadline the hand-in is."""
+    """Return for each student the time between hand-in and deadline, in seconds."""
     return WEEK * choose.random(students) ** (1 / EXPONENT)
 
 
@@ -76,9 +76,9 @@ def waits(students: int, processes: int, seconds: Costs, choose: np.random.Gener
 
 
 def waited(asked: Numbers, cost: Numbers) -> Numbers:
-    """Return the seconds to each answer of one process that answers in the order of the requests.
+    """Return the waits in seconds for responses of one process, which takes requests in order.
 
-    Work on a request begins when it arrives or when the previous one ends, whichever is later.
+    Work on a request begins when it arrives or when the previous work ends, whichever is later.
     """
     order = np.argsort(asked, kind="stable")
     asked, cost = asked[order], cost[order]
@@ -90,7 +90,7 @@ def waited(asked: Numbers, cost: Numbers) -> Numbers:
 
 
 def most_students(processes: int, seconds: Costs, p99: float, choose: np.random.Generator) -> int:
-    """Return how many students are answered within ``p99`` seconds, to two figures."""
+    """Return the largest class for which 99 % wait at most ``p99`` seconds, to two figures."""
     enough, too_many = 100, 100
     while waits(too_many, processes, seconds, choose).p99 <= p99:
         enough, too_many = too_many, 2 * too_many

@@ -1,4 +1,4 @@
-"""The simulation of a deadline: its arrivals, its queue, and how it grows."""
+"""The simulation of a deadline: arrivals, the queue of a process, and waits in larger classes."""
 
 import numpy as np
 import pytest
