@@ -56,9 +56,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark cases left out of a sample as long; shuffle all tests if ``--shuffle`` is given.
+    """Mark test cases outside of a sample as long; shuffle all tests if ``--shuffle`` is given.
 
-    Of a test marked ``sampled(n)``, one case in n is not marked. Each process uses the same order.
+    In a test with the marker ``sampled(n)``, every n-th case is in the sample. All processes use
+    the same order of tests.
     """
     places: Counter[str] = Counter()
     for item in items:
@@ -73,7 +74,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Exclude the collected tests from garbage collection, because they live to the end."""
+    """Exclude the collected tests from garbage collection, because they live until the end."""
     gc.disable()
     try:
         return (yield)
@@ -84,12 +85,12 @@ def pytest_collection() -> Generator[None, object, object]:
 
 @pytest.fixture
 def figure(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
-    """A function that records a measured figure, which is printed at the end of the run."""
+    """Return a function that records a measured figure. The run prints all figures at its end."""
     return lambda line: record_property(FIGURE, line)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Print the figures of all processes, which the reports of tests contain."""
+    """Print the measured figures of all processes. The test reports contain these figures."""
     figures = [
         str(value)
         for reports in terminalreporter.stats.values()
@@ -119,7 +120,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 @pytest.fixture(scope="session")
 def given_frames(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
-    """The shipped exercises with table and pose only, and given frames: one table is right."""
+    """The shipped exercises with only table and pose, and given frames: one table is correct."""
     given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
     return {
         name: replace(

@@ -34,7 +34,7 @@ def _numbered_group(each: tuple[int, str]) -> Found:
 
 
 def fuzz(count: int, seed: str, cores: int, minutes: float) -> Found:
-    """Read ``count`` cases on some cores, fewer if the time ends, and print the progress."""
+    """Read ``count`` cases on some cores, fewer if the time is over, and print the progress."""
     total = Found()
     began = told = time.monotonic()
     for found in _each(count, seed, cores):

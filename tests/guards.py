@@ -1,7 +1,7 @@
 """Time limits that only guard against hangs: far longer than the slowest run on an idle machine.
 
-They do not measure speed: a test must not fail because the machine is busy. A test that waits for a
-condition is guarded by the timeout of pytest (see pyproject.toml).
+These limits do not measure speed: a test must not fail because the machine is busy. If a test waits
+for a condition, the timeout of pytest is the limit (see pyproject.toml).
 """
 
 from typing import Final

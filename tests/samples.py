@@ -7,9 +7,9 @@ from _pytest.mark import ParameterSet
 
 
 def one_in(count: int, cases: Iterable[object]) -> list[ParameterSet]:
-    """Return parameters of a test: the suite runs one in ``count``, the campaign the others.
+    """Return test parameters: the suite runs one case in ``count``, the campaign the others.
 
-    A case of several parameters is a tuple.
+    A case with several parameters is a tuple.
     """
     return [
         pytest.param(

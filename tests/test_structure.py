@@ -128,7 +128,7 @@ def room(module: str, house: str) -> str:
 
 
 def against_the_order(place: Mapping[str, int], house: str) -> list[str]:
-    """Return the imports below ``house`` in which a package imports one with a later place."""
+    """Return the imports below ``house`` by which a package imports another with a higher place."""
     return [
         f"{module} imports {target}"
         for module, targets in imports().items()
@@ -217,8 +217,8 @@ def has_home(test: Path) -> bool:
     """True if a test file is in its place.
 
     The tests of ``service/x/y/z.py`` are in ``tests/x/y/test_z.py``, those of the package
-    ``service/x/y`` in ``tests/x/y/test_y.py``, and those of a test helper next to it. At the top of
-    a package, a test may also be about the whole package; its docstring then says what it tests.
+    ``service/x/y`` in ``tests/x/y/test_y.py``, and those of a test helper next to the helper. In a
+    folder such as ``tests/x``, a test file with a docstring may also be about the whole package.
     """
     *folders, file = test.relative_to(TESTS).parts
     if not folders or folders[0] in SUITES:

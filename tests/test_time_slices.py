@@ -1,4 +1,4 @@
-"""Work in time slices gives the same result."""
+"""Gradings give the same reports if they take turns in time slices."""
 
 import asyncio
 import threading
@@ -23,13 +23,13 @@ _NAME = ContextVar("name", default="")
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    """End a slice at each checkpoint."""
+    """Let each time slice end at the next checkpoint."""
     monkeypatch.setattr(time_slices, "FIRST_SLICE", 0.0)
     monkeypatch.setattr(time_slices, "SLICE", 0.0)
 
 
 async def give_way() -> None:
-    """Let other tasks run that are ready."""
+    """Let all other tasks run that are ready."""
     await asyncio.sleep(0)
 
 

@@ -1,4 +1,4 @@
-"""A test of many cases fails if one of them does, and names it."""
+"""A test of many cases fails if one case fails, and names this case."""
 
 import pytest
 

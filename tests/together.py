@@ -1,4 +1,4 @@
-"""Run many small cases in one test: starting and reporting a test costs more than such a case."""
+"""Run many small cases in one test, because each test costs more time than a small case."""
 
 import inspect
 from collections.abc import Callable, Iterable
@@ -13,10 +13,10 @@ SHOWN = 20
 def together(
     names: str | tuple[str, ...], cases: Iterable[Any]
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Run all cases in one test; report which of them failed, and why.
+    """Run all cases in one test; report each failed case and its error.
 
-    Use it like ``pytest.mark.parametrize``. A case of several parameters is a tuple. All cases
-    share the fixtures, so that no case may change them.
+    Use this function like ``pytest.mark.parametrize``. A case with several parameters is a tuple.
+    All cases share the fixtures, so no case may change them.
     """
     parameters = (names,) if isinstance(names, str) else names
     each: list[tuple[Any, ...]] = [case if isinstance(names, tuple) else (case,) for case in cases]

@@ -1,4 +1,4 @@
-"""Exercise files for tests, and the remarks on them."""
+"""Exercise files for tests, and the program's remarks on them."""
 
 from collections.abc import Callable
 

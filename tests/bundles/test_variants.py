@@ -1,4 +1,4 @@
-"""A student always gets the same seeds of a bundle; data that name no student are refused."""
+"""A bundle always gives a student the same seeds, and refuses data that name no student."""
 
 import json
 from pathlib import Path
@@ -14,7 +14,7 @@ VARIANTS = BundleVariants("s" * 64, {"reach": ["a", "b", "c"], "wrist": []})
 
 
 def seeds(folder: Path, submission: object) -> dict[str, str]:
-    """Return the seeds for the JSON with which a platform describes a submission."""
+    """Return the seeds for a submission, which a platform describes by this JSON value."""
     described, variants = folder / "described.json", folder / "variants.json"
     described.write_text(json.dumps(submission), encoding="utf-8")
     variants.write_bytes(VARIANTS.file().content)
@@ -22,7 +22,7 @@ def seeds(folder: Path, submission: object) -> dict[str, str]:
 
 
 def users(*numbers: object) -> object:
-    """Return the description that Gradescope writes of a submission of these accounts."""
+    """Return the JSON with which Gradescope describes a submission by these accounts."""
     return {"id": 5, "users": [{"id": each, "email": "a@b.c", "name": "A"} for each in numbers]}
 
 

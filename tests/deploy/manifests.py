@@ -23,7 +23,7 @@ def objects(kind: str) -> list[dict[str, Any]]:
 
 
 def the(kind: str, name: str = "grader") -> dict[str, Any]:
-    """Return the only object of a kind and a name."""
+    """Return the only object with this kind and name."""
     [found] = [each for each in objects(kind) if each["metadata"]["name"] == name]
     return found
 

@@ -1,6 +1,6 @@
-"""The manifests fit the schemas of Kubernetes, the settings, the image and each other.
+"""The manifests match the schemas of Kubernetes, the settings, the image and each other.
 
-If there is a kubectl, it builds the overlays as well. No cluster is needed.
+If kubectl is installed, it builds the overlays as well. The tests need no cluster.
 """
 
 import re

@@ -27,7 +27,7 @@ OF_PROMETHEUS = {"instance", "job", "le"}
 
 
 def samples() -> dict[str, set[str]]:
-    """Return the labels of each sample that the service can report, by its name."""
+    """Return the labels of each sample that the service can report, by the name of the sample."""
     endings = {
         "counter": ("_total",),
         "gauge": ("",),

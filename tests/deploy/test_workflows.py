@@ -1,4 +1,4 @@
-"""The GitHub Action, the GitLab component and the release workflow; their scripts are run."""
+"""The GitHub Action, the GitLab component and the release workflow; the tests run their scripts."""
 
 import os
 import re

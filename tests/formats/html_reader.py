@@ -26,7 +26,7 @@ VOID = {"meta"}
 
 
 class PageReader(HTMLParser):
-    """Checks that all elements are closed, and collects texts, links and ids."""
+    """Checks a page's elements and attributes, and collects its texts, links and ids."""
 
     def __init__(self, page: str, allowed: Mapping[str, AbstractSet[str]] = ALLOWED) -> None:
         super().__init__(convert_charrefs=True)

@@ -1,4 +1,4 @@
-"""Graded submissions of each sort for the tests of formats; the grader has graded most of them."""
+"""Graded submissions of each sort for the tests of formats. The grader graded most of them."""
 
 import io
 import json
@@ -95,7 +95,7 @@ def graded(
 
 
 def _hostile_words() -> GradedSubmission:
-    """Return a report with only hostile texts. (The grader would repeat little of an answer.)"""
+    """Return a made-up report with only hostile texts: the grader repeats little of an answer."""
     correction = Correction(WRITTEN, WRITTEN)
     told = [
         Feedback(
@@ -120,7 +120,7 @@ def _hostile_words() -> GradedSubmission:
 
 
 def _assignment() -> GradedSubmission:
-    """Return a submission to two exercises: one right (3 points), one without a file (1)."""
+    """Return a submission to two exercises: one is correct (3 points), one has no file (1)."""
     right = graded({"table": {"rows": ROWS}, "pose": POSE}).files[0].report
     exercise = answered(planar(), worth=3.0)
     missing = AnsweredExercise(
@@ -135,7 +135,7 @@ def _assignment() -> GradedSubmission:
 
 @cache
 def cases() -> Mapping[str, GradedSubmission]:
-    """Return a submission of each sort, by the name of the sort."""
+    """Return one submission of each sort: a dictionary from the name of the sort."""
     wrong = [ROWS[0], {**ROWS[1], "alpha": "pi/2"}, {**ROWS[2], "theta": "q2"}, ROWS[3]]
     hostile = [dict.fromkeys(row, WRITTEN) for row in ROWS]
     problem = GradedFile("folder/b.json", answered(planar()), None, f"is no JSON: {HOSTILE}")
@@ -158,13 +158,13 @@ def setting(**changes: Any) -> Setting:
 
 
 def document(name: str, *submissions: GradedSubmission, **changes: Any) -> str:
-    """Return the document of the format with this name."""
+    """Return the document that the format with this name writes about submissions."""
     pieces = report_format(name).pieces(submissions, setting(**changes))
     return b"".join(pieces).decode()
 
 
 def checked_json(name: str, only: GradedSubmission, **changes: Any) -> Any:
-    """Return the JSON document of a format, validated by the schema of its platform."""
+    """Return a format's JSON document after checking it against the schema of the platform."""
     file = Path(__file__).with_name("schemas") / f"{name}.json"
     schema = json.loads(file.read_text(encoding="utf-8"))
     text = document(name, only, **changes)

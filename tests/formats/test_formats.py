@@ -1,4 +1,4 @@
-"""Tests of every format: it is found by its name, and prints no commands to builds."""
+"""Tests of every format: its name finds it, and its output has no commands to build systems."""
 
 import re
 import unicodedata
@@ -43,7 +43,7 @@ def test_the_formats_for_students_are_known() -> None:
 
 
 def commands(line: str) -> Iterator[str]:
-    """Yield what the runners of GitHub, Azure and TeamCity would read as commands."""
+    """Yield the parts of a line that the runners of GitHub, Azure and TeamCity read as commands."""
     if line.lstrip().startswith("::"):
         yield line
     yield from re.findall(r"##(?:vso|teamcity|\w*)\[", line)

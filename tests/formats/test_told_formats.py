@@ -1,4 +1,4 @@
-"""The formats for students in another language."""
+"""The report formats for students, in another language."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Reports in the language of their reader."""
+"""Reports are translated into the reader's language."""
 
 from collections.abc import Mapping
 from dataclasses import replace

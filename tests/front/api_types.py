@@ -28,7 +28,7 @@ def api_types(document: Schema) -> str:
 
 
 def _type(schema: Schema) -> str:
-    """Return a schema as a type. Raises KeyError for a keyword that is not known here."""
+    """Return a schema as a type. Raises KeyError for an unknown type."""
     if "$ref" in schema:
         return str(schema["$ref"].rpartition("/")[2])
     if "const" in schema or "enum" in schema:

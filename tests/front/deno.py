@@ -33,7 +33,7 @@ def scripts() -> list[Path]:
 
 
 def deno(*arguments: str, written: str = "") -> subprocess.CompletedProcess[str]:
-    """Run Deno at the root of the project, without a network, with a text as its input."""
+    """Run Deno in the project's root folder, offline, with the text ``written`` as its input."""
     return subprocess.run(
         [find_deno_bin(), *arguments], cwd=ROOT, env=os.environ | _VARIABLES, check=False,
         input=written, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8",
@@ -52,17 +52,17 @@ def linter() -> subprocess.CompletedProcess[str]:
 
 
 def formatter(*options: str) -> subprocess.CompletedProcess[str]:
-    """Format the scripts and their tests, or with ``--check`` only say what would change."""
+    """Format the scripts and their tests; with ``--check``, only list the changes."""
     return deno("fmt", "--quiet", *options, *_CONFIG)
 
 
 def units() -> subprocess.CompletedProcess[str]:
-    """Run the unit tests, which may write no files; ``node --test`` runs them, too."""
+    """Run the unit tests without the right to write files; ``node --test`` runs them, too."""
     return deno("test", "--no-lock", "--no-remote", "--no-check", *_CONFIG, "tests/front/units")
 
 
 def main() -> None:
-    """Check everything, and say what is wrong."""
+    """Run all checks, and print their errors."""
     if "--fix" in sys.argv[1:]:
         formatter()
     results = [formatter("--check"), linter(), types(), units()]

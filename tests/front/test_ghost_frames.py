@@ -1,4 +1,4 @@
-"""Compare the ghost frame of a row that is played with products of matrices by numpy."""
+"""Compare the frame that the 3D view moves while it plays a row with numpy's matrix products."""
 
 import json
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ MOVES: Final = {
 
 
 def matrix(axis: int, turns: bool, amount: float) -> np.ndarray:
-    """Return a turn about an axis, by Rodrigues' formula, or a translation along it."""
+    """Return the matrix of a rotation about an axis (by Rodrigues' formula) or a shift along it."""
     made = np.eye(4)
     direction = np.eye(3)[axis]
     if not turns:
@@ -56,7 +56,7 @@ def ghosts(rows: Sequence[object]) -> Any:
 
 
 def rows_of(client: httpx.Client, exercise: Exercise) -> list[dict[str, Any]]:
-    """Return the rows of the reference's tables at some joint values, as the service draws them."""
+    """Return the rows of the reference's tables, with the frames that the service draws."""
     assert isinstance(exercise.reference, Robot)
     rows = []
     values = [[0.4 * (i + 1) - 1 for i in range(len(exercise.joints))]]

@@ -115,7 +115,7 @@ def test_submissions_with_identical_mistakes_are_grouped(counted: ClassStatistic
 
 
 def with_entries(report: Report, text: str) -> Report:
-    """The report with a table in which each entry is this text, and wrong."""
+    """Return the report with only its table part, in which each entry is this text and wrong."""
     table = report.parts[0]
     cells = tuple(
         CellReport(name, Verdict.INCORRECT, read=ReadEntry(text, text)) for name in "abcd"

@@ -1,4 +1,4 @@
-"""The files that answer an exercise, found by name, by content, or because there is only one."""
+"""A file answers an exercise because of its name or content, or because there is only one."""
 
 import json
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ CSV = "a, alpha, d, theta\n0, 0, 0, q1\n"
 
 
 def handed(folder: Path, files: Mapping[str, Any], what: Assignment) -> list[ExerciseAnswers]:
-    """Write these files into the folder of a student; return the answers found."""
+    """Write these files into a student's folder; return the answers that the program finds."""
     for name, content in files.items():
         file = folder / "anna" / name
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Every error in a request body gets a sentence of the service, in each language."""
+"""The service has its own sentence for every error in a request body, in each language."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
@@ -43,7 +43,7 @@ def request_models() -> Iterator[type[BaseModel]]:
 
 
 def wrong(schema: Mapping[str, Any], models: Mapping[str, Any]) -> Iterator[Any]:
-    """Yield values that do not match a JSON schema; each is wrong at one place at least."""
+    """Yield values that do not match a JSON schema, each with at least one error."""
     yield from HOSTILE
     if "$ref" in schema:
         schema = models[schema["$ref"].rpartition("/")[2]]

@@ -1,4 +1,4 @@
-"""The students and their files in folders of a course."""
+"""The program finds the students and their files in the folders of a course."""
 
 import io
 import os

@@ -1,4 +1,4 @@
-"""Archives and zip bombs among the files of a class are refused by name, and never unpacked."""
+"""The service names and refuses archives among the files of a class, and never unpacks them."""
 
 import base64
 import gzip
@@ -31,7 +31,7 @@ def zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def nested(content: bytes, levels: int) -> bytes:
-    """Return a zip of zips that contain ``10 ** levels`` copies of the content."""
+    """Return nested zip files that unpack to ``10 ** levels`` copies of the content."""
     for _ in range(levels):
         content = zipped((f"{i}.zip", content) for i in range(10))
     return content

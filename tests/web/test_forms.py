@@ -1,4 +1,4 @@
-"""A form does nothing before its script has arrived, or it is sent by POST."""
+"""Before its script has arrived, a form does nothing or is sent by POST."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""DH in ten minutes shows the matrix of a row, which is the product of the four moves."""
+"""The page "DH in ten minutes" shows the matrix of a row: the product of the row's four moves."""
 
 import asyncio
 import html
@@ -32,7 +32,7 @@ def move(name: str) -> sp.Matrix:
 
 
 def factors(text: str) -> tuple[bool, list[str]]:
-    """Return whether a product is negative, and its factors in order."""
+    """Return True if a product is negative, and the sorted factors."""
     return text.startswith("-"), sorted(text.removeprefix("-").split("*"))
 
 

@@ -38,7 +38,7 @@ def client(catalogue: Mapping[str, Exercise]) -> Client:
 
 
 def named(page: httpx.Response) -> Iterator[str]:
-    """Yield the addresses of the files that a page loads."""
+    """Yield the paths of the scripts, styles and images that a page loads."""
     for address in re.findall(r'<(?:link|script|img)[^>]* (?:href|src)="([^"]+)"', page.text):
         yield str(page.url.join(address).path)
 

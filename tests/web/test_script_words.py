@@ -1,4 +1,4 @@
-"""The dictionaries of the scripts."""
+"""The dictionaries with which the scripts of the pages translate sentences."""
 
 import json
 import re
@@ -16,7 +16,7 @@ SCRIPTS = [file.read_text("utf-8") for file in FOLDER.rglob("*.js") if "vendor" 
 
 
 def words_in(module: str) -> tuple[dict[str, str], dict[str, list[str]]]:
-    """Return the sentences of a dictionary, and its sentences with a singular and a plural."""
+    """Return a dictionary's sentences, and its sentences that have a singular and a plural."""
     found = json.loads(module.removeprefix("export default ").removesuffix(";\n"))
     assert found["tag"] == PSEUDO.tag
     return found["words"], found["counts"]

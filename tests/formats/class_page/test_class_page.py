@@ -1,4 +1,4 @@
-"""The overview of a class: its files, its figures, and hostile texts in it."""
+"""The web pages on a class: an index with counts, a page for each submission, hostile texts."""
 
 import re
 import unicodedata
@@ -32,7 +32,7 @@ ALLOWED_IN_INDEX = {
 
 
 def folder(*submissions: GradedSubmission) -> dict[str, str]:
-    """Return the files of the class by their paths."""
+    """Return the pages of the report on a class: paths and texts."""
     writes = report_format("html").folder
     assert writes is not None
     documents = writes(submissions, setting())

@@ -34,7 +34,7 @@ def test_each_cell_shows_its_entry_and_its_sign() -> None:
 
 
 class Prose(PageReader):
-    """Collects the texts outside of formulas and code."""
+    """Collects a page's texts outside of formulas and code."""
 
     def handle_data(self, data: str) -> None:
         if not {"math", "code", "style", "title"} & set(self.open):

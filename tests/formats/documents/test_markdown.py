@@ -1,4 +1,4 @@
-"""Markdown, parsed as CommonMark with GitHub's tables and strikethrough."""
+"""Reports in Markdown, which the tests parse as CommonMark with GitHub's extensions."""
 
 import re
 from collections.abc import Iterator

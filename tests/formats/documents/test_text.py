@@ -1,4 +1,4 @@
-"""The report for a terminal, from handwritten reports without grading."""
+"""The report for a terminal. The tests build reports by hand, without grading."""
 
 import io
 
@@ -110,7 +110,7 @@ def test_a_message_has_the_mark_and_the_names_of_its_places() -> None:
 
 
 def said(*places: Place, correction: Correction | None = None) -> str:
-    """Return the line of a message with these places in a matrix of three rows."""
+    """Return the line for a message with these places, from a report on a matrix of three rows."""
     cells = tuple(CellReport(str(j), V.INCORRECT) for j in (1, 2, 3))
     rows = [RowReport(label, V.INCORRECT, 0, 1, cells) for label in ("1", "2", "3")]
     message = Feedback("x", Severity.ERROR, "Bad.", places, correction=correction)

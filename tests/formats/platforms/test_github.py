@@ -1,4 +1,4 @@
-"""Annotations, parsed like actions/runner does in src/Runner.Common/ActionCommand.cs."""
+"""Annotations for GitHub, parsed as in its runner's src/Runner.Common/ActionCommand.cs."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ def unescaped(text: str, *, is_property: bool) -> str:
 
 
 def parsed(line: str) -> Command:
-    """Return the command that the runner parses from a line: name, properties, message."""
+    """Return the command (name, properties, message) that GitHub's runner reads from a line."""
     assert line.lstrip().startswith("::")
     head, _, data = line.lstrip()[2:].partition("::")
     name, _, properties = head.partition(" ")

@@ -1,4 +1,4 @@
-"""JUnit XML, by the rules of junit-10.xsd (https://github.com/jenkinsci/xunit-plugin) and of GitLab
+"""JUnit XML follows junit-10.xsd (https://github.com/jenkinsci/xunit-plugin) and GitLab's rules
 (https://docs.gitlab.com/ci/testing/unit_test_reports/, lib/gitlab/ci/parsers/test/junit.rb)."""
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Messages as text, in English and in another language."""
+"""Messages of a report as plain text, in English and in another language."""
 
 from gettext import NullTranslations
 from typing import Any
@@ -30,7 +30,7 @@ class German(NullTranslations):
     """A few templates in German."""
 
     def gettext(self, message: str) -> str:
-        """Return the German template; an unknown one stays."""
+        """Return the German template, or the English one if there is no translation."""
         return GERMAN.get(message, message)
 
     def ngettext(self, one: str, many: str, count: int) -> str:

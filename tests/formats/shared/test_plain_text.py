@@ -1,4 +1,4 @@
-"""Shares and scores in per cent."""
+"""Shares and scores are written in per cent."""
 
 import pytest
 

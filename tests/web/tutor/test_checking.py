@@ -1,4 +1,4 @@
-"""The process of the editor's checks is killed after its time limit, and restarted."""
+"""The editor checks exercises in a separate process, which has a time limit and is restarted."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The tutor's pages: who may see them, their limits, and the same results as the command line."""
+"""The tutor's pages: access, limits, and the same results as the command line."""
 
 import asyncio
 import gzip

@@ -1,4 +1,4 @@
-"""The import of the editor: the same text as the command line, and hostile files refused."""
+"""The editor imports a robot as the same text as the command line, and refuses hostile files."""
 
 from collections.abc import Mapping
 from pathlib import Path
