@@ -1,6 +1,6 @@
 """compose.yaml uses existing settings, and its containers have no more rights than needed.
 
-If there is an engine with `compose`, it reads the file as well. tests/load runs the same services
+If a container engine is installed, its `compose` reads the file. tests/load runs the same services
 without containers (two replicas, PostgreSQL, nginx with the same configuration).
 """
 

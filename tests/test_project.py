@@ -204,7 +204,7 @@ def test_continuous_integration_runs_make_test() -> None:
 def test_continuous_integration_fails_if_tests_leave_a_file(
     tests: str, fails: bool, tmp_path: Path
 ) -> None:
-    """Local changes from before the tests do not count."""
+    """Files in the clone that were changed before the tests do not count."""
     clone, programs = tmp_path / "clone", tmp_path / "programs"
     (clone / ".ci").mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "run", clone / ".ci" / "run")

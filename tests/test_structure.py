@@ -128,7 +128,7 @@ def room(module: str, house: str) -> str:
 
 
 def against_the_order(place: Mapping[str, int], house: str) -> list[str]:
-    """Return the imports below ``house`` by which a package imports another with a higher place."""
+    """Return the imports below ``house`` by which a package imports another of a higher place."""
     return [
         f"{module} imports {target}"
         for module, targets in imports().items()

@@ -1,6 +1,6 @@
 """`python -m tests.attack`: attack a real process while honest clients use it.
 
-Exit with 1 if an honest client gets no answer, if costly requests make the 99th percentile of the
+Exit with 1 if an honest client gets no response, if costly requests make the 99th percentile of the
 waiting times more than five times as long, if the memory grows by more than 100 MB, if a health
 check takes 0.3 s, or if the process does not end within ten seconds.
 """

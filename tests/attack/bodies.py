@@ -115,7 +115,7 @@ def _entry(value: Any, random: Random) -> Any:
 
 
 def spoiled(value: Any, random: Random, share: float) -> Any:
-    """Return the value with a share of its entries, and sometimes the order of a list, changed."""
+    """Return the value with random changes in a share of its entries, and sometimes in a list."""
     if isinstance(value, dict):
         return {key: spoiled(each, random, share) for key, each in value.items()}
     if not isinstance(value, list):
@@ -152,7 +152,7 @@ def answers_of(model: Model, random: Random) -> dict[str, Any]:
 
 
 def submission(random: Random, number: int | None = None) -> Post:
-    """Return a random submission; a ``number`` is added in its texts, which makes them unique."""
+    """Return a random submission; a ``number`` in its texts makes these texts unique."""
     model = drawn_model(random)
     body: dict[str, Any] = {"answers": answers_of(model, random)}
     if random.random() < 0.3:

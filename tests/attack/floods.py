@@ -70,7 +70,7 @@ def endless(begin: bytes, piece: bytes) -> Flood:
 
 
 def dripping(lines: int) -> Flood:
-    """Return a flood of ``lines`` connections that send a body byte by byte, one each second."""
+    """Return a flood of ``lines`` connections that send a body slowly, one byte each second."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = HEAD + b"Content-Length: 1000\r\n\r\n"

@@ -1,9 +1,9 @@
-"""Random formulas as trees, and their values. This module uses nothing of the program.
+"""Random formulas as trees, and their values. This module imports no code of the program.
 
     Number 0.5 | Ratio 1/2 | Turn 90 (degrees) | Name q1
-    Sum of signed terms | Product of factors | Quotient | Power (a whole exponent) | Call
+    Sum of signed terms | Product of factors | Quotient | Power (an integer exponent) | Call
 
-The argument of sin, cos and tan is a sum of names of angles, their multiples, and constant angles.
+The argument of sin, cos and tan is a sum of angle names, multiples of these names, and constants.
 """
 
 import math
@@ -212,7 +212,7 @@ def product(random: Random, depth: int) -> Tree:
 
 
 def formula(random: Random, depth: int = 2) -> Tree:
-    """Return a random formula, often as in forward kinematics."""
+    """Return a random formula, often one that looks like forward kinematics."""
     count = random.choice((1, 1, 1, 2, 2, 3, 4))
     terms = tuple((random.choice((1, 1, 1, -1)), product(random, depth)) for _ in range(count))
     return terms[0][1] if count == 1 and terms[0][0] == 1 else Sum(terms)

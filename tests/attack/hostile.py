@@ -78,7 +78,7 @@ class Found:
 
 
 def cases(count: int, seed: str) -> Iterator[Case]:
-    """Yield ``count`` cases; the same seed gives the same ones."""
+    """Yield ``count`` cases; the same seed gives the same cases."""
     random = Random(seed)
     single = texts(count, random.getrandbits(60))
     for _ in range(count):
@@ -123,7 +123,7 @@ class Reading:
         self.service.close()
 
     def outcome(self, case: Case) -> tuple[str, bytes, float]:
-        """Return the kind of the outcome, a digest of it, and the processor time.
+        """Return the kind of the outcome, a digest of the outcome, and the processor time.
 
         Raises AssertionError, and all undocumented exceptions of the program.
         """
@@ -213,7 +213,7 @@ def measured(case: Case, reading: Reading) -> Costly:
 
 
 def groups(count: int, seed: str, size: int) -> Iterator[tuple[int, str]]:
-    """Yield the sizes and seeds of groups with ``count`` cases together."""
+    """Yield the sizes and seeds of groups; all groups together have ``count`` cases."""
     for number in range(0, count, size):
         yield min(size, count - number), f"{seed}.{number // size}"
 

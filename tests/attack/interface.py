@@ -24,7 +24,7 @@ expected-statuses = ["2xx", 403, 404, 422]
 
 
 def with_all_accepted(document: dict[str, Any]) -> dict[str, Any]:
-    """Return the OpenAPI document, extended by requests that the service accepts in addition.
+    """Return the OpenAPI document, extended by further requests that the service accepts.
 
     An optional field may be null. A list of submissions may have any items, because the service
     checks each submission separately.

@@ -1,9 +1,9 @@
 """`python -m tests.attack.memory --count 1000000`: test if many requests make the memory grow.
 
 Send requests to the routes of the service in this process: right and wrong tables and matrices,
-pasted texts, previews, and hostile requests. No two are equal. Exit with 1 if the memory after the
-warm-up grows by more than is allowed, or if a response is a server error. With ``--http``, send the
-requests over a connection to a separate process.
+pasted texts, previews, and hostile requests. No two requests are equal. Exit with 1 if the memory
+after the warm-up grows beyond the limit, or if a response is a server error. With ``--http``, send
+the requests over a connection to a separate process.
 """
 
 import argparse
@@ -59,7 +59,7 @@ def posts(seed: str) -> Iterator[Post]:
 
 
 def _student_s_table(random: Random, number: int) -> Post:
-    """Return a table that contains a new text; one in three is wrong."""
+    """Return a request with a table that contains a new text; one table in three is wrong."""
     rows = [list(row) for row in one_student_s_table(number)]
     at = random.randrange(6)
     rows[at][0] = f"{rows[at][0]} + 0*{number}"
@@ -67,7 +67,7 @@ def _student_s_table(random: Random, number: int) -> Post:
 
 
 def _matrix(random: Random, number: int) -> Post:
-    """Return a pose in which every entry is a new text; one in four has a wrong entry."""
+    """Return a request with a pose of new texts; one pose in four has a wrong entry."""
     pose = distinct(T06, number)
     if random.random() < 0.25:
         pose[random.randrange(3)][random.randrange(4)] += " + s1"

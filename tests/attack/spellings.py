@@ -410,7 +410,7 @@ def _cosine_of_theta(random: Random, letter: str, digits: str) -> str:
 
 
 def _place_in_product(each: Tree) -> int:
-    """Return a sort key: numbers, then names, then functions, then factors in brackets."""
+    """Return a sort key that puts numbers before names, functions, and factors in brackets."""
     for place, kinds in enumerate(((Number,), (Ratio, Turn), (Name,), (Power,))):
         if isinstance(each, kinds):
             return place
@@ -425,5 +425,5 @@ def _may_touch(left: str, right: str) -> bool:
 
 
 def _is_bare(text: str, spelling: Spelling) -> bool:
-    """True if a text may end with the argument of a function without brackets."""
+    """True if a text may end with a function's argument that is not in brackets."""
     return bool(spelling.bare) and text[-1] not in ")]}"

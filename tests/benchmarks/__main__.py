@@ -1,7 +1,7 @@
 """Print every figure with its budget, both as multiples of a plain-numpy floor.
 
 With ``--against DIR``, compare this checkout with another one: measure both in turn, and exit with
-1 if a line is slower here by more than 3 %.
+1 if a figure is worse here by more than 3 %.
 """
 
 import argparse

@@ -192,7 +192,7 @@ def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> I
     """Yield the number of POSTs per second for each path, measured in turn on one server.
 
     For the first path, this number is the median of all rounds. For another path, it is that median
-    times the median ratio to the first path in a round: ratios change little if the machine does.
+    times the median ratio to the first path in a round: a slow machine hardly changes this ratio.
     """
     messages = {
         path: [body(i) for i in range(100 + ROUNDS * MOST)] for path, body in bodies.items()

@@ -48,7 +48,7 @@ ABSENT: Final = (
 
 @dataclass(frozen=True)
 class Chromium:
-    """A program to start, and the variables that it needs."""
+    """The path of a Chromium, and the environment variables that it needs."""
 
     program: str
     environment: dict[str, str] = field(default_factory=dict)

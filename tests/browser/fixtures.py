@@ -34,7 +34,7 @@ APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dar
 
 @pytest.fixture(scope="session")
 def chromium() -> Chromium:
-    """Return the Chromium of this machine. Continuous integration fails without one."""
+    """Return the Chromium of this machine. Without one, tests are skipped, or fail in CI."""
     found = find_chromium()
     if found is None:
         if os.environ.get("CI"):
@@ -113,7 +113,7 @@ def failure(request: Request) -> list[str]:
 
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
-    """Yield a function that opens a page in a new context; fail if one had an error or warning."""
+    """Yield a function that opens a page in a new context; fail if it has errors or warnings."""
     contexts: list[BrowserContext] = []
     visits: list[Visit] = []
 

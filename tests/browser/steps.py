@@ -61,7 +61,7 @@ def type_with_tab(page: Page, texts: Sequence[str]) -> None:
 def answer(page: Page, part: PartSpec, place: int, texts: Sequence[str]) -> None:
     """Answer a part by keyboard from its first cell, which has the focus.
 
-    Matrices are pasted, as the text that MATLAB would write; all else is typed.
+    Matrices are pasted, in the notation of MATLAB; all other answers are typed.
     """
     if part.kind not in _MATRICES:
         return type_with_tab(page, texts)

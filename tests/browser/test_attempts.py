@@ -40,7 +40,8 @@ ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WR
 class Recording:
     """A service that records attempts, with its exercise folder and two keys.
 
-    ``key`` may record and tutor; ``narrow_key`` is a tutor's key for one exercise.
+    ``key`` is a key to record attempts, and a tutor's key for all exercises; ``narrow_key`` is a
+    tutor's key for one exercise.
     """
 
     address: str
@@ -49,7 +50,7 @@ class Recording:
     narrow_key: str
 
     def sign_in(self, page: Page, key: str = "") -> None:
-        """Sign in with a key; by default with the one for all exercises."""
+        """Sign in with a key; by default with the key for all exercises."""
         page.goto(f"{self.address}/tutor")
         page.get_by_label("Your key").fill(key or self.key)
         page.get_by_role("button", name="Sign in").click()

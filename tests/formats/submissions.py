@@ -1,4 +1,4 @@
-"""Graded submissions of each sort for the tests of formats. The grader graded most of them."""
+"""Graded submissions for the tests of formats: right, wrong, unreadable, hostile and others."""
 
 import io
 import json
@@ -135,7 +135,7 @@ def _assignment() -> GradedSubmission:
 
 @cache
 def cases() -> Mapping[str, GradedSubmission]:
-    """Return one submission of each sort: a dictionary from the name of the sort."""
+    """Return graded submissions by names such as ``wrong``, ``hostile`` and ``empty``."""
     wrong = [ROWS[0], {**ROWS[1], "alpha": "pi/2"}, {**ROWS[2], "theta": "q2"}, ROWS[3]]
     hostile = [dict.fromkeys(row, WRITTEN) for row in ROWS]
     problem = GradedFile("folder/b.json", answered(planar()), None, f"is no JSON: {HOSTILE}")

@@ -1,4 +1,4 @@
-"""Compare the frame that the 3D view moves while it plays a row with numpy's matrix products."""
+"""Compare the ghost frame, which shows the moves of a row in 3D, with numpy's matrix products."""
 
 import json
 from collections.abc import Sequence

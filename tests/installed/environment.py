@@ -48,7 +48,7 @@ def build(folder: Path) -> Path:
 def environment(folder: Path, python: str = sys.executable) -> Path:
     """Create a virtual environment with this environment's packages; return its bin folder.
 
-    A test with it needs no network. Compiled packages work only in this version of Python.
+    Tests in the new environment need no network. Compiled packages need this version of Python.
     """
     if not folder.exists():
         checked(python, "-m", "venv", "--without-pip", folder, cwd=ROOT)
@@ -64,7 +64,7 @@ def install(wheel: Path, programs: Path) -> None:
 
 
 def other_pythons() -> list[str]:
-    """Return the Pythons on this machine whose version is supported, but not the running one."""
+    """Return the Pythons on this machine with a supported version, except the running version."""
     names = [f"python3.{minor}" for minor in range(OLDEST[1], 20)]
     found = [path for name in names if (path := shutil.which(name))]
     found += map(str, Path.home().glob(".pyenv/versions/3.*/bin/python"))

@@ -115,7 +115,7 @@ def main() -> int:
 
 
 def report(seen: str, user: str) -> int:
-    """Print the results in the output of the image; return 1 if one is wrong."""
+    """Print the results in ``seen``, the output of the trial run; return 1 if one is wrong."""
     uid, *others = seen.splitlines()
     graded = next(json.loads(line) for line in others if line.startswith("{"))
     points = graded["report"]["points"]

@@ -28,7 +28,7 @@ MIXED = Mix(recorded=0.5)
 
 
 def misrecorded(url: str, results: dict[str, str]) -> list[str]:
-    """Return errors: attempts that are lost, recorded twice, or were not confirmed to a client."""
+    """Return errors: attempts that were lost, recorded twice, or not confirmed to a client."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
@@ -79,7 +79,7 @@ def attacked(running: Sequence[Service], seconds: float) -> Iterator[None]:
 
 @contextmanager
 def database(kind: str, folder: Path) -> Iterator[str]:
-    """Yield the URL of a new database, such as SQLite or PostgreSQL."""
+    """Yield the URL of a new SQLite or PostgreSQL database."""
     if kind == "sqlite":
         yield new_file(folder)
         return

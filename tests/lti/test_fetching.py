@@ -1,4 +1,4 @@
-"""Addresses of platforms: fetch nothing from a private address, and little data from others."""
+"""The service fetches data only from public addresses of platforms, and limits the data."""
 
 import gzip
 import json

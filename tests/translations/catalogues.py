@@ -3,7 +3,7 @@
 ``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes
 those that are no longer in the source, and compiles the ``.mo`` files for the program. Sentences
 without a translation stay empty; nothing is guessed. The command writes these sentences to
-``untranslated.json``, with an empty text for each language. Fill the texts in, and run the command
+``untranslated.json``, with an empty text for each language. Fill in the texts, and run the command
 again.
 
 For one language, ``--missing de sentences`` prints the sentences that German lacks, as JSON;
@@ -176,7 +176,7 @@ def faults(found: Catalog) -> Iterator[str]:
     """Yield the faults in the translations of a catalogue, one line for each wrong translation.
 
     A translation must have the same placeholders and the same texts between backticks as its
-    sentence. It must begin and end with a blank exactly where the sentence does.
+    sentence. The translation must begin and end with a blank exactly where the sentence does.
     """
     for message in found:
         sources = _texts(message.id)

@@ -11,7 +11,7 @@ from service.translations import LANGUAGES, bulleted, joined, listed, say, say_c
 
 
 class German(NullTranslations):
-    """Some templates in German."""
+    """A language for tests: German translations of a few sentence templates."""
 
     words: ClassVar = {
         "{first} and {last}": "{first} und {last}",

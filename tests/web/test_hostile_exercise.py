@@ -1,4 +1,4 @@
-"""Pages and figures show the texts of a hostile exercise, never as markup, links or scripts."""
+"""Pages and figures show the texts of a hostile exercise as text, never as markup or scripts."""
 
 import json
 import re

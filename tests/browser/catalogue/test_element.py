@@ -28,7 +28,7 @@ def course(origin: Origin, service: str, attributes: str, style: str = "") -> st
 
 
 def colour(page: Page, selector: str, name: str = "backgroundColor") -> tuple[float, ...]:
-    """Return the red, green and blue of a piece of the element."""
+    """Return the red, green and blue of the first element that matches a selector."""
     text: Any = page.locator(selector).first.evaluate(f"each => getComputedStyle(each).{name}")
     return tuple(float(each) for each in re.findall(r"[\d.]+", text)[:3])
 

@@ -1,4 +1,4 @@
-"""A course from class list and links over hand-ins, one of them late, to regraded points."""
+"""A whole course: class list, links, a hand-in, a late hand-in, gradebook, and regrade."""
 
 import csv
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""A student opens the model solution beside the own answers, and compares matrix by matrix."""
+"""A student opens the model solution, and compares it with each matrix of the answer."""
 
 from collections.abc import Callable
 

@@ -28,7 +28,7 @@ def without_exercises(claims: dict[str, Any]) -> None:
 
 
 def framed(page: Page, text: str) -> Frame:
-    """Return the frame of the service as soon as it has a text.
+    """Return the frame of the service as soon as it shows this text.
 
     The frame moves to another process while it opens. A locator that began in the old process may
     wait for ever, so this function polls the frames.

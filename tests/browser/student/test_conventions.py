@@ -1,4 +1,4 @@
-"""Between two exercises, the page says where the convention changes."""
+"""The page of an exercise says if its convention differs from that of the previous exercise."""
 
 from collections.abc import Callable
 

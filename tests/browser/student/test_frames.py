@@ -1,4 +1,4 @@
-"""The form in which a student places frames: names are offered, every step works by keyboard."""
+"""The form in which a student places frames offers names; every step works by keyboard."""
 
 from collections import Counter
 from collections.abc import Callable

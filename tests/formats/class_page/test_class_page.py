@@ -1,4 +1,4 @@
-"""The web pages on a class: an index with counts, a page for each submission, hostile texts."""
+"""The report on a class as web pages: an index with counts, and a page for each submission."""
 
 import re
 import unicodedata

@@ -27,7 +27,7 @@ GERMAN = {
 
 
 class German(NullTranslations):
-    """A few templates in German."""
+    """A language for tests: German translations of a few sentence templates."""
 
     def gettext(self, message: str) -> str:
         """Return the German template, or the English one if there is no translation."""

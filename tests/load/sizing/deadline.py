@@ -35,7 +35,8 @@ REQUESTS: Final[Mapping[str, tuple[int, float]]] = {
 class Waits:
     """The waits in seconds for responses to hand-ins in the last hour, and the greatest load.
 
-    ``busiest`` is the share of their time in which all processes work in the busiest minute.
+    ``busiest`` is the processor time that requests of the busiest minute need, as a share of what
+    all processes have in a minute.
     """
 
     median: float

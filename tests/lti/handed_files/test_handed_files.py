@@ -74,7 +74,7 @@ class Course:
         return found
 
     def review(self, user: str, asset: str = "id of table.csv", of: str = "ada") -> httpx.Response:
-        """Launch from the platform the report on a file; return the response."""
+        """Open the report on a file as the platform does; return the response."""
 
         def asked(claims: dict[str, Any]) -> None:
             claims[f"{LTI}message_type"] = "LtiReportReviewRequest"

@@ -107,7 +107,7 @@ class Journey:
         return found
 
     def tutor(self) -> dict[str, str]:
-        """Return the headers of a tutor of all courses."""
+        """Return request headers with the key of a tutor of all courses."""
         from service.access.caller import Scope
         from service.access.key_table import add_key
         from service.access.key_text import new_key_text

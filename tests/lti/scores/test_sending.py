@@ -1,4 +1,4 @@
-"""Tests kill the replicas that send scores: before the platform responds to a score."""
+"""Replicas send scores; the tests kill replicas before the platform responds to a score."""
 
 import asyncio
 import random

@@ -1,4 +1,4 @@
-"""The editor imports a robot as the same text as the command line, and refuses hostile files."""
+"""The editor's import writes the same text as the command line, and refuses hostile files."""
 
 from collections.abc import Mapping
 from pathlib import Path
