@@ -1,4 +1,4 @@
-// The catalogue: its search, and what is done.
+// The catalogue of exercises: its search, and the progress on each exercise.
 
 import { byId, h, points } from "../shared/dom.js";
 import { progressOf } from "./progress.js";
@@ -13,7 +13,7 @@ const items = [...found];
 /** @type {NodeListOf<HTMLElement>} */
 const groups = document.querySelectorAll(".group");
 
-/** Show on each exercise what is done, and in each heading how many are. */
+/** Show the progress on each exercise, and in each heading how many exercises are done. */
 function showProgress() {
   for (const item of items) {
     const { exercise = "", points: most = "0" } = item.dataset;
@@ -57,6 +57,6 @@ if (items.length) {
   field.addEventListener("input", narrow);
   narrow();
   showProgress();
-  // The browser may show the page of before when the student goes back.
+  // When the student goes back, the browser may show the page with its earlier progress.
   addEventListener("pageshow", showProgress);
 }

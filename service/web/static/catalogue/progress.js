@@ -19,7 +19,7 @@ export function progressOf(base, exercise) {
 }
 
 /**
- * Keep the points of graded parts where they are better than before; forget parts that the exercise no longer has.
+ * Store the points of graded parts that have improved; forget parts that the exercise no longer has.
  *
  * @param {string} base
  * @param {Pick<Api.Exercise, "id" | "parts">} exercise
@@ -32,7 +32,7 @@ export function keepProgress(base, { id, parts }, graded) {
   try {
     localStorage.setItem(nameOf(base, id), JSON.stringify(Object.fromEntries(best)));
   } catch {
-    // The marks in the catalogue are lost, the report is not.
+    // The catalogue does not show this progress, but the report does.
   }
 }
 

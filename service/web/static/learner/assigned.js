@@ -14,7 +14,7 @@ const HINTS = new URL("../student/hints/hints.css", import.meta.url).href;
 export const back = () => h("p", { class: "ways-on" }, h("a", { href: "#" }, worded("← All assignments")));
 
 /**
- * Return the form of an exercise, and the element for what was handed in, which `handedIn` fills.
+ * Return the form of an exercise, and an empty section for the learner's attempts, which `handedIn` lists.
  *
  * @param {Front.Assigned} place
  * @param {string} key
@@ -29,7 +29,7 @@ export function form({ path, exercise }, key) {
 }
 
 /**
- * Return the list of the learner's attempts at an exercise, and the way to its solution.
+ * Return the list of the learner's attempts at an exercise, and a button that shows the model solution.
  *
  * @param {Front.Own} own
  * @param {Front.Assigned} place

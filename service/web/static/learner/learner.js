@@ -15,7 +15,7 @@ let key = takeKey();
 let turn = 0;
 const service = new Service(HOME, () => key);
 
-/** Show what the address names, from the newest state. */
+/** Load the learner's present state, and show the page that the address names. */
 async function show() {
   key = takeKey();
   const now = ++turn;
@@ -84,7 +84,7 @@ async function exercise(view, place) {
 
 function signOut() {
   const leave = () => {
-    // A page that is still loading must not appear afterwards.
+    // A page that is still loading must not appear after the learner has signed out.
     turn++;
     forgetKey();
     history.replaceState(null, "", location.pathname);

@@ -7,7 +7,7 @@ const PLACE = /^#\/([^/]+)\/([^/]+)\/([^/]+)(?:\/([^/]+))?$/;
 let inMemory = "";
 let isOfPage = false;
 
-/** Return true if the platform of a course has opened the page, with a key in it. It is only kept in memory. */
+/** Return true if a platform has opened the page. Such a page contains a key, which is only kept in memory. */
 export function takePageKey() {
   const { key = "", place = "" } = document.getElementById("learner")?.dataset ?? {};
   if (key) {
@@ -19,7 +19,7 @@ export function takePageKey() {
   return isOfPage;
 }
 
-/** Return the key of the link in the address, or of an earlier one in this tab; an empty text if there is none. */
+/** Return the key in the address, or else the last key in this tab, or an empty text if there is no key. */
 export function takeKey() {
   if (isOfPage) return inMemory;
   const [, key] = LINK.exec(location.hash) ?? [];

@@ -1,7 +1,7 @@
-// Tell the platform that its registration is over: it closes this page (1EdTech, LTI Dynamic Registration).
+// Tell the platform that the registration is over, so that it closes this page (1EdTech, LTI Dynamic Registration).
 
 document.getElementById("close")?.addEventListener("click", () => {
   const platform = opener ?? parent;
-  // The message has no content, so any page may read it: the platform's page may have a host of its own.
+  // The platform's page may be on any host. Every page may read the message, because the message has no content.
   platform.postMessage({ subject: "org.imsglobal.lti.close" }, "*");
 });

@@ -1,18 +1,18 @@
-// The platform's storage: where cookies are blocked, the secret of a login is put into it, and read from it
+// The platform's storage: if cookies are blocked, it holds the secret of a login
 // (1EdTech, LTI Client Side postMessages and Platform Storage).
 
 const WAIT = 4000;
 const place = document.getElementById("platform-storage");
 if (place) (place.dataset.does === "put" ? put : get)(place);
 
-/** Put the secret into the storage and go on to the platform, also if that fails. @param {HTMLElement} place */
+/** Put the secret into the storage; go on to the platform, even if the storage fails. @param {HTMLElement} place */
 async function put(place) {
   const { name: key = "", value = "", address = "" } = place.dataset;
   await ask(place, { subject: "lti.put_data", key, value });
   location.replace(address);
 }
 
-/** Read the secret and send the message again with it; without it, offer a window. @param {HTMLElement} place */
+/** Read the secret and send the message again with it; without a secret, offer a window. @param {HTMLElement} place */
 async function get(place) {
   const found = await ask(place, { subject: "lti.get_data", key: place.dataset.name ?? "" });
   if (place instanceof HTMLFormElement && typeof found === "string" && found) {
@@ -56,7 +56,7 @@ function ask(place, message) {
 }
 
 /**
- * Return the platform's frame with its storage: its page, or a frame in it.
+ * Return the window with the platform's storage: the platform's page, or a frame in that page.
  *
  * @param {string} name
  * @returns {Window | null}

@@ -205,7 +205,7 @@ export class DhPlay extends HTMLElement {
   }
 
   /**
-   * Return the target of a step in the history: it restores a table, and puts the cursor where it was changed.
+   * Return the target of a step in the history: it restores a table, and puts the cursor into the changed cell.
    *
    * @param {[number, number]} at
    */
@@ -223,7 +223,7 @@ export class DhPlay extends HTMLElement {
   }
 
   /**
-   * Put the cursor into a cell, or into the last row if the table is shorter now.
+   * Put the cursor into a cell, or into the last row if the table no longer has the row of the cell.
    *
    * @param {number} i
    * @param {number} [j]
@@ -246,7 +246,7 @@ export class DhPlay extends HTMLElement {
   }
 
   /**
-   * Put texts into cells, as one step.
+   * Put texts into cells, as one step for undo.
    *
    * @param {[Front.PlayCell, string][]} pairs
    */
@@ -257,7 +257,7 @@ export class DhPlay extends HTMLElement {
   }
 
   /**
-   * Show another table, as one step.
+   * Show another table, as one step for undo.
    *
    * @param {Front.Robot} state
    */

@@ -1,4 +1,4 @@
-// The table of free play. Rows can be added and removed; each is revolute, prismatic or fixed.
+// The table of free play. Rows can be added and removed; each row is revolute, prismatic or fixed.
 
 import { Cell } from "../shared/cell.js";
 import { h } from "../shared/dom.js";

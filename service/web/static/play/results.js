@@ -34,7 +34,7 @@ export class Results {
   }
 
   /**
-   * Show an answer of the service. If `isKept`, fade the earlier answer instead: the table cannot be read now.
+   * Show the service's results. If `isKept`, only fade the earlier results, because the table cannot be read now.
    *
    * @param {Api.FramesOfTable} table
    * @param {Api.Convention} convention

@@ -1,10 +1,10 @@
-// The page of generated robots: the address has the robot, so that it can be shared and Back leads to the last one.
+// The page of generated robots. The address names the robot, so it can be shared, and Back leads to the last robot.
 
 import { robotOf } from "../student/practice/robot_ids.js";
 
 const element = document.querySelector("dh-exercise");
 
-// The address that was last followed or written.
+// The last address that this script has followed or written.
 let known = "";
 
 /** Show the robot that the address names. */

@@ -12,7 +12,7 @@ export class FlatScene {
   #address = null;
 
   /**
-   * The drawing fills the element `stage`. `draw(theme)` returns its SVG, or null.
+   * The drawing fills the element `stage`. `draw(theme)` returns the drawing as SVG, or null.
    *
    * @param {HTMLElement} stage
    * @param {Front.DrawSvg} draw
@@ -33,14 +33,14 @@ export class FlatScene {
 
   reset() {}
 
-  /** Request the current drawing. While a request is running, repeat it once afterwards. */
+  /** Request the current drawing. If a request is already running, request the drawing once after it. */
   async move() {
     this.#asked = true;
     if (this.#busy) return;
     this.#busy = true;
     while (this.#asked && !this.#closed) {
       this.#asked = false;
-      // The request for the numbers shows that the service cannot be reached.
+      // Errors are ignored here: the request for the picture shows if the service cannot be reached.
       const svg = await this.draw(isDark(this.stage) ? "dark" : "light").catch(() => null);
       if (svg && !this.#closed) this.#put(svg);
     }

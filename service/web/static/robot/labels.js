@@ -32,7 +32,7 @@ const FRAGMENT = `
   void main() { gl_FragColor = texture2D(texts, at); }`;
 
 /**
- * A text in the texture: its ratio of width to height, and the piece of the texture that it fills.
+ * A text in the texture, with its ratio of width to height, and the piece of the texture that the text fills.
  *
  * @typedef {{ text: string, colour: keyof Front.Palette, ratio: number, piece: [number, number, number, number] }} Written
  */
@@ -62,8 +62,8 @@ export class Labels {
   }
 
   /**
-   * Return a part with a text that is `height` pixels high. Its `centre`, as shares of its size from the lower left
-   * corner, is at the part's position.
+   * Return a part with a text that is `height` pixels high. The part's position is at the text's `centre`, which is
+   * given as shares of the text's size from its lower left corner.
    *
    * @param {string} text
    * @param {keyof Front.Palette} colour
@@ -85,7 +85,7 @@ export class Labels {
   }
 
   /**
-   * Draw a label next to its place, clear of the labels before it; leave it out if there is no room.
+   * Draw a label next to its place, but not over earlier labels; leave it out if there is no room.
    *
    * @param {Object3D} part
    */

@@ -1,5 +1,5 @@
-// Pictures: where everything is at given joint values, by POST /v1/frames. A sweep has pictures of one
-// moving joint, and interpolates between them. There is no kinematics here.
+// Pictures: the positions of all parts at given joint values, from POST /v1/frames. A sweep has pictures of one moving
+// joint, and interpolates between them. This module computes no kinematics.
 
 // The pictures in a request, and the requests in a sweep: the first is coarse, the others refine it.
 const PICTURES = 30;
@@ -22,7 +22,7 @@ export function pictureOf(answer, i = 0) {
   };
 }
 
-/** Pictures of one joint from one end of its range to the other. */
+/** Pictures of the robot while one joint moves from one end of its range to the other. */
 export class Sweep {
   /** @type {{ amount: number, picture: Front.Picture }[]} */
   #shots = [];

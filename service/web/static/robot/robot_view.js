@@ -178,7 +178,7 @@ export class RobotView {
       if (!answer.mechanism && isUnread(answer) && this.picture && this.#isSame(body)) return this.#keep(answer);
       const missing = answer.joints.some(({ variable }) => !(variable in this.#values));
       this.#remember(answer, body);
-      // The answer is for home values if the joints had changed. Repeat the request with the user's values.
+      // If the joints had changed, the response is for home values. Repeat the request with the user's values.
       if (!missing && !(values && this.#isSame(body)) && this.#moved(answer)) return this.#refresh();
       this.#show(answer);
     } catch (error) {
@@ -298,7 +298,7 @@ export class RobotView {
    */
   prepare(i) {
     const body = this.host.body();
-    // If the joints have changed since the answer, the new joint values are not known yet.
+    // If the joints have changed since the last response, the new joint values are not known yet.
     if (!this.#answer || !body || !this.#isSame(body)) return;
     const values = this.#current;
     const others = JSON.stringify([body, this.#symbols, values.with(i, 0)]);
@@ -307,7 +307,7 @@ export class RobotView {
     const asked = withoutFormulas(body);
     const sweep = new Sweep((sets) => this.#request(sets, asked), values, i, this.#answer.joints[i], others);
     this.#sweep = sweep;
-    // After the slider was released, an exact picture follows, which the sweep must not replace.
+    // When the user releases the slider, an exact picture follows. The sweep must not replace this picture.
     sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() =>
       sweep === this.#sweep && (this.#sweep = null)
     );

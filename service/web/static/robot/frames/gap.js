@@ -13,7 +13,7 @@ const SMALL = 1e-6;
 export const short = (value) => String(Math.round(value * 1000) / 1000 + 0);
 
 /**
- * The length of the vector between two origins, and the angle in degrees by which one frame is turned to the other.
+ * A gap between frames: the origins, the distance between them, and the angle of rotation in degrees (`turn`).
  *
  * @typedef {{ from: number[], to: number[], length: number, turn: number }} Gap
  */
@@ -56,7 +56,7 @@ export function gapText({ length, turn }) {
 }
 
 /**
- * Return where a frame is beside its goal, such as: 0.38 m too low, turned by 90°. The sides are those of the base frame.
+ * Return how a frame misses its goal, such as "0.38 m too low, turned by 90°", in directions of the base frame.
  *
  * @param {Gap} gap
  * @param {string} unit

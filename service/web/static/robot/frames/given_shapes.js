@@ -1,4 +1,4 @@
-// What the exercise gives, in the 3D view: its frames as thin pale ghosts, and the gap to its tool frame.
+// The frames that the exercise gives, drawn thin and pale in the 3D view, and the gap to the given tool frame.
 
 import { Group } from "../../vendor/three-0.185.1.module.min.js";
 import { lay, vector } from "../shapes.js";

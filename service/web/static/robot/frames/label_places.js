@@ -1,7 +1,7 @@
 // Places of the labels in the 3D view: no two of them overlap.
 
 const APART = 2;
-// The place of a label's own point in it, as shares of its size from its lower left corner. The first is preferred.
+// Places for a label around its point: shifts from the preferred place, as shares of the label's size.
 /** @type {[number, number][]} */
 const AROUND = [
   [0, 0],
@@ -26,9 +26,10 @@ const AROUND = [
 /** @typedef {{ left: number, right: number, low: number, high: number }} Room */
 
 /**
- * Return the free place nearest to the preferred one, and take it; or null if there is none.
+ * Return the free place that is nearest to the preferred place, and take it; null if no place is free.
  *
- * `x` and `y` are the label's point in pixels, `centre` its preferred place in the label.
+ * A place says where the label's point is within the label, as shares of its size from its lower left corner. `x` and
+ * `y` are the label's point in pixels, `centre` is the preferred place.
  *
  * @param {{ x: number, y: number, width: number, height: number, centre: [number, number] }} label
  * @param {Room[]} taken

@@ -32,7 +32,7 @@ export class StageText {
   follow(camera, stage) {
     if (this.element.hidden) return [];
     const at = this.point.clone().project(camera);
-    // To ask for the size makes the browser lay the page out: once for each text, not for each picture.
+    // Reading the size makes the browser lay out the page, so it is read once for each text, not for each picture.
     this.size ??= { width: this.element.offsetWidth, height: this.element.offsetHeight };
     const { width, height } = this.size;
     const left = Math.max(0, Math.min(stage.x - width, ((at.x + 1) / 2) * stage.x + 8));

@@ -7,7 +7,7 @@ import { worded } from "../../shared/words/words.js";
 const PARALLEL = 0.9999;
 
 /**
- * Return where everything is, in sentences.
+ * Return sentences that say where the tool, the frames and the gap are.
  *
  * @param {Front.Picture} picture
  * @param {string[]} labels of the given frames
@@ -26,7 +26,7 @@ export function viewText({ frames, mechanism, placed }, labels, gap, placedLabel
 }
 
 /**
- * Say where the last frame of the table is beside the tool frame.
+ * Return a sentence that says how the last frame of the table misses the tool frame.
  *
  * @param {Front.Gap} gap
  * @param {string} unit

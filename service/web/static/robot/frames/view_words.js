@@ -23,7 +23,7 @@ export class ViewWords {
   }
 
   /**
-   * Return the gap between the last frame of a complete table and the tool frame; null if they are not to be compared.
+   * Return the gap between the last frame of a complete table and the tool frame; null if the two cannot be compared.
    *
    * @param {Front.Picture} picture
    */

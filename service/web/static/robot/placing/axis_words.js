@@ -1,4 +1,4 @@
-// Which joint axes are at a place of the stage, and their directions as texts.
+// The joint axes at a place of the stage, and the directions of axes as texts.
 
 // The distances in pixels at which a click is on an axis, and at which two axes are one line.
 const NEAR = 18;
@@ -7,10 +7,10 @@ const ALONG = 0.999999;
 const DIGITS = 6;
 
 /**
- * Return the indices of the axes at a place, the nearest first; none if all are far.
+ * Return the indices of the axes at a place, the nearest axis first; an empty list if all axes are far away.
  *
  * @param {number[]} at
- * @param {number[][][]} axes the two ends of each, in pixels
+ * @param {number[][][]} axes the two ends of each axis, in pixels
  */
 export function nearestAxes(at, axes) {
   const far = axes.map((ends) => distance(at, ends));

@@ -21,15 +21,16 @@ const HINTS = {
     worded("Frame {frame}: click the end of an arrow for x, or its dot to choose another origin.", { frame }),
 };
 const ALL_PLACED = worded("All frames are placed. To change one by clicks, first select one of its cells.");
-// The length of the longest arrow for x, in pixels: its ends are apart, for fingers.
+// The length of the longest arrow for x, in pixels: long enough for fingers to hit only one end.
 const ARROW = 72;
-// The arrow of z ends a finger away from all dots. The most steps to such a place, an eighth of a finger each.
+// The end of the arrow for z is moved until it is the width of a finger (44 pixels) away from all dots. This is the
+// largest number of moves, each an eighth of a finger.
 const FAR = 80;
 // A pointer that has moved farther than this, in pixels, has turned the view and has not clicked.
 const STILL = 4;
 
 export class FrameClicks {
-  // What the student or the last click has chosen; null for the first frame that is not complete.
+  // The frame and the step that the student or the last click has chosen; null for the first incomplete frame.
   /** @type {{ row: Front.RowView, step: Front.FrameStep } | null} */
   #chosen = null;
   #stop = new AbortController();
@@ -73,7 +74,7 @@ export class FrameClicks {
     this.#draw();
   }
 
-  /** The frame in hand and its step: where the student was last, or else the first empty cell. z is chosen first. */
+  /** The current frame and its step: those of the student's last cell, or else of the first empty cell. z is first. */
   get #hand() {
     const hand = this.#chosen ?? this.#firstEmpty;
     return hand && !this.#joints.includes(textOf(hand.row, "axis")) ? { row: hand.row, step: Z } : hand;
@@ -92,7 +93,7 @@ export class FrameClicks {
     const mark = this.marks.nearest(at);
     if (mark) return this.#choose(mark);
     const found = nearestAxes(at, this.scene.axesOnStage());
-    // The frame of the last cell is complete: an axis begins the next frame.
+    // If the frame of the last cell is complete, a click on an axis begins the next frame.
     const isDone = this.#chosen?.step === "x" && this.#chosen.row.cells.every(({ text }) => text.trim());
     const hand = (isDone && this.#firstEmpty) || this.#hand;
     return found.length && hand && isOpen(hand.row) ? this.#alongAxis(hand.row, found) : undefined;
@@ -103,7 +104,7 @@ export class FrameClicks {
     const names = found.map((i) => this.#joints[i]);
     const used = this.part.rows.map((each) => textOf(each, "axis"));
     const own = textOf(row, "axis");
-    // Several joints may have the same line: the frame keeps its own, else it gets one without a frame.
+    // If several joints are on this line, the frame keeps its own joint, or else gets a joint that has no frame.
     const joint = names.find((name) => name === own) ?? names.find((name) => !used.includes(name)) ?? names[0];
     const home = await this.offers.home().catch(() => null);
     if (!home) return this.host.announce(worded("The directions of the axes could not be loaded"));
@@ -121,7 +122,7 @@ export class FrameClicks {
     if (!hand || !isOpen(hand.row)) return;
     const { row, step } = hand;
     const [[label]] = texts;
-    // The chosen origin leads back from x. After x, the first frame that is not complete follows.
+    // In step x, a click on the chosen origin leads back to the origin. After x, the first incomplete frame follows.
     const next = label === "z" || (isChosen && step === "x") ? "origin" : "x";
     this.#chosen = label === "x" ? null : { row, step: next };
     this.#write(row, isChosen ? [] : texts);
@@ -155,7 +156,7 @@ export class FrameClicks {
   }
 
   /**
-   * Return the dots or the arrows of a frame.
+   * Return the dots or the arrows that are offered for a frame.
    *
    * @param {Front.RowView} row
    * @param {Front.FrameStep} step
@@ -177,7 +178,7 @@ export class FrameClicks {
     }));
     if (step === "origin") return [...dots, ...this.#turnedOver(row, dots.map(({ at }) => at))];
     const origin = dots.find(({ isChosen }) => isChosen);
-    // An origin that is not offered: the arrows are at the joint.
+    // If the written origin is not among the dots, the arrows are at the joint.
     const point = origin?.point ?? mechanism.centres[this.#joints.indexOf(joint)];
     if (!point) return [];
     const from = this.scene.onStage(point);
@@ -200,7 +201,7 @@ export class FrameClicks {
   }
 
   /**
-   * Return the arrow of z, whose end turns it over, if z lies along the joint axis.
+   * Return the arrow for z if z lies along the joint axis. A click on the end of the arrow reverses z.
    *
    * @param {Front.RowView} row
    * @param {number[][]} dots
@@ -216,7 +217,7 @@ export class FrameClicks {
     const tip = this.scene.onStage(along(mechanism.centres[i], mechanism.axes[i], (sign * size) / 10));
     const step = along(tip, from, -1);
     const length = Math.hypot(...step);
-    // Seen from its end, an axis has no length.
+    // An axis in the viewing direction has no length in the picture.
     if (length < 2) return [];
     const isFree = (/** @type {number[]} */ at) => dots.every((dot) => Math.hypot(...along(at, dot, -1)) >= FINGER);
     let at = along(from, step, FINGER / length);
@@ -251,5 +252,5 @@ function cell(row, label) {
 /** @param {Front.RowView} row @param {string} label */
 const textOf = (row, label) => cell(row, label).text.trim();
 
-/** True unless the cells are only shown. @param {Front.RowView} row */
+/** True if the student may change the cells of a row. @param {Front.RowView} row */
 const isOpen = (row) => !cell(row, "axis").input.matches(":disabled, :read-only");

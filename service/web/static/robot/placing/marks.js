@@ -1,4 +1,4 @@
-// What may be clicked for the frame in hand: joint axes for z, dots for its origin, and arrows for x. They are drawn over
+// Marks to click for the current frame: joint axes for z, dots for the origin, and arrows for x. They are drawn over
 // the canvas, which gets the clicks.
 
 const SVG = "http://www.w3.org/2000/svg";

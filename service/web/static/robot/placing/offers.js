@@ -1,9 +1,9 @@
-// The origins and directions that are offered for a frame, and where they are in the picture.
+// The origins and directions that the view offers for a frame, and their positions in the picture.
 
 import { directionText } from "./axis_words.js";
 import { along, isSame, namedPoints, sumOf, sumText, xDirections } from "./place_choices.js";
 
-// How long the joints must rest before the service is asked for the places, in milliseconds.
+// The time in milliseconds for which the joints must rest before a request for positions.
 const REST = 200;
 
 export class Offers {
@@ -17,7 +17,7 @@ export class Offers {
   #timer = 0;
 
   /**
-   * `shown` returns the values of symbols and joints in the view, `draw` is called when there are other places.
+   * `shown` returns the values of symbols and joints in the view, `draw` is called when positions have changed.
    *
    * @param {Front.ViewHost} host
    * @param {Front.PartView} part
@@ -36,7 +36,7 @@ export class Offers {
     return "joints" in shape ? shape.joints : [];
   }
 
-  /** Load the directions of the joint axes with all joint variables 0, and the offers. */
+  /** Load the offers, and the directions of the joint axes if all joint variables are 0. */
   home() {
     this.#loading ??= this.#atHome().then((home) => (this.#home = home));
     this.#loading.catch(() => (this.#loading = null));
@@ -44,7 +44,7 @@ export class Offers {
   }
 
   /**
-   * Return the direction of a joint axis, or the opposite one, as a text; empty until it is loaded.
+   * Return the direction of a joint axis, or the opposite direction, as a text; empty until the axes are loaded.
    *
    * @param {number} i
    * @param {number} sign
@@ -55,7 +55,7 @@ export class Offers {
   }
 
   /**
-   * Return the offers for a row in the picture, or null until the service has told where they are there.
+   * Return the offers for a row, with positions in the picture; null until the service has sent these positions.
    *
    * @param {number} row
    * @param {string} axis the joint of its z axis
@@ -100,7 +100,7 @@ export class Offers {
     }, REST);
   }
 
-  /** Frames in the place of the base frame move with their links: they tell how the links have moved. */
+  /** Request frames that lie on the base frame if all joints are 0. Their positions show how the links have moved. */
   async #atValues() {
     const { exercise } = this.host.body() ?? {};
     const { symbols, joints } = this.shown();
@@ -111,13 +111,13 @@ export class Offers {
     return { picture, symbols: answer.symbols, motions: answer.placed?.frames[0] ?? [] };
   }
 
-  /** Ask for the robot twice: a point that is the same sum of symbols in both, and a direction, has a name. */
+  /** Request the robot with two sets of symbol values. Places are sums of symbols, directions are the same in both. */
   async #atHome() {
     const { exercise } = this.host.body() ?? {};
     const joints = [this.#joints.map(() => 0)];
     const one = await this.host.service.frames({ exercise, joints });
     const names = Object.keys(one.symbols);
-    // Values without a relation tell a point as a sum.
+    // With values that have no simple relation, a coordinate can be only one sum of symbols.
     const values = Object.values(one.symbols).map((value, i) => value + 0.1 * (value || 1) * Math.sin(i + 1));
     const symbols = Object.fromEntries(names.map((name, i) => [name, values[i]]));
     const other = await this.host.service.frames({ exercise, joints, symbols });
@@ -139,7 +139,7 @@ function linesOf({ mechanism }) {
 }
 
 /**
- * Return the offers of a robot from its lines at two choices of the symbols.
+ * Return the offers for a robot from its lines with two sets of symbol values.
  *
  * @param {number[][][]} one
  * @param {number[][][]} other at `values`
@@ -168,7 +168,7 @@ export function offersOf(one, other, names, values, joints) {
     axes: one.slice(0, joints).map(([, axis]) => axis),
     names,
     places: [...places.values()],
-    // Places beside the named ones on each joint axis: not every place on an axis is a foot.
+    // On each joint axis, a place on either side of a named place: an origin may be anywhere on its axis.
     slid: axes.map((i) => {
       const found = new Map();
       const foot = namedPoints(other, i).find((point) => point.every((value) => sumOf(value, values)));

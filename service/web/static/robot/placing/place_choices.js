@@ -1,10 +1,10 @@
 // The places for an origin, and the directions for x, of a robot with all joint variables 0.
 //
-// A line is `[point, unit vector]`. The first lines are the joint axes, then the z axes of the given frames. They do not
-// know which choice is right: every place counts for every frame.
+// A line is `[point, unit vector]`. The first lines are the joint axes, then the z axes of the given frames. The code
+// does not know which choice is correct: it offers every place for every frame.
 
 const CLOSE = 1e-6;
-// The factors of a symbol in a coordinate.
+// The possible factors of a symbol in a coordinate.
 const FACTORS = [0, 1, -1];
 const MOST_SYMBOLS = 7;
 const BASE = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
@@ -31,13 +31,13 @@ export function namedPoints(lines, i) {
     const turn = dot(axis, direction);
     const square = 1 - turn * turn;
     const [own, others] = [dot(between, axis), dot(between, direction)];
-    // Parallel axes have many common perpendiculars: the one through the other's point is taken.
+    // Parallel axes have many common perpendiculars. Take the perpendicular through the given point of the other axis.
     return along(point, axis, square < CLOSE ? own : (own - turn * others) / square);
   });
 }
 
 /**
- * Return unit vectors both ways: along the axes of the base, and along the common perpendiculars of line `i`.
+ * Return unit vectors along the axes of the base and the common perpendiculars of line `i`, and their opposites.
  *
  * @param {number[][][]} lines
  * @param {number} i
@@ -63,7 +63,8 @@ export function xDirections(lines, i) {
 }
 
 /**
- * Return the factors of symbols whose sum is a length; null if it is no sum. The values must have no relation.
+ * Return factors for symbols so that their sum is a length; null if there are none. The symbols' values must have no
+ * simple relation.
  *
  * @param {number} length
  * @param {number[]} values

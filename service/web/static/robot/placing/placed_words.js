@@ -1,4 +1,4 @@
-// What is said of placed frames that are not drawn.
+// The sentences about placed frames that are not drawn.
 
 import { worded, wordedFor } from "../../shared/words/words.js";
 
@@ -6,8 +6,8 @@ import { worded, wordedFor } from "../../shared/words/words.js";
 const CELLS = { origin_x: worded("origin x"), origin_y: worded("origin y"), origin_z: worded("origin z") };
 
 /**
- * Return the reason of each frame that is left out, in sentences. A frame with an empty cell is not told: it is
- * still being placed.
+ * Return sentences that say why frames are left out. Frames with an empty cell get no sentence, because the student
+ * is still placing them.
  *
  * @param {Api.Frames["placed"]} [placed]
  */

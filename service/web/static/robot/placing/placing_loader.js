@@ -1,4 +1,4 @@
-// Clicks that place frames are loaded only if the exercise asks for frames and the browser draws in 3D.
+// Loads the script for clicks that place frames, if the exercise asks for frames and the browser draws in 3D.
 
 import { worded } from "../../shared/words/words.js";
 
@@ -14,7 +14,7 @@ export class PlacingLoader {
     this.shown = shown;
   }
 
-  /** Load them when the stage is open. */
+  /** Load the script; the stage must be open. */
   async open() {
     const [part, { scene }] = [this.host.placing?.(), this.stage];
     if (!part || !scene) return;

@@ -1,12 +1,12 @@
-// Where a row leads beside the axis of its next joint.
+// The gap between the frame at the end of a row and the joint axis on which this frame must be.
 
 import { column, dot } from "../motion.js";
 
 const DEGREES = 180 / Math.PI;
 
 /**
- * Return the gap between a frame's z and the joint axis on which it must be; only its angle if the joint slides, because
- * a sliding axis has no place.
+ * Return the gap between a frame's z and the joint axis on which z must be. If the joint slides, the gap has only an
+ * angle, because a sliding joint has no definite axis, only a direction.
  *
  * @param {Front.Frame} frame
  * @param {{ centre: number[], axis: number[], slides: boolean }} joint
@@ -27,8 +27,8 @@ export function axisGap(frame, { centre, axis, slides }) {
 }
 
 /**
- * Return the index of the joint whose axis the frame after row `i` must have, or null if there is none. A fixed row
- * before the first joint counts, too.
+ * Return the index of the joint on whose axis the frame after row `i` must be, or null if there is none. A table may
+ * begin with a fixed row before the first joint.
  *
  * @param {number} i
  * @param {number[]} rowJoints the joint of each row, or 0

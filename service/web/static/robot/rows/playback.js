@@ -1,10 +1,10 @@
-// The clock of a row: it goes through the moves, one after another.
+// The clock that plays a row: it goes through the row's moves, one after another.
 
-// Milliseconds for a move, for one that moves nothing, and after each jump if people want no motion.
+// Milliseconds for a move, for a move that moves nothing, and after each jump if people want no motion.
 const MOVE = 1300;
 const STILL = 350;
 const JUMP = 1600;
-// The longest time between two pictures that counts: a page in the background does not jump ahead.
+// More milliseconds than these between two pictures do not count, so that a page in the background does not jump ahead.
 const LONGEST = 100;
 const SMALL = 1e-9;
 
@@ -45,7 +45,7 @@ export class Playback {
     this.#frame = requestAnimationFrame((now) => this.#step(now));
   }
 
-  /** Show the end of the current move, then of the next. */
+  /** Show the end of the current move, then the ends of the next moves. */
   #jump() {
     this.at = Math.min(this.#end, Math.floor(this.at + SMALL) + 1);
     this.#timer = 0;

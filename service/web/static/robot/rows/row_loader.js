@@ -1,4 +1,4 @@
-// The button worded("Play a row"), and the cell in hand: both load the rest of this room when they are first used.
+// The button worded("Play a row"). It loads the other scripts of this folder at first use, and so does a focused cell.
 
 import { h } from "../../shared/dom.js";
 import { worded } from "../../shared/words/words.js";
@@ -34,7 +34,7 @@ export class RowLoader {
     return !this.panel.hidden;
   }
 
-  /** Follow the focus among the cells of the table. */
+  /** Show the length or angle of each cell of the table that gets the focus. */
   open() {
     const root = this.element.getRootNode();
     const { signal } = this.#stop;
@@ -88,7 +88,7 @@ export class RowLoader {
     this.#player?.show(answer, picture, convention);
   }
 
-  /** Return the parts of the row in the scene. @type {Front.Subject["row"]} */
+  /** Return the 3D shape of the row for the scene, or null. @type {Front.Subject["row"]} */
   shape = (shapes, size, stage) => this.#player?.shape(shapes, size, stage) ?? null;
 
   /** Return the row that is shown in a picture. @param {Front.Picture} picture */

@@ -115,7 +115,7 @@ export class RowPlayer {
   }
 
   /**
-   * Light the length or the angle of a cell; null puts it out.
+   * Highlight the length or the angle of a cell in the view; null removes the highlight.
    *
    * @param {Lit | null} lit
    */
@@ -125,7 +125,7 @@ export class RowPlayer {
     this.#draw();
   }
 
-  /** Show the end of the move of a cell. @param {Lit} lit */
+  /** Show the end of the move that belongs to a cell. @param {Lit} lit */
   #follow({ row, parameter }) {
     this.playback.stop();
     this.#row = row;
@@ -145,7 +145,7 @@ export class RowPlayer {
   }
 
   /**
-   * Return the row to draw, or null.
+   * Return the row to draw in a picture, or null.
    *
    * @param {Front.Picture} picture
    * @returns {Front.ShownRow | null}
@@ -165,8 +165,8 @@ export class RowPlayer {
   }
 
   /**
-   * Return the joint on whose axis the row must end, and the gap of a frame to it; null before the end, and if the
-   * exercise compares nothing.
+   * Return the joint on whose axis the row must end, and the gap between a frame and this axis. Return null before the
+   * last move has ended, and if the exercise compares no frames.
    *
    * @param {Front.Frame} frame
    */
@@ -180,7 +180,7 @@ export class RowPlayer {
     return { joint: joints[i].joint, gap: axisGap(frame, axis) };
   }
 
-  // Moves of the ghost.
+  // The motion of the ghost frame.
 
   #run() {
     if (this.playback.isRunning) return this.playback.stop();
@@ -196,7 +196,7 @@ export class RowPlayer {
     this.#write();
   }
 
-  /** Play the next move, or go back to the end of the one before. @param {number} direction */
+  /** Play the next move, or go back to the start of the current move. @param {number} direction */
   #step(direction) {
     const at = this.playback.at;
     if (direction > 0) return this.#play(Math.min(MOVES, Math.floor(at + SMALL) + 1));
@@ -234,7 +234,7 @@ export class RowPlayer {
     if (isEnd) this.#announce();
   }
 
-  // Words.
+  // Texts.
 
   #announce() {
     this.view.host.announce([this.caption, this.told].map((each) => each.dataset.text).join(" "));
@@ -258,7 +258,7 @@ export class RowPlayer {
     const [row, convention, unit] = [this.#row, this.#convention, this.unit];
     const moves = this.#moves(row);
     const caption = captionText({ row, at, moves, convention, unit });
-    // While a move is played, only the bar changes: whatever else is written makes the browser lay the page out.
+    // While a move is played, change only the bar: any other change makes the browser lay out the page.
     if (this.#say(this.caption, caption)) this.bar.setAttribute("aria-valuetext", caption);
     if (!this.bar.matches(":active")) this.bar.value = String(at);
     const run = this.playback.isRunning ? worded("Pause") : worded("Play");
@@ -279,7 +279,7 @@ export class RowPlayer {
     this.#mark(this.element.hidden || current < 0 ? null : moves[current].parameter);
   }
 
-  /** Say where the ghost is at the end of a move, and what the row misses at its end. @param {Front.Move[]} moves */
+  /** Say where the ghost frame is after a move, and what the row misses at its end. @param {Front.Move[]} moves */
   #tell(moves) {
     const start = this.#picture.frames?.[this.#row - 1];
     this.told.classList.remove("misses");

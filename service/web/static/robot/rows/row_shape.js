@@ -51,7 +51,7 @@ export class RowShape {
   }
 
   /**
-   * Draw move `i` as far as it is done. The current move is thick; a row of which one cell is lit has no other.
+   * Draw the part of move `i` that is done. The current move is thick. For a highlighted cell, draw only its own move.
    *
    * @param {Front.ShownRow} row
    * @param {number} i
@@ -84,7 +84,7 @@ export class RowShape {
 }
 
 /**
- * Return the corners of an arc about an axis of a frame: about z from x on, about x from z on.
+ * Return the corners of an arc about an axis of a frame. It begins at x if the axis is z, and at z if the axis is x.
  *
  * @param {Front.Frame} frame
  * @param {"x" | "z"} axis

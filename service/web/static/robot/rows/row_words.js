@@ -1,4 +1,4 @@
-// The words of a row that is played: its moves, where its ghost is, and what it misses.
+// The sentences about a row that is played: its moves, the position of its ghost frame, and what the row misses.
 
 import { column } from "../motion.js";
 import { isClosed, missText, short } from "../frames/gap.js";
@@ -13,7 +13,7 @@ const SMALL = 1e-9;
 export const lowered = (number) => [...String(number)].map((digit) => LOWERED[Number(digit)]).join("");
 
 /**
- * Return what a move is, such as "along x₂ by a₂ = 0.5 m". The row leads from frame {row − 1} to frame {row}.
+ * Return a move in words, such as "along x₂ by a₂ = 0.5 m". The row leads from frame {row − 1} to frame {row}.
  *
  * @param {Front.Move} move
  * @param {number} row
@@ -25,7 +25,7 @@ export function moveText(move, row, convention, unit) {
   return move.turns ? worded("turn about {axis} by {amount}", values) : worded("along {axis} by {amount}", values);
 }
 
-/** Return the axis of a move. @param {Front.Move} move @param {number} row @param {Api.Convention} convention */
+/** Return a move's axis, such as x₂. @param {Front.Move} move @param {number} row @param {Api.Convention} convention */
 function axisOf({ axis }, row, convention) {
   // In the standard convention, the moves along and about x come last; in the modified one, they come first.
   return `${axis}${lowered((axis === "x") === (convention === "modified") ? row - 1 : row)}`;
@@ -67,7 +67,7 @@ export function captionWithoutAmount({ row, at, moves, convention }) {
 }
 
 /**
- * Say where a ghost is.
+ * Return a sentence that says where the ghost frame is.
  *
  * @param {Front.Frame} frame
  */
@@ -75,7 +75,7 @@ export const placeText = (frame) =>
   worded("The ghost frame is at {point}.", { point: `(${column(frame, 3).map(short).join(", ")})` });
 
 /**
- * Say whether frame {row} lies on the axis of a joint.
+ * Return a sentence that says if frame {row} lies on the axis of a joint.
  *
  * @param {number} row
  * @param {number} joint
