@@ -25,7 +25,7 @@ const STEEPEST = 1.55;
 const GHOST = 0.26;
 // Half the width of the name of an axis (pixels), which also has some space around it.
 const LETTERS = 14;
-// Half the length at which a click is on a joint axis, as a share of the size.
+// Half the length of a joint axis for clicks, as a share of the size.
 const AXIS = 0.3;
 // Without a graphics card, the scene is drawn coarsely while something moves, and finely after this many
 // milliseconds of rest.
@@ -33,7 +33,7 @@ const AT_REST = 200;
 const FINE = 2;
 
 export class RobotScene {
-  // Both are set by the first call of `show`.
+  // The first call of `show` sets `#picture` and `#subject`.
   /** @type {Front.Picture} */
   #picture;
   /** @type {Front.Subject} */
@@ -235,7 +235,7 @@ export class RobotScene {
   }
 
   /**
-   * Move the camera so that everything is in the picture, seen from the direction `offset`.
+   * Move the camera into the direction `offset`, to where everything is in the picture.
    *
    * @param {Vector3} offset
    */
@@ -247,7 +247,7 @@ export class RobotScene {
     const high = points.reduce((most, point) => most.max(point), low.clone());
     const middle = low.clone().add(high).multiplyScalar(0.5);
     const up = new Vector3().crossVectors(towards, across);
-    // The names of the given frames lie farthest from their points. They have a fixed size in pixels.
+    // The names of the given frames are farther from their points than all other parts. Their size in pixels is fixed.
     const room = NAMES * GHOST * this.#subject.size;
     const [width, height] = [this.size.x, this.size.y].map((pixels) => Math.max(1 - (2 * LETTERS) / pixels, 0.5));
     const half = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180);

@@ -139,7 +139,7 @@ export class Shapes {
   }
 
   /**
-   * Return a rod along `count` corners, with round elbows.
+   * Return a group of rods that join `count` corners, with a sphere at each corner.
    *
    * @param {number} count
    * @param {keyof Front.Palette} colour
@@ -157,7 +157,7 @@ export class Shapes {
   /**
    * Return three arrows from the origin, each with its letter: x red, y green, z blue.
    *
-   * If `index` is given, they are thin and pale, and the letters have this index; y has none.
+   * If `index` is given, the arrows are thin and pale, and x and z have letters with this index.
    *
    * @param {number} length
    * @param {string | null} [index]

@@ -8,7 +8,7 @@ const TURN = Math.PI / 12;
 const NEARER = 1.25;
 const IN_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
-/** Return how the browser draws in 3D: "hardware", "software", or null if it cannot. */
+/** Return how the browser draws in 3D: "hardware", "software", or null if the browser cannot. */
 function webGl() {
   try {
     const context = document.createElement("canvas").getContext("webgl2");
@@ -28,8 +28,8 @@ export class Stage {
   #closed = false;
 
   /**
-   * `draw(theme)` returns the SVG of the current picture, for a browser without WebGL. `textId` is the id of the text
-   * that says where everything is.
+   * `draw(theme)` returns the SVG of the current picture, for a browser without WebGL. `textId` is the id of the
+   * picture's text alternative.
    *
    * @param {Front.DrawSvg} draw
    * @param {string} textId
@@ -60,7 +60,7 @@ export class Stage {
     }
   }
 
-  /** The scene if it is in 3D and open, or else null. */
+  /** The 3D scene if it is open, or else null. */
   get scene() {
     return this.isFlat ? null : /** @type {Front.RobotScene | null} */ (this.#scene);
   }

@@ -13,7 +13,7 @@ const LARGEST = 1e6;
 /** A slider for each joint variable. */
 export class JointSliders {
   /**
-   * Calls of `host`: prepare(i) before a slider moves, dragged(i, value), released().
+   * The sliders call `host`: prepare(i) before a slider moves, dragged(i, value), and released().
    *
    * @param {{ prepare(i: number): void, dragged(i: number, value: number): void, released(): void }} host
    */
@@ -75,7 +75,7 @@ export class JointSliders {
   }
 }
 
-/** A field for the value of each symbol that is not a joint variable; folded at first. */
+/** Fields for the values of all symbols that are not joint variables; folded at first. */
 export class SymbolFields {
   /**
    * `chosen(name, value)` is called for each new value. `descriptions` describes the symbols by name.

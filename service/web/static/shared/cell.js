@@ -126,7 +126,7 @@ export class Cell {
   }
 
   /**
-   * Underline [from, to) of the text, counted in code points.
+   * Underline a piece of the text: from the first position to before the second, counted in code points.
    *
    * @param {[number, number] | null} span
    */

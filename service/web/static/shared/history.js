@@ -1,7 +1,7 @@
 // Undo and redo for all cells of an exercise. A step is a list of changes that were made together.
 
 const STEPS = 500;
-// Keys in one cell with at most this many milliseconds between them are one step.
+// Keys typed into one cell are one step if the pauses between them are shorter than these milliseconds.
 const ONE_STEP = 800;
 
 /** @template {{ put(value: any): void }} Target @template Value */

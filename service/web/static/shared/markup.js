@@ -1,5 +1,5 @@
 // Markup from the service: MathML and statements. It is parsed without running scripts, and only known
-// elements are copied. Of an unknown element, only the content is kept.
+// elements are copied. An unknown element is replaced by its content.
 
 const MATHML = "http://www.w3.org/1998/Math/MathML";
 const XHTML = "http://www.w3.org/1999/xhtml";

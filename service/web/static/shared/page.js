@@ -1,4 +1,4 @@
-// The script of the service's own pages: the choice of light or dark, and that of a language.
+// The script of the service's own pages: the choice of light or dark colours, and the choice of a language.
 
 import { byId, h } from "./dom.js";
 import { worded } from "./words/words.js";
@@ -38,7 +38,7 @@ const theme = h(
 show(kept());
 byId("theme", HTMLElement).append(theme);
 
-// Another language shows the same place of the page, with the rest of its address.
+// The link to another language keeps the page's address, with its query and fragment.
 for (const link of document.querySelectorAll(".languages a")) {
   if (!(link instanceof HTMLAnchorElement)) continue;
   const lang = new URL(link.href).searchParams.get("lang") ?? "";

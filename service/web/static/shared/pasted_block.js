@@ -18,7 +18,7 @@ export function blockOf(text) {
 }
 
 /**
- * Return the text of a cell. Spreadsheets copy a cell that contains quotes in quotes, with the inner ones doubled.
+ * Return the text of a cell. If a cell contains quotes, spreadsheets double these quotes and put the text into quotes.
  *
  * @param {string} text
  */

@@ -4,7 +4,7 @@ import { language, worded } from "./words/words.js";
 
 // Milliseconds until a request fails; longer than any grading.
 const PATIENCE = 20_000;
-// Students have no key; the course's site has it.
+// Students have no API key, but their course's site has one.
 const KEY_NEEDED = worded("Please open this exercise from your course page.");
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
@@ -31,7 +31,7 @@ export function nullIfRefused(error) {
 export class Service {
   /**
    * `base` is the address of the service, with a slash at its end. `token` returns the learner's token, or null.
-   * With `assignment`, "course/assignment", exercises are the learner's own variants in it.
+   * If `assignment` returns "course/assignment", exercises are the learner's variants in this assignment.
    *
    * @param {string} base
    * @param {() => string | null} [token]
@@ -43,12 +43,12 @@ export class Service {
     this.assignment = assignment;
   }
 
-  /** Return this service for the exercises of an assignment. @param {string} path "course/assignment" */
+  /** Return a copy of this service for the exercises of an assignment. @param {string} path "course/assignment" */
   within(path) {
     return new Service(this.base, this.token, () => path);
   }
 
-  /** True if exercises are those of an assignment of a learner. */
+  /** True if exercises are a learner's variants in an assignment. */
   get isAssigned() {
     return Boolean(this.token() && this.assignment());
   }
@@ -103,14 +103,14 @@ export class Service {
     return this.#ask(this.#own("v1/frames"), body);
   }
 
-  /** The drawing at an address of this service, as an address that needs no token. Revoke it after use. @param {string} address */
+  /** Load a drawing with the token; return its blob URL, which must be revoked after use. @param {string} address */
   async picture(address) {
     const headers = { Authorization: `Bearer ${this.token()}`, "Accept-Language": language };
     /** @type {RequestInit} */
     const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
     const answer = await fetch(this.#own(address), options);
     if (!answer.ok) throw failure(answer.status, {});
-    // The policy of our pages allows pictures of this kind, and none in data URLs.
+    // The policy of our pages allows pictures with blob URLs, but none with data URLs.
     return URL.createObjectURL(await answer.blob());
   }
 
@@ -122,7 +122,7 @@ export class Service {
   }
 
   /**
-   * A generated robot; the next one after the id `after`, if possible with the situation `favour`.
+   * The generated robot that follows the robot `after`, if possible with the situation `favour`.
    *
    * @param {number} level
    * @param {string} convention
@@ -165,7 +165,7 @@ export class Service {
    * @param {{ own?: boolean, key?: string }} [options]
    */
   async #ask(path, body, { own = false, key } = {}) {
-    // The answers are in the language of the page. This header needs no preflight.
+    // Responses are in the language of the page. This header needs no preflight.
     const headers = new Headers({ "Accept-Language": language });
     /** @type {RequestInit} */
     const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
@@ -175,7 +175,7 @@ export class Service {
       options.body = JSON.stringify(body);
       if (key) headers.set("Idempotency-Key", key);
     }
-    // Other requests need no token; without this header, the browser sends them without a preflight.
+    // Other requests need no token. Without the header Authorization, the browser sends no preflight for them.
     const token = own || body !== undefined ? this.token() : null;
     if (token) headers.set("Authorization", `Bearer ${token}`);
     let answer, content;

@@ -9,7 +9,7 @@ const LONGEST = 60_000;
 
 /** The saved answers to one exercise of one service. */
 export class Store {
-  // What the student reads if the answers are not saved.
+  // The sentence for the student if the answers cannot be saved.
   unsaved = worded("This browser cannot save your answers: a reload loses them");
 
   /** @param {string} base @param {string} exercise */

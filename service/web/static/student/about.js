@@ -7,7 +7,7 @@ import { conventionName, mostInWords } from "../shared/words/phrases.js";
 import { placed, worded } from "../shared/words/words.js";
 
 /**
- * Return the badges below the title: the convention, and for the shown parts the points; minutes are of all parts.
+ * Return the badges below the title: the convention, the points of the shown parts, and the minutes if all are shown.
  *
  * @param {Api.Exercise} exercise
  * @param {Api.Part[]} shown
@@ -23,7 +23,7 @@ function badges({ conventions, minutes, parts }, shown) {
 }
 
 /**
- * Return the section with the task. Beside the cells, it scrolls separately, also by keyboard.
+ * Return the section with the task. It is beside the cells, and scrolls separately, also by keyboard.
  *
  * @param {Api.Exercise} exercise
  * @param {Api.Part[]} shown the parts that the element shows

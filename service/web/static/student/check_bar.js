@@ -25,7 +25,7 @@ export class CheckBar {
   }
 
   /**
-   * Show an error of the service, or none. Return true if the error is a new one.
+   * Show an error of the service, or remove it. Return true if the error was not shown before.
    *
    * @param {Error | null} error
    */
@@ -37,7 +37,7 @@ export class CheckBar {
     return isNew;
   }
 
-  /** Say at the button why nothing was checked; the next change removes it. @param {string} text */
+  /** Say next to the button why nothing was checked; the next change removes this text. @param {string} text */
   hint(text) {
     this.hinted.textContent = text;
     this.hinted.hidden = !text;
@@ -64,7 +64,7 @@ export class CheckBar {
     this.#setOutdated(false);
   }
 
-  /** Say that the points are those of the last check, because the answers have changed since. */
+  /** Say that the points are for the answers before the change. */
   outdated() {
     this.hint("");
     if (this.total.childNodes.length) this.#setOutdated(true);

@@ -1,15 +1,15 @@
-// The sentence at the top of the form if the exercise before had another convention. The tab remembers it.
+// The sentence at the top of the form if the last exercise had another convention. The tab remembers this convention.
 
 import { h } from "../shared/dom.js";
 import { worded } from "../shared/words/words.js";
 
 const NAME = "dh-grader:convention";
 
-/** The last exercise with one convention, and the convention before it. */
+/** The last exercise that has only one convention, its convention, and the convention before this exercise. */
 /** @typedef {{ exercise: string, convention: string, before: string | null }} Last */
 
 /**
- * Return what to remember after an exercise is opened. A reload of the exercise remembers the same convention before.
+ * Return what to remember after an exercise is opened. A reload does not change what is remembered.
  *
  * @param {Last | null} last
  * @param {string} exercise
@@ -48,7 +48,7 @@ function noted(id, convention) {
     sessionStorage.setItem(NAME, JSON.stringify(next));
     return next;
   } catch {
-    // Without storage, nothing is known of the exercise before.
+    // Without storage, nothing is known of the last exercise.
     return { exercise: id, convention, before: null };
   }
 }

@@ -1,7 +1,7 @@
-// <dh-exercise exercise="scara">: an exercise to read, fill in and check, on any page.
+// <dh-exercise exercise="scara">: an element that shows an exercise on any page, to read, fill in and check.
 //
 // docs/embedding.md describes its attributes, properties, methods and events. `linked` is for the service's own
-// pages: the element reads answers from the address, and its title is that of the page.
+// pages: the element reads answers from the address, and its title is the page's heading.
 
 import { h, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
@@ -42,7 +42,7 @@ export class DhExercise extends HTMLElement {
   #loading = 0;
   #onOnline = () => this.#online();
 
-  // Set whenever an exercise has been loaded.
+  // The following fields are set whenever an exercise has been loaded.
   /** @type {Service} */
   service;
   /** @type {Api.Exercise} */
@@ -99,7 +99,7 @@ export class DhExercise extends HTMLElement {
   attributeChangedCallback(name, before, after) {
     if (!this.isConnected || before === after) return;
     if (name === "token") {
-      // A new token is for the same exercise; what the service refused without it is sent again.
+      // A new token does not change the exercise. Send again what the service has refused without the token.
       if (this.handIn) this.handIn.resume();
       else if (this.hasAttribute("assignment")) this.#begin();
       return;
@@ -167,7 +167,7 @@ export class DhExercise extends HTMLElement {
   }
 
   /**
-   * Announce a text to screen readers, unless another one comes within the pause.
+   * Announce a text to screen readers after a pause, unless another text is announced meanwhile.
    *
    * @param {string} text
    * @param {number} [pause]
@@ -268,7 +268,7 @@ export class DhExercise extends HTMLElement {
     this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
     this.store = handIn?.store ?? new Store(this.service.base, exercise.id);
     const wanted = this.getAttribute("parts")?.trim().split(/[\s,]+/);
-    // Its title is that of the page.
+    // The title of the exercise is the page's heading.
     const isOwn = this.hasAttribute("linked");
     this.bar = new CheckBar(() => this.check());
     this.form = new Form(this, () => this.#clear());
@@ -379,7 +379,7 @@ export class DhExercise extends HTMLElement {
     this.bar.isBusy = false;
   }
 
-  /** Show a report on the answers in the cells, which may be an attempt's. @param {Api.Report} report @param {string} [attempt] */
+  /** Show a report on the answers in the cells, recorded or not. @param {Api.Report} report @param {string} [attempt] */
   showReport(report, attempt) {
     const filled = this.#parts.filter((part) => !part.isEmpty);
     for (const part of this.#parts) {

@@ -78,7 +78,7 @@ function headOf(column) {
 }
 
 /**
- * Return the link that explains a column or a table; it opens beside the exercise.
+ * Return the link to the explanation of a column or a table, which opens in a new tab.
  *
  * @param {{ head: string, help?: string }} explained
  */
@@ -89,7 +89,7 @@ function helpOf({ head, help }) {
   return h("a", { class: "what", href, target: "_blank", rel: "noopener", title: name, "aria-label": name }, "?");
 }
 
-/** A row with its cells, mark and points, and with the row of messages below it. */
+/** A row of a grid with its cells, verdict and points, and below it a row for its messages. */
 export class RowView {
   /**
    * @param {Front.Row} row
@@ -145,7 +145,7 @@ export class RowView {
       this.worth,
     );
     this.list = h("ul");
-    // The messages leave the first and the last column free, so that the brackets of a matrix go on beside them.
+    // In a matrix, messages leave the first and the last column free, so that the brackets continue beside them.
     const isMatrix = grid.look === "matrix";
     const place = h("td", { colspan: grid.columns.length + (isMatrix ? 0 : 2) }, this.list);
     this.notes = h("tr", { class: "notes", hidden: true }, ...(isMatrix ? [h("td"), place, h("td")] : [place]));
@@ -166,7 +166,7 @@ export class RowView {
     this.notes.hidden = items.length === 0;
   }
 
-  /** Add a message that is of no report. @param {HTMLElement} item */
+  /** Add a message that does not come from a report. @param {HTMLElement} item */
   addNote(item) {
     this.list.append(item);
     this.notes.hidden = false;
@@ -182,7 +182,7 @@ export class RowView {
     return /** @type {Api.Verdict | undefined} */ (this.element.dataset.verdict) ?? null;
   }
 
-  /** Remove the mark of the row, because a cell has changed. */
+  /** Remove the verdict of the row, because a cell has changed. */
   outdated() {
     this.setVerdict(null);
     this.#showWorth("");

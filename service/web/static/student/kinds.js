@@ -1,6 +1,6 @@
-// The kinds of answers: the grids of cells of each kind, and the JSON in which they are posted. The shape
-// of a part (GET /v1/exercises/{id}) describes it. The rows of all its grids form one list, with the labels
-// that they have in reports.
+// The kinds of answers: each kind has grids of cells, and JSON for its answers. The shape of a part (from
+// GET /v1/exercises/{id}) describes the grids. The rows of all grids of a part form one list, with the same
+// labels as in reports.
 
 import { worded } from "../shared/words/words.js";
 
@@ -32,8 +32,8 @@ const chunks = (values, size) =>
   Array.from({ length: Math.ceil(values.length / size) }, (_, i) => values.slice(i * size, (i + 1) * size));
 
 /**
- * Return the layout of a part: `grids`, each with `title`, `look`, `columns` and `rows`; `choices`, the options beside
- * the cells by value; `answer(texts, choice)`, which makes JSON of all texts in order.
+ * Return the layout of a part: `grids`, each with `title`, `look`, `columns` and `rows`; `choices`, the names of the
+ * options beside the cells by value; `answer(texts, choice)`, which converts all texts in order to JSON.
  *
  * @param {Pick<Api.Part, "kind" | "shape">} part
  * @returns {Front.Layout}
@@ -193,7 +193,7 @@ const FORMS = {
 };
 
 /**
- * Return what the form fills into a row: the last one of a homogeneous matrix is always the same.
+ * Return the texts that the form fills into a row: the last row of a homogeneous matrix is always the same.
  *
  * @param {{ rows: string[], columns: string[] }} shape
  * @param {number} i

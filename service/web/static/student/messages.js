@@ -21,7 +21,7 @@ const EXPECTED = "expected";
  *   action?: HTMLElement | null,
  *   symbols?: Set<string>,
  *   rows?: Api.RowReport[],
- * }} [options] `symbols` are the names that the exercise declares; `rows` those of the part
+ * }} [options] `symbols` are the names that the exercise declares; `rows` the rows of the part
  */
 export function item(feedback, options = {}) {
   const { place = "", verdict = "incorrect", repair = null, action = null, symbols, rows } = options;
@@ -53,7 +53,7 @@ export function item(feedback, options = {}) {
 }
 
 /**
- * Say that a message is on the text before a change of its cell, and remove what it proposes.
+ * Say that a message is about the text before the student's change, and remove the proposals of the message.
  *
  * @param {HTMLElement} told a list item
  */
@@ -68,7 +68,7 @@ export function outdate(told) {
 /** @param {Record<string, string | number>} values */
 function counterexample(values) {
   const given = Object.entries(values).filter(([name]) => name !== YOURS && name !== EXPECTED);
-  // "with l2 = 0.4, yours gives 0.4" tells nothing.
+  // An example such as "with l2 = 0.4, yours gives 0.4" is no help.
   if (!(EXPECTED in values) && given.length === 1 && given[0][1] === values[YOURS]) return "";
   const { [YOURS]: yours, [EXPECTED]: expected } = values;
   return exampleInWords(given.map(([name, value]) => `${name} = ${value}`).join(", "), yours, expected);
@@ -92,12 +92,12 @@ function exampleInWords(given, yours, expected) {
     : worded("(yours gives {yours}, not {expected})", { yours, expected });
 }
 
-/** Return an item if a part was judged with an earlier answer of the student. @param {Api.PartReport} report */
+/** Return a note if a part was graded with the student's own earlier answer. @param {Api.PartReport} report */
 export const followedItems = ({ follow_through: isFollowed }) =>
   isFollowed ? [item({ severity: "note", message: worded("Counted with your own earlier answer.") })] : [];
 
 /**
- * Return messages of a part, and those on rows that the form does not show, with the place of each.
+ * Return the messages on a part, and on rows that the form does not show; each has its place.
  *
  * @param {Api.Feedback[]} feedback
  * @param {Iterable<Api.RowReport>} rows

@@ -81,13 +81,13 @@ export class PartView {
     if (host.form) this.#prefill();
   }
 
-  /** Write what the form fills in, such as the last row of a homogeneous matrix. */
+  /** Write the texts that the form fills in, such as the last row of a homogeneous matrix. */
   #prefill() {
     this.#fill(this.cells.filter((cell) => cell.place.prefill).map((cell) => [cell, cell.place.prefill ?? ""]));
     this.changedAt = 0;
   }
 
-  // What is shown of the part, and how far it is.
+  // The visible cells of the part, and its progress.
 
   /** Fold or unfold the part. @param {boolean} isFolded */
   setFolded(isFolded) {
@@ -116,7 +116,7 @@ export class PartView {
   }
 
   /**
-   * The verdict, if the answer has not changed since, and how much is filled.
+   * The progress: the verdict, unless the answer has changed since the report, and how much is filled.
    *
    * @returns {Front.Progress}
    */
@@ -194,13 +194,13 @@ export class PartView {
     return changes;
   }
 
-  /** Read all cells again, in another unit: the report was of the unit before. */
+  /** Read all cells again, in another unit. The report is out of date, because it is about the earlier unit. */
   readAgain() {
     this.outdated();
     for (const cell of this.cells) this.#ask(cell);
   }
 
-  /** Show how a cell is read; for what the form has filled in, nothing. @param {Front.PartCell} cell */
+  /** Show how the service reads a cell, unless the form has filled in its text. @param {Front.PartCell} cell */
   #ask(cell) {
     const isPrefilled = Boolean(this.host.form) && cell.text !== "" && cell.text === cell.place.prefill;
     cell.element.classList.toggle("prefilled", isPrefilled);
@@ -325,7 +325,7 @@ export class PartView {
   }
 
   /**
-   * Return the item of a message, tied to its cells, with a button if the form can do what it proposes.
+   * Return the list item of a message, tied to its cells, with a button if the form has a proposal for the message.
    *
    * @param {Api.Feedback} feedback
    * @param {Front.PartCell[]} cells
@@ -384,7 +384,7 @@ export class PartView {
     this.element.classList.remove("outdated");
   }
 
-  /** Fade the report, because the answer has changed since. */
+  /** Fade the report, because the answer has changed since the report. */
   outdated() {
     if (this.result.outdated()) this.element.classList.add("outdated");
   }

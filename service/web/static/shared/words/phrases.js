@@ -28,17 +28,17 @@ export const severityName = (severity) => SEVERITIES[severity] ?? severity;
 /** @param {string} convention */
 export const conventionName = (convention) => convention === "modified" ? worded("modified") : worded("standard");
 
-/** Return the most points of a part in words. @param {number} most */
+/** Return the maximum number of points of a part in words. @param {number} most */
 export const mostInWords = (most) => wordedFor("{number} points", "{number} points", most, { number: number(most) });
 
-/** Return earned points and the most points in words. @param {number} earned @param {number} most */
+/** Return earned points and the maximum number of points in words. @param {number} earned @param {number} most */
 export const earnedInWords = (earned, most) => worded("{points} points", { points: points(earned, most) });
 
 /** Return a sentence about the result of a part. @param {string} part @param {Api.PartReport} report */
 export const resultInWords = (part, { verdict, points: earned, max_points: most }) =>
   worded("{part}: {verdict}, {points} points.", { part, verdict: verdictName(verdict), points: points(earned, most) });
 
-/** Return what is said if there is no change to undo, or to redo. @param {Front.Direction} direction */
+/** Return a sentence that says that there is nothing to undo or redo. @param {Front.Direction} direction */
 export const nothingTo = (direction) => direction === "undo" ? worded("Nothing to undo") : worded("Nothing to redo");
 
 /** Return the name of the field for the option of a part. @param {string} part */

@@ -3,10 +3,10 @@
 // A sentence is written in English. `{name}` is the place of a value, and a brace in the text is doubled. The service
 // makes the dictionaries of all other languages from its catalogues; English needs none.
 
-/** The file with the dictionary of each language; the service writes them here. @type {Record<string, string>} */
+/** The files with the dictionaries, by language; the service writes them here. @type {Record<string, string>} */
 const FILES = {};
 
-/** Return the language of the element on this page, or else that of the page. */
+/** Return the language of the exercise element on this page, or else the language of the page. */
 function wanted() {
   const element = globalThis.document?.querySelector("dh-exercise");
   const near = element?.closest("[lang]") ?? globalThis.document?.documentElement;
@@ -27,7 +27,7 @@ async function loaded(tag) {
 
 const dictionary = await loaded(wanted());
 
-/** The language in which the scripts tell everything, as a tag such as "de". */
+/** The language of all texts that scripts show, as a tag such as "de". */
 export const language = dictionary?.tag ?? "en";
 
 const rules = new Intl.PluralRules(dictionary?.tag ?? "en");
@@ -56,7 +56,7 @@ export function wordedFor(one, many, count, values = {}) {
 }
 
 /**
- * Return a text as pieces, with elements at the places that have been left open, such as `{link}`.
+ * Return a text in pieces, in which elements replace placeholders such as `{link}`.
  *
  * @template Piece
  * @param {string} text

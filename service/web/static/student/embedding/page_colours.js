@@ -1,4 +1,4 @@
-// The colours of the page around the element: light text means a dark page, whatever the system prefers.
+// The colours of the page around the element. Light text means a dark page, whatever colours the system prefers.
 
 import { isDark } from "../../robot/palette.js";
 
@@ -12,7 +12,7 @@ export class PageColours {
   scheme = "light";
 
   /**
-   * Give `inner` the scheme of the page, or that of the attribute `theme` of `host`; `changed` is called after changes.
+   * Give `inner` the page's colour scheme, or that in the attribute `theme` of `host`. Call `changed` after changes.
    *
    * @param {HTMLElement} host
    * @param {HTMLElement} inner
@@ -45,7 +45,7 @@ export class PageColours {
   }
 
   /**
-   * Return the address of a figure in this scheme; without a query if the browser chooses it anyway.
+   * Return the address of a figure in this scheme; it has no query if the browser chooses this scheme anyway.
    *
    * @param {string} address
    */

@@ -1,4 +1,4 @@
-// Answers to read only: the cells can be entered and read, but not changed.
+// Read-only answers: students can move through the cells and read them, but not change them.
 
 const CHANGES = ["paste", "beforeinput", "drop"];
 
@@ -17,7 +17,7 @@ function refuse(event) {
  */
 export function lock(exercise, parts, isReadOnly) {
   exercise.classList.toggle("read-only", isReadOnly);
-  // Before the cells get the event.
+  // The listeners capture the events, so that the cells do not get them.
   for (const name of CHANGES) {
     if (isReadOnly) exercise.addEventListener(name, refuse, true);
     else exercise.removeEventListener(name, refuse, true);

@@ -1,5 +1,5 @@
-// What the form of an exercise does beyond single parts: the unit of angles, folded parts, the rail, keys for touch
-// screens, and the way to the first slip.
+// The form of an exercise beyond single parts: the unit of angles, folded parts, the rail, keys for touch screens, and
+// the focus on the first slip.
 
 import { KeyBar } from "./key_bar.js";
 import { Rail } from "./rail.js";
@@ -19,7 +19,7 @@ export class Form {
     this.keys = new KeyBar(host.exercise.symbols, () => this.parts[0].undo("undo"));
   }
 
-  /** Take over the parts once they have been made. @param {Front.PartView[]} parts */
+  /** Take over the parts after they have been created. @param {Front.PartView[]} parts */
   begin(parts) {
     this.parts = parts;
     this.rail = new Rail(parts);
@@ -31,13 +31,13 @@ export class Form {
     return /** @type {Api.AngleUnit} */ (this.tools.unit.value);
   }
 
-  /** Read angles without a unit in another one, and check again. @param {Api.AngleUnit} unit */
+  /** Read angles without a unit in another unit, and check again. @param {Api.AngleUnit} unit */
   useUnit(unit) {
     this.readIn(unit);
     this.host.check();
   }
 
-  /** Read angles without a unit in another one. @param {Api.AngleUnit} unit */
+  /** Read angles without a unit in another unit. @param {Api.AngleUnit} unit */
   readIn(unit) {
     this.tools.unit.value = unit;
     this.#unitChanged();
@@ -59,7 +59,7 @@ export class Form {
     cell.input.focus();
   }
 
-  /** What to read out if there is no answer to check. */
+  /** The text for screen readers if there is no answer to check. */
   get firstStep() {
     return this.parts.every(({ marks }) => marks)
       ? worded("First mark the cell with the slip.")
@@ -67,7 +67,7 @@ export class Form {
   }
 
   /**
-   * Lead to the first slip of the parts, wrong before missing. Return what to read out about it.
+   * Focus the first wrong cell, or else the first missing one. Return the text for screen readers about this cell.
    *
    * @param {Front.PartView[]} parts
    */

@@ -1,4 +1,4 @@
-// Keys for touch screens, below the row in hand: the exercise's own symbols, and signs that phones hide.
+// Keys for touch screens, below the row with the focus: the symbols of the exercise, and signs that phones hide.
 
 import { h } from "../../shared/dom.js";
 import { worded } from "../../shared/words/words.js";
@@ -19,7 +19,7 @@ export function face(name) {
 }
 
 /**
- * Return what the keys write: first the symbols of the cell's quantity, then the others, then the signs.
+ * Return the texts that keys write: symbols of the cell's quantity, then all other symbols, then signs.
  *
  * @param {Pick<Api.ExerciseSymbol, "name" | "kind">[]} symbols
  * @param {Api.Quantity} quantity

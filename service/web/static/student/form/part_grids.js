@@ -1,4 +1,4 @@
-// All grids of a part: their cells, what they hold, and the tabs if there are several.
+// All grids of a part: their cells with texts, and tabs if there are several grids.
 
 import { gridsOf } from "../grid_view.js";
 import { filled, isTouched, sentTexts, shownTexts, together } from "./part_progress.js";
@@ -37,7 +37,7 @@ export class PartGrids {
     return this.#written.flatMap(sentTexts);
   }
 
-  /** Return saved texts as they are shown. @param {string[]} saved */
+  /** Return saved texts as the cells show them. @param {string[]} saved */
   shown(saved) {
     let from = 0;
     return this.#written.flatMap((cells) => shownTexts(cells, saved.slice(from, from += cells.length)));
@@ -61,14 +61,14 @@ export class PartGrids {
     );
   }
 
-  /** How many of the matrices are filled, or of the rows if there is one grid. */
+  /** How many matrices are filled; if there is only one grid, how many rows are filled. */
   get progress() {
     if (this.tabs) return { done: filled(this.#written), of: this.grids.length };
     const own = this.rows.filter(({ isGiven }) => !isGiven);
     return { done: isTouched(this.cells.map(written)) ? own.filter(isFull).length : 0, of: own.length };
   }
 
-  /** Return the first cell of the next tab if the key Tab leaves the last cell of one, or else null.
+  /** If the key Tab leaves the last cell of a tab, return the first cell of the next tab, or else null.
    *
    * @param {KeyboardEvent} event
    * @param {Front.PartCell} cell

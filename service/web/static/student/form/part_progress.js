@@ -1,6 +1,6 @@
-// How far an answer is: what counts as written, what is filled, and the verdict of several rows.
+// The progress of an answer: which cells the student has written, which are filled, and the verdict of several rows.
 
-/** True if the student has written the text; what the form has filled in does not count. @param {Front.Written} cell */
+/** True if the student has written the text, and not the form. @param {Front.Written} cell */
 const isWritten = ({ text, prefill = "" }) => text.trim() !== "" && text.trim() !== prefill;
 
 /**
@@ -13,7 +13,7 @@ export function isTouched(cells) {
 }
 
 /**
- * Return the texts of a grid as they are sent and saved: all empty if the student has written nothing in it.
+ * Return the texts of a grid as they are sent and saved; all are empty if the student has written nothing in the grid.
  *
  * @param {Front.Written[]} cells
  */
@@ -22,7 +22,7 @@ export function sentTexts(cells) {
 }
 
 /**
- * Return the saved texts of a grid as they are shown: with what the form fills in if all are empty.
+ * Return the saved texts of a grid; if all are empty, return the texts that the form fills in.
  *
  * @param {Front.Written[]} cells
  * @param {string[]} saved
@@ -32,7 +32,7 @@ export function shownTexts(cells, saved) {
 }
 
 /**
- * Return how many of the groups of cells are filled; one in which the student has written nothing is not.
+ * Return how many groups of cells are filled; a group in which the student has written nothing is not filled.
  *
  * @param {Front.Written[][]} groups
  */
@@ -41,7 +41,7 @@ export function filled(groups) {
 }
 
 /**
- * Return the verdict of rows together, or null if one of them has none.
+ * Return one verdict for several rows, or null if a row has no verdict.
  *
  * @param {(Api.Verdict | null)[]} verdicts
  * @returns {Api.Verdict | null}

@@ -13,7 +13,7 @@ const NAMES = {
 };
 
 /**
- * Return a folded box. `fill` gets its text, and returns what went wrong, or "".
+ * Return a folded box. `fill` gets the text of the box, and returns an error message, or "".
  *
  * @param {Api.Part} part
  * @param {(text: string) => Promise<string>} fill

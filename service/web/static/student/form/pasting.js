@@ -20,7 +20,7 @@ export class Pasting {
     event.preventDefault();
     const { pairs, told, isScript, notes } = await this.#read(text, cell);
     if (pairs) return this.#fill(pairs, notes);
-    // Joined into one line, a script or several lines would make the cell unusable.
+    // A script, or several lines joined into one, would make the cell unusable.
     if (told && (isScript || text.trim().includes("\n"))) return this.view.line.say(told);
     const before = cell.text;
     cell.input.setRangeText(
@@ -36,7 +36,7 @@ export class Pasting {
   }
 
   /**
-   * Fill the cells from a whole text, from a cell on. Return what went wrong, or "".
+   * Fill the cells from a cell on with a whole text. Return an error message, or "".
    *
    * @param {string} text
    * @param {Front.PartCell} cell
@@ -63,7 +63,7 @@ export class Pasting {
   }
 
   /**
-   * Return the cells that a text fills, or what to tell if it fills none.
+   * Return the cells that a text fills, or a message if it fills none.
    *
    * @param {string} text
    * @param {Front.PartCell} cell
@@ -124,8 +124,8 @@ export class Pasting {
   }
 
   /**
-   * Return the first row that a pasted grid fills: the row with its first label, or, for a single matrix without a
-   * name, the first row of the cell's matrix.
+   * Return the first row that a pasted grid fills: the row with the grid's first label. For a single matrix without a
+   * name, return the first row of the matrix that contains the cell.
    *
    * @param {Api.PreviewCell[][]} read
    * @param {Front.PartCell} cell

@@ -1,4 +1,4 @@
-// What the form can do about a finding of the report: read angles in the other unit, or reorder columns.
+// Proposals of the form for a finding of the report: read angles in the other unit, or reorder columns.
 
 import { h } from "../../shared/dom.js";
 import { LETTERS } from "../kinds.js";
@@ -13,8 +13,8 @@ const ORDER = /[aαdθ](?:, [aαdθ]){3}/g;
 const DEGREES = /(?:^|[^\w.^])(?:[7-9]|\d{2,})(?![\d.]*\s*(?:°|deg))/;
 
 /**
- * Return the angle unit in which a finding proposes to read all angles, or null. Texts that convert between units need
- * another repair.
+ * Return the angle unit in which a finding proposes to read all angles, or null. Texts with a conversion between
+ * units need another repair.
  *
  * @param {string} code
  * @param {string[]} texts of the cells of the finding
@@ -29,7 +29,7 @@ export function proposedUnit(code, texts, unit) {
 }
 
 /**
- * Return the columns that a finding says the student wrote, from left to right, or null. The sentence names them first.
+ * Return the student's order of columns according to a finding, or null. The finding's message names this order first.
  *
  * @param {string} code
  * @param {string} message
@@ -45,7 +45,7 @@ export function writtenOrder(code, message, columns) {
 }
 
 /**
- * Return the texts of a row with each under its own column.
+ * Return the texts of a row, each moved to its correct column.
  *
  * @param {string[]} texts
  * @param {string[]} order in which they are written
@@ -60,7 +60,7 @@ export function reordered(texts, order, columns) {
  *
  * @param {Front.PartView} view
  * @param {Api.Feedback} feedback
- * @param {Front.PartCell[]} cells of the message; none for one on the whole part
+ * @param {Front.PartCell[]} cells of the message; none if the message is about the whole part
  */
 export function proposal(view, { code, message }, cells) {
   const { host, part: { shape } } = view;

@@ -1,4 +1,4 @@
-// The rail of an exercise: how far each part is, as in "Table ✓ · Links 2/6 · Pose". A click leads to the part.
+// The rail of an exercise: the progress of each part, as in "Table ✓ · Links 2/6 · Pose". A click leads to the part.
 
 import { h } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
@@ -20,7 +20,7 @@ const SHORT = {
 };
 
 /**
- * Return a short name for each part: of its kind, or its title where two parts are of one kind.
+ * Return a short name for each part: the name of its kind, or the title of the part if several parts have this kind.
  *
  * @param {Pick<Api.Part, "kind" | "title">[]} parts
  */

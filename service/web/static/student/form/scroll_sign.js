@@ -1,12 +1,12 @@
-// A sign at the edge of what scrolls sideways: where more is hidden, the content fades out below an arrow.
+// A sign at the edge of an area that scrolls sideways: if more is hidden there, the content fades out below an arrow.
 
 import { h } from "../../shared/dom.js";
 
-// Pixels; less is rounding, or padding.
+// The least number of hidden pixels; fewer pixels are rounding or padding.
 const LEAST = 6;
 
 /**
- * Add the signs to a scrolling element with one child. A shown sign stays at its edge.
+ * Add the signs to a scrolling element with one child. While the element scrolls, each sign stays at its edge.
  *
  * @template {HTMLElement} Scrolling
  * @param {Scrolling} element

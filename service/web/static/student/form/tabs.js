@@ -1,4 +1,4 @@
-// The grids of a part as tabs: arrow keys, Home and End choose one, and each tab shows how far its grid is.
+// The grids of a part as tabs. Arrow keys, Home and End choose a tab; each tab shows the progress of its grid.
 
 import { h, visible } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
@@ -64,7 +64,7 @@ export class Tabs {
   }
 
   /**
-   * Mark a tab with the verdict of its grid, or else as filled.
+   * Mark a tab with the verdict of its grid, or, if there is no verdict, as filled.
    *
    * @param {number} i
    * @param {Api.Verdict | null} verdict

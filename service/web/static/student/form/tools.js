@@ -1,4 +1,4 @@
-// The line above the parts: the angle unit, whether the answers are saved, the link to them, Clear, and Help.
+// The line above the parts: the angle unit, whether the answers are saved, a link to the answers, Clear, and Help.
 
 import { h } from "../../shared/dom.js";
 import { fragment } from "../../shared/storage.js";
@@ -6,7 +6,7 @@ import { language, worded } from "../../shared/words/words.js";
 
 export class Tools {
   /**
-   * `host` is the exercise. `unitChanged` and `clear` are called by the controls.
+   * `host` is the exercise. The controls call `unitChanged` and `clear`.
    *
    * @param {Front.FormHost} host
    * @param {() => void} unitChanged

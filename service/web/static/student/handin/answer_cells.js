@@ -2,7 +2,7 @@
 
 /**
  * Return the state of a part (`cells`, `choice`) with this answer, or null if the answer does not fit the cells. A
- * text does not fit: the service has to read it first.
+ * text does not fit, because the service must read it first.
  *
  * @param {Front.Layout} layout
  * @param {any} answer
@@ -20,7 +20,7 @@ export function cellsOf(layout, answer) {
 }
 
 /**
- * Return the state of a part whose given table is marked, or null if the answer does not fit.
+ * Return the state of a part in which students mark cells of a given table, or null if the answer does not fit.
  *
  * @param {Front.Layout} layout
  * @param {any} answer
@@ -44,7 +44,7 @@ function markedCells(layout, answer, empty, labels) {
 }
 
 /**
- * Return all entries in order, or null if the answer holds anything else.
+ * Return all entries of an answer in order, or null if the answer contains anything else.
  *
  * @param {any} answer
  * @param {string[]} labels

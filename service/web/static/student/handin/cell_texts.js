@@ -1,4 +1,4 @@
-// Answers that the page around the element gives, as texts of cells.
+// Converts answers, which the page around the element has set, to the texts of cells.
 
 import { cellsOf } from "./answer_cells.js";
 

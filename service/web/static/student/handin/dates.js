@@ -9,7 +9,7 @@ const CLOCK = { weekday: "short", day: "numeric", month: "short", year: "numeric
  * Return a moment on the clocks of a time zone, such as "Thu, 15 Oct 2026, 23:59".
  *
  * @param {Date} date
- * @param {string | undefined} zone by default that of the browser
+ * @param {string | undefined} zone by default the browser's time zone
  * @param {Intl.DateTimeFormatOptions} [more]
  */
 function clock(date, zone, more = {}) {
@@ -23,11 +23,11 @@ function clock(date, zone, more = {}) {
 }
 
 /**
- * Return a moment in the time zone of the course, and in brackets in the learner's own if that shows another time.
+ * Return a moment in the course's time zone, and in brackets in the learner's time zone if the time there differs.
  *
  * @param {string} moment
  * @param {string} zone
- * @param {string} [own] by default that of the browser
+ * @param {string} [own] by default the browser's time zone
  */
 export function momentIn(moment, zone, own) {
   const date = new Date(moment);

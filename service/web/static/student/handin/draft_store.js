@@ -1,4 +1,4 @@
-// The saved answers to an exercise of an assignment. If another tab has changed them, they are not overwritten.
+// The saved answers to an exercise of an assignment. Answers that another tab has changed are not overwritten.
 
 import { Store } from "../../shared/storage.js";
 import { worded } from "../../shared/words/words.js";

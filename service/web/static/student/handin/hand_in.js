@@ -1,4 +1,4 @@
-// Hands the answers of an element in: the state of the assignment, the button Hand in, and the hand-in itself.
+// Submits the answers of an element: the state of the assignment, the button Hand in, and the request.
 
 import { h, visible } from "../../shared/dom.js";
 import { lastAttempt } from "./last_attempt.js";
@@ -21,7 +21,7 @@ import { worded } from "../../shared/words/words.js";
 
 const TRYING = worded("Not confirmed yet, trying again. Your answers are saved in this browser.");
 const TOKEN_NEEDED = worded("Please open this exercise from your course page.");
-// Milliseconds: the time that a site has to set a token, and until it is asked for another one.
+// Milliseconds that a site has to set a token, and until the element asks the site for another token.
 const PATIENCE = 10_000;
 const ASKED_AGAIN = 60_000;
 const ELSEWHERE = worded("These answers were changed in another tab.");
@@ -34,11 +34,11 @@ export class HandIn {
   #wake = () => {};
   #onVisible = () => document.visibilityState === "visible" && this.refresh();
   #onOnline = () => this.#wake();
-  // What was typed just before the page is left or reloaded is saved, too.
+  // Save the last texts when the student leaves or reloads the page.
   #onLeaving = () => this.host.save();
 
   /**
-   * `host` is the element, whose attribute `assignment` is `path`; `own` is the state that the service has told.
+   * `host` is the element, whose attribute `assignment` is `path`; `own` is the state from the service.
    *
    * @param {Front.HandInHost} host
    * @param {string} path
@@ -51,7 +51,7 @@ export class HandIn {
     const name = `${path}/${own.exercise.exercise}:${own.learner}`;
     this.store = new DraftStore(host.service.base, name, () => this.#changedElsewhere());
     this.pending = new PendingHandIn(this.store.name);
-    // Other tabs are told of each hand-in, because it takes one of the attempts.
+    // Other tabs get a message on each hand-in, because a hand-in uses up an attempt.
     this.channel = new BroadcastChannel(this.store.name);
     this.channel.onmessage = () => this.refresh();
     document.addEventListener("visibilitychange", this.#onVisible);
@@ -67,7 +67,7 @@ export class HandIn {
   }
 
   /**
-   * Return the hand-in of an element; null if the element has no assignment. Throws an Error if the learner has none.
+   * Return an element's hand-in; null if it has no assignment. Throws an Error if the assignment is not the learner's.
    *
    * @param {Front.HandInHost} host
    * @param {string} exercise
@@ -81,7 +81,7 @@ export class HandIn {
     return new HandIn(host, path, own);
   }
 
-  /** Take over the element once its form has been made. */
+  /** Take over the element after its form has been created. */
   begin() {
     const { bar, form } = this.host;
     form.tools.share.hidden = true;
@@ -91,7 +91,7 @@ export class HandIn {
     this.resume();
   }
 
-  /** Send again what the service has not confirmed. */
+  /** Send the hand-in again that the service has not confirmed, if there is one. */
   resume() {
     const waiting = this.pending.get();
     if (waiting) this.#send(waiting, true);
@@ -112,7 +112,7 @@ export class HandIn {
     return this.own.exercise.may_practise;
   }
 
-  /** Ask the service for the state; without a connection, the last one is shown. */
+  /** Request the present state, and show it; without a connection, the earlier state stays. */
   async refresh() {
     try {
       const own = ownState(await this.host.service.own(), this.path, this.own.exercise.exercise);
@@ -144,7 +144,7 @@ export class HandIn {
     check.className = this.button.hidden ? "check" : "quiet-button";
   }
 
-  /** Hand the answers in, after a confirmation if this is the last attempt. */
+  /** Submit the answers. Before the last attempt, ask for a confirmation. */
   async submit() {
     const { bar, answers } = this.host;
     if (this.#isSending || bar.isBusy || this.host.hasAttribute("readonly")) return;
@@ -168,7 +168,7 @@ export class HandIn {
   }
 
   /**
-   * Send it until the service answers. `mayBeRecorded` is true if an answer to it may have been lost.
+   * Send a hand-in until the service responds. `mayBeRecorded` is true if the response to an earlier try may be lost.
    *
    * @param {Front.Pending} pending
    * @param {boolean} mayBeRecorded
@@ -190,7 +190,7 @@ export class HandIn {
         continue;
       }
       this.pending.clear(pending.key);
-      // From here on it is recorded: no fault of the page may say otherwise.
+      // The hand-in is recorded now. A later error of the page must not say that it failed.
       this.#setSending(false);
       return this.#handedIn(answer, pending.body);
     }
@@ -205,7 +205,7 @@ export class HandIn {
     else this.button.removeAttribute("aria-disabled");
   }
 
-  /** Wait, or until the browser is online again. @param {number} seconds */
+  /** Wait for some seconds, or until the browser is online again. @param {number} seconds */
   #pause(seconds) {
     return new Promise((done) => {
       const waiting = setTimeout(done, 1000 * seconds);
@@ -220,7 +220,7 @@ export class HandIn {
   async #refused(error, key, mayBeRecorded) {
     this.#tell(refusalInWords(error.message, mayBeRecorded));
     if (error.status === 401) {
-      // With a new token, `resume` sends it again; a site whose tokens are all refused is not asked without end.
+      // With a new token, `resume` sends the hand-in again. If all are refused, the site is not asked without end.
       if (Date.now() - this.#askedAt > ASKED_AGAIN) this.#dispatch("token-needed", null);
       this.#askedAt = Date.now();
       return;
@@ -239,7 +239,7 @@ export class HandIn {
     this.#tell(worded("Handed in. {attempt}: {points}.", { attempt: name, points: attemptPoints(attempt, exercise) }));
     this.channel.postMessage("handed in");
     this.#dispatch("submitted", attempt);
-    // The report marks the cells only if they still have the answers that were handed in.
+    // Show the report at the cells only if the cells still contain the submitted answers.
     if (JSON.stringify(answers) === JSON.stringify(this.host.answers)) this.host.showReport(report, attempt.id);
     this.#dispatch("graded", { ...report, answers, attempt });
   }
@@ -254,7 +254,7 @@ export class HandIn {
     this.told.textContent = visible(text);
   }
 
-  /** Another tab has saved other answers: the student chooses. */
+  /** Let the student choose between these answers and those that another tab has saved. */
   #changedElsewhere() {
     const take = () => {
       this.host.texts = this.store.load() ?? { unit: this.host.angleUnit, parts: {} };
@@ -272,7 +272,7 @@ export class HandIn {
 }
 
 /**
- * Ask the site for a token. When it sets one, the element begins again; if it does not, this throws an Error.
+ * Ask the site for a token. If the site sets a token, the element starts again; if not, this function throws an Error.
  *
  * @param {HTMLElement} host
  * @returns {Promise<never>}

@@ -4,7 +4,7 @@ import { h, visible } from "../../shared/dom.js";
 import { worded } from "../../shared/words/words.js";
 
 /**
- * Ask whether to use the last attempt; `empty` are the titles of the parts that are not filled in.
+ * Ask whether to use the last attempt; `empty` has the titles of the parts that are not filled in.
  *
  * @param {HTMLElement} place
  * @param {string[]} empty

@@ -1,4 +1,4 @@
-// A notice above the parts of an exercise, with choices that remove it; and a failure in place of an exercise.
+// A notice above the parts of an exercise, with buttons that remove it. An error message in place of an exercise.
 
 import { h, visible } from "../../shared/dom.js";
 import { worded } from "../../shared/words/words.js";
@@ -23,7 +23,7 @@ export function offer(place, text, choices) {
 }
 
 /**
- * Return a card with a failure, and with a button if the student can try `again`.
+ * Return a card with an error message, and with a button if the student can try `again`.
  *
  * @param {string} title
  * @param {string} text

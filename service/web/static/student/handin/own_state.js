@@ -67,7 +67,7 @@ export function datesInWords({ zone }, { state, opens, due, closes, late_worth: 
 }
 
 /**
- * Return how many attempts are left in words.
+ * Return in words how many attempts are left.
  *
  * @param {Pick<Api.OwnAssignment, "limit">} assignment
  * @param {Pick<Api.OwnExercise, "attempts_left">} exercise
@@ -78,7 +78,7 @@ export function attemptsInWords({ limit }, { attempts_left: left }) {
 }
 
 /**
- * Return the points that count in words, and the best ones if they are more.
+ * Return in words the points that count, and the points of the best attempt if these are more.
  *
  * @param {Pick<Api.OwnExercise, "points" | "earned" | "best">} exercise
  */
@@ -91,7 +91,7 @@ export function pointsInWords({ points: most, earned, best }) {
 }
 
 /**
- * Return how many hints the learner has taken in words, and what they cost the next attempt.
+ * Return in words how many hints the learner has taken, and how many points they cost the next attempt.
  *
  * @param {Pick<Api.OwnExercise, "points" | "hints">} exercise
  */
@@ -108,8 +108,8 @@ export function hintsInWords({ points, hints = [] }) {
 }
 
 /**
- * Return the name of an attempt: its number in the assignment. The service numbers the attempts at the exercise, also in
- * other assignments.
+ * Return the name of an attempt: its number in the assignment. (The service's numbers also count attempts in other
+ * assignments.)
  *
  * @param {Pick<Api.OwnExercise, "attempts">} exercise
  * @param {string} id
@@ -121,7 +121,7 @@ export function attemptName({ attempts }, id) {
 }
 
 /**
- * Return the points of an attempt in words, of those that the exercise has in the assignment.
+ * Return in words the points of an attempt, scaled to the points of the exercise in the assignment.
  *
  * @param {Pick<Api.Attempt, "points" | "max_points" | "is_late" | "hint_points">} attempt
  * @param {Pick<Api.OwnExercise, "points">} exercise
@@ -144,7 +144,7 @@ export function attemptPoints(
 const percent = (share) => `${number(100 * share)} %`;
 
 /**
- * Return what is told of a hand-in that the service refuses. If an answer was lost before, it may have been recorded.
+ * Return the sentence about a refused hand-in. If an earlier response was lost, the hand-in may have been recorded.
  *
  * @param {string} reason
  * @param {boolean} mayBeRecorded

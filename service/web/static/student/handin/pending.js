@@ -1,5 +1,5 @@
-// A hand-in that the service has not confirmed yet. It is kept in the browser, so that it is sent again after a reload
-// with the same key: the service then records it once.
+// A hand-in that the service has not confirmed yet. The browser keeps it, to send it again after a reload. It then has
+// the same key, so that the service records it only once.
 
 const LONGEST_PAUSE = 30;
 
@@ -44,14 +44,14 @@ export class PendingHandIn {
     try {
       localStorage.setItem(this.name, JSON.stringify(pending));
     } catch {
-      // Without storage, a reload forgets it.
+      // Without storage, a reload forgets the hand-in.
     }
   }
 
-  /** Forget the hand-in with this key; that of another tab stays. @param {string} key */
+  /** Forget the hand-in with this key, but no hand-in of another tab. @param {string} key */
   clear(key) {
     const isStored = this.get()?.key === key;
-    // Also if another tab has saved its own: what is confirmed must never be sent as pending again.
+    // A confirmed hand-in must never be sent again, even if another tab has stored its own hand-in.
     if (this.#inMemory?.key === key) this.#inMemory = null;
     if (!isStored) return;
     try {

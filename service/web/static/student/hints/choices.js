@@ -10,7 +10,7 @@ const COLUMNS = /** @type {const} */ (["a", "alpha", "d", "theta"]);
 const HEADS = { a: "a", alpha: "α", d: "d", theta: "θ" };
 
 /**
- * Add a button for other choices to a right table, until the answer changes.
+ * Add a button for other choices of frames to a correct table. It goes away when the answer changes.
  *
  * @param {Front.HintHost} host
  * @param {Front.PartView} view

@@ -1,6 +1,6 @@
-// Hints on demand: at each message on a mistake a button, which shows what to look at, then the rule with its picture,
-// then the rule on this row. Between two steps, the student changes the answer and checks it again. At a report on
-// handed-in answers, the service records each step, and it may have a price.
+// Hints on demand: each message about a mistake has a button. It shows what to look at, then the rule with a picture,
+// then the rule for this row. Between two steps, the student changes the answer and checks it again. For submitted
+// answers, the service records each step, and a step may have a price.
 
 import { h, visible } from "../../shared/dom.js";
 import { priceInWords, pricesOf, tryFirst } from "./prices.js";
@@ -13,7 +13,7 @@ const STYLE = new URL("./hints.css", import.meta.url).href;
 const STEPS = 3;
 const UNREAD = ["unreadable", "missing"];
 
-/** The steps of the hints at a place: `tried` are the answers for which the last one was given. */
+/** The hints that were shown at a place; `tried` are the answers to which the last hint was given. */
 /** @typedef {{ steps: Api.Hint[], tried: string }} Had */
 
 /** @type {WeakMap<Api.Exercise, Map<string, Had>>} */
@@ -44,7 +44,7 @@ export function offerHints(host, parts, report, attempt = "") {
     if (!isFree && !prices) continue;
     const offered = new Set();
     for (const { element, feedback, place } of view.told) {
-      // After another wrong answer to a cell, its message may be another one: the hints go on.
+      // Another wrong answer in a cell may have another message. The hints at this cell continue.
       const key = JSON.stringify([part.part, place.row, place.cell]);
       if (!hasHints(feedback, verdictAt(part, place)) || offered.has(key)) continue;
       offered.add(key);
@@ -57,7 +57,7 @@ export function offerHints(host, parts, report, attempt = "") {
 }
 
 /**
- * True if a message is on a mistake: not on reading, and not on an empty cell.
+ * True if a message is about a mistake, not about an unreadable or empty cell.
  *
  * @param {Api.Feedback} feedback
  * @param {Api.Verdict} verdict
@@ -117,7 +117,7 @@ class HintBox {
     this.note.textContent = isOpen ? tryFirst(this.prices) : "";
   }
 
-  /** @param {Api.Hint} hint @param {boolean} isNew the rule is not that of the step before */
+  /** @param {Api.Hint} hint @param {boolean} isNew true if the step before has another rule */
   #step({ title, text, picture, lesson }, isNew) {
     return h(
       "li",
@@ -159,7 +159,7 @@ class HintBox {
       this.had.steps.push(hint);
       this.had.tried = JSON.stringify(this.answered);
       this.#show();
-      // The button is gone: the reader goes on at the hint.
+      // The button is gone, so move the focus to the hint.
       /** @type {HTMLElement | null} */ (this.list.lastElementChild)?.focus();
     } catch (error) {
       this.note.textContent = visible(error.message);

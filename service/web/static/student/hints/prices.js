@@ -1,10 +1,10 @@
-// The prices of hints at a report on handed-in answers.
+// The prices of hints at a report on submitted answers.
 
 import { number } from "../../shared/dom.js";
 import { worded } from "../../shared/words/words.js";
 
 /**
- * Return what the hints at the report of an attempt cost, or null if it has none.
+ * Return the prices of the hints at the report on an attempt, or null if these hints have no prices.
  *
  * @param {Front.HintHost["handIn"]} handIn
  * @param {string} attempt
@@ -17,7 +17,7 @@ export function pricesOf(handIn, attempt) {
 }
 
 /**
- * Return the price of a step in words; an empty text if it costs nothing.
+ * Return the price of a step in words; an empty text if the step costs nothing.
  *
  * @param {Front.HintPrices} offer
  * @param {Front.Topic & { part: string }} topic

@@ -27,7 +27,7 @@ export function offerSolution(host, parts, report) {
   if (handIn ? !handIn.own.exercise.shows_solution : !isFull) return;
   const note = h("p", { class: "quiet", role: "status" });
   const offer = h("div", { class: "choices solution-beside" });
-  // In the page, above the bar: the bar itself covers the page.
+  // The solution is in the page above the bar, because the bar covers the page.
   const place = h("section", { class: "card choices solution-beside" });
   const show = async () => {
     try {
@@ -59,7 +59,7 @@ export function offerSolution(host, parts, report) {
 }
 
 /**
- * Return the answers to each part beside the model's.
+ * Return elements with the student's answer to each part beside the model answer.
  *
  * @param {Api.Exercise | null} exercise
  * @param {Api.PartSolution[]} model
@@ -108,7 +108,7 @@ function plain(answer) {
 }
 
 /**
- * Return the student's table and the model's for each grid; entries that differ are marked.
+ * Return the student's table and the model table for each grid, with marks on entries that differ.
  *
  * @param {Front.Layout} layout
  * @param {string[]} mine
@@ -131,7 +131,7 @@ function pairs({ grids }, mine, theirs, symbols) {
 }
 
 /**
- * Return the table of a grid, with brackets in place of heads if it is a matrix.
+ * Return the table of a grid; a matrix has brackets instead of headings.
  *
  * @param {Front.Grid} grid
  * @param {string[]} cells
