@@ -346,7 +346,7 @@ export class PartView {
     return this.cells.filter(isAt);
   }
 
-  /** Return the first cell that is wrong, or else the first that is missing. @returns {Front.PartCell | null} */
+  /** Return the first wrong cell, or, if `isMissing`, the first missing cell. @returns {Front.PartCell | null} */
   firstSlip(isMissing = false) {
     const verdicts = isMissing ? ["missing"] : ["incorrect", "partial", "unreadable"];
     const isSlip = (/** @type {Front.PartCell} */ cell) => verdicts.includes(cell.element.dataset.verdict ?? "");

@@ -27,7 +27,7 @@ export class Previewer {
   }
 
   /**
-   * Request how a cell's text is read. The cell's `understood` gets the answer, unless the text has changed since.
+   * Request how a cell's text is read. The cell's `understood` gets the reading, unless the text has changed since.
    *
    * @param {Front.PartCell} cell
    */
@@ -41,11 +41,11 @@ export class Previewer {
     this.#waiting.set(cell, text);
     clearTimeout(this.#timer);
     // Cells that change together, as in a pasted table, are sent together. A timer would wait until the
-    // browser has drawn the typed text. While a request is running, the next ones wait.
+    // browser has drawn the typed text. Other cells wait while a request is running.
     queueMicrotask(() => this.#send());
   }
 
-  /** True if an answer is still to come. */
+  /** True if a response is still to come. */
   get busy() {
     return this.#busy || this.#waiting.size > 0;
   }

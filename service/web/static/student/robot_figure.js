@@ -14,7 +14,7 @@ export class RobotFigure {
   #drawn = "";
 
   /**
-   * The 3D view gets `host`. `shown` is called when the view opens or closes, `failed` if it cannot be loaded.
+   * The 3D view gets `host`. `shown` is called when the view opens or closes, `failed` if the view cannot be loaded.
    *
    * @param {() => string} address of the drawing
    * @param {string} title

@@ -14,7 +14,7 @@ const HEAD = 9;
 const ARROW = 0.17;
 const PIECES = 20;
 const SMALL = 1e-9;
-// The direction of view: from the front, a little from the right and from above.
+// The viewing direction: from the front, a little from the right and from above.
 const [AZIMUTH, ELEVATION] = [-0.5, 0.36];
 const RIGHT = [-Math.sin(AZIMUTH), Math.cos(AZIMUTH), 0];
 const UP = [
@@ -78,11 +78,11 @@ function arrows(frame, look, name) {
 export class ArmPicture {
   /** @type {Api.Convention} */
   #convention = "standard";
-  /** The number of the move that the caption tells. */
+  /** The number of the move that the caption describes. */
   #told = 0;
 
   /**
-   * `id` is the screen; `announce` tells screen readers where the frame is.
+   * `id` is the id of the screen.
    *
    * @param {string} id
    * @param {HTMLElement} element
@@ -104,7 +104,7 @@ export class ArmPicture {
     return ROWS[this.id]?.[this.#convention];
   }
 
-  /** The moves that the screen plays: all four, or the one of its number. @returns {[number, number]} */
+  /** The moves that the screen plays: all four, or only the move of its parameter. @returns {[number, number]} */
   get #range() {
     if (this.id === "table") return [0, 4];
     const i = moves(this.#convention, this.#row).findIndex(({ parameter }) => parameter === this.id);
@@ -138,7 +138,7 @@ export class ArmPicture {
     return undefined;
   }
 
-  /** Draw, and tell each move when it begins. */
+  /** Draw the picture, and change the caption when a move begins. */
   #moved() {
     this.#draw();
     if (this.#move !== this.#told) this.#tell();
@@ -154,7 +154,7 @@ export class ArmPicture {
     this.#tell();
   }
 
-  /** Say what the picture shows. */
+  /** Write the caption, which says what the picture shows. */
   #tell() {
     const [row, at] = [this.#row, this.playback.at];
     this.#told = this.#move;
@@ -168,7 +168,7 @@ export class ArmPicture {
     } else {
       const [convention, all] = [this.#convention, moves(this.#convention, row)];
       const caption = this.id === "table" ? captionText : captionWithoutAmount;
-      // The amount is what the screen asks for.
+      // Except in the last screen, the caption omits the amount of the move, because the screen asks for it.
       this.caption.textContent = caption({ row: row + 1, at, moves: all, convention, unit: "m" });
     }
     const arm = worded("An arm: a column with joint 1, link 1 to the side, joint 2, and link 2 up to the tip.");
@@ -183,7 +183,7 @@ export class ArmPicture {
       line([gone(point, along, i ? -0.2 : -0.62), gone(point, along, i ? 0.3 : 0.36)], "axis")
     );
     parts.push(line([foot, top, joint, tip], "arm"), ...[foot, top, joint, tip].map((each) => this.#dot(each)));
-    // The words lie above the arm: in some languages they are long.
+    // The names of the axes are above the arm, because they are long in some languages.
     parts.push(
       ...axes().map(([point, along], i) => {
         const name = worded("axis of joint {joint}", { joint: i + 1 });
@@ -223,7 +223,7 @@ export class ArmPicture {
     return s("circle", { class: "joint", cx: cx.toFixed(1), cy: cy.toFixed(1), r: 6 });
   }
 
-  /** Return the moving frame, and the way of each move so far. @param {Front.Frame} start @param {number} row */
+  /** Return the moving frame, and the path of each move so far. @param {Front.Frame} start @param {number} row */
   #moving(start, row) {
     const all = moves(this.#convention, row);
     const [from] = this.#range;

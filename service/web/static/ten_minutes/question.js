@@ -1,4 +1,4 @@
-// A question of "DH in ten minutes": the service grades the answer, and says what is wrong with it.
+// A question of "DH in ten minutes": the service grades the answer, and explains the mistakes in it.
 
 import { h } from "../shared/dom.js";
 import { ARM, ROWS } from "./tour_robot.js";
@@ -6,7 +6,7 @@ import { typesetMessage } from "../typeset/names.js";
 import { worded } from "../shared/words/words.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
-/** What each length of the picture is. @type {Record<string, string>} */
+/** The meaning of each length in the picture. @type {Record<string, string>} */
 const LENGTHS = {
   h: worded("h is the height of the column."),
   w: worded("w is the length of link 1."),
@@ -19,7 +19,7 @@ export class Question {
   #turn = 0;
 
   /**
-   * `solved` is called when the answer is right.
+   * `solved` is called when the answer is correct.
    *
    * @param {HTMLFormElement} form
    * @param {Front.Service} service
@@ -47,12 +47,12 @@ export class Question {
   get #why() {
     const all = [...(this.form.closest(".screen")?.querySelectorAll(".why") ?? [])];
     const found = all.find((each) => !each.matches(".standard, .modified") || each.matches(`.${this.#convention}`));
-    // The name of the convention is for readers without scripts.
+    // Omit the name of the convention, which is for readers without scripts.
     return [...found?.childNodes ?? []].filter((each) => each.nodeName !== "B").map((each) => each.textContent).join("")
       .trim();
   }
 
-  /** Ask in another convention. @param {Api.Convention} convention @param {boolean} isSolved */
+  /** Ask the question in another convention. @param {Api.Convention} convention @param {boolean} isSolved */
   ask(convention, isSolved) {
     this.#convention = convention;
     this.#turn += 1;
@@ -108,7 +108,7 @@ export class Question {
     const written = [...this.form.querySelectorAll("input")];
     const choice = written.find(({ checked }) => checked)?.dataset.whyNot;
     if (choice) texts.push(choice);
-    // A length that belongs elsewhere.
+    // Explain a length that belongs into another cell.
     for (const { label, verdict } of found) {
       const length = LENGTHS[written[cells.indexOf(label)]?.value.trim()];
       if (verdict === "incorrect" && length) texts.push(length);

@@ -1,4 +1,4 @@
-// The button that opens the arm of "DH in ten minutes" in 3D, where each row can be played. It loads 3D by demand.
+// The button that opens the arm of "DH in ten minutes" in 3D, where each row can be played. It loads 3D on demand.
 
 import { h } from "../shared/dom.js";
 import { ARM } from "./tour_robot.js";
@@ -60,7 +60,7 @@ export class SpaceView {
     return this.#write();
   }
 
-  /** Show the arm in a convention; an open view is closed. @param {Api.Convention} convention */
+  /** Prepare the arm in a convention; close an open view. @param {Api.Convention} convention */
   show(convention) {
     this.#convention = convention;
     this.close();

@@ -161,7 +161,7 @@ function choose(convention) {
   mark();
 }
 
-/** Show the screen of the place that the address names. @param {boolean} isMove */
+/** Show the screen that contains the place in the address. @param {boolean} isMove */
 function follow(isMove) {
   const place = document.getElementById(location.hash.slice(1));
   const current = screens.find((each) => each.contains(place)) ?? screens[0];

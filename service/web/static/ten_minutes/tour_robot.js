@@ -1,4 +1,4 @@
-// The arm of "DH in ten minutes": a column and two links, its frames, and what each screen shows and asks.
+// The arm of "DH in ten minutes": a column and two links, its frames, and the row of its table for each screen.
 
 import { frameAt, movesOf } from "../robot/rows/row_moves.js";
 
@@ -10,7 +10,7 @@ const [Q1, Q2] = [QUARTER / 3, QUARTER / 2];
 const FLOOR = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]];
 
 /**
- * The exercise that grades the answers, its rows as texts (a, alpha, d, theta) and as numbers, and the labels of rows.
+ * The exercise that grades the answers, the labels of its rows, and the rows (a, alpha, d, theta) as texts and numbers.
  *
  * @type {Record<Api.Convention, { exercise: string, labels: string[], texts: string[][], values: number[][] }>}
  */
@@ -29,7 +29,7 @@ export const ARM = {
   },
 };
 
-/** The row (from 0) whose number each screen is about. @type {Record<string, Record<Api.Convention, number>>} */
+/** The index (from 0) of the row that each screen is about. @type {Record<string, Record<Api.Convention, number>>} */
 export const ROWS = {
   theta: { standard: 0, modified: 0 },
   d: { standard: 0, modified: 0 },
@@ -49,7 +49,7 @@ export function frames(convention) {
   return found;
 }
 
-/** The foot and the top of the column, joint 2 and the tip. @returns {number[][]} */
+/** The points of the arm: the foot and the top of the column, joint 2, and the tip. @returns {number[][]} */
 export function corners() {
   const [, joint, tip] = frames("standard").map((frame) => frame.map((row) => row[3]));
   return [[0, 0, 0], [0, 0, H], joint, tip];

@@ -1,4 +1,4 @@
-// The report on a class: local files or an archive of them, graded by the service and shown in a frame.
+// The report on a class: the service grades local files or an archive, and a frame shows the report.
 
 import { byId, h, visible, whenChosen } from "../shared/dom.js";
 import { documentOf } from "../shared/markup.js";
@@ -6,11 +6,11 @@ import { language, worded, wordedFor } from "../shared/words/words.js";
 import { post, refusal } from "./tutor_service.js";
 import { archiveOf, bytesOf, entries, textOf } from "./zip.js";
 
-// The service's limits, in bytes, on a packed body and on one file. Of a larger file only the name is sent.
+// The service's limits, in bytes, on a packed body and on one file. For a larger file, only the name is sent.
 const MOST_PACKED = 256 * 1024;
 const LARGEST_FILE = 256 * 1024;
 const MOST_FILES = 2000;
-// The limits, in bytes, on a chosen archive, and on all that is unpacked.
+// The limits, in bytes, on a chosen archive, and on all its unpacked files together.
 const LARGEST_ARCHIVE = 200 * 1024 * 1024;
 const MOST_UNPACKED = 8 * 1024 * 1024;
 const INDEX = "index.html";
@@ -49,7 +49,7 @@ async function showParts() {
 }
 
 /**
- * A file of a student. `read` returns its bytes, or null if they are more than `most`.
+ * A file of a student. `read` returns the file's bytes, or null if there are more than `most` bytes.
  *
  * @typedef {{ path: string, read: (most: number) => Promise<Uint8Array<ArrayBuffer> | null> }} ClassFile
  */
@@ -59,13 +59,13 @@ class UnusableFilesError extends Error {}
 
 /** @param {File} file @returns {ClassFile} */
 function chosenFile(file) {
-  // Without the name of the chosen folder itself.
+  // Omit the name of the chosen folder.
   const path = file.webkitRelativePath.split("/").slice(1).join("/") || file.name;
   return { path, read: async (most) => file.size > most ? null : new Uint8Array(await file.arrayBuffer()) };
 }
 
 /**
- * Return the files in an archive. A folder that contains all of them and has the archive's name is left out.
+ * Return the files in an archive. If one folder contains all files and has the archive's name, omit this folder.
  *
  * @param {File} file
  * @returns {Promise<ClassFile[]>}
@@ -92,7 +92,7 @@ async function unpacked(file) {
 }
 
 /**
- * Return the files as the service takes them: as text if they are UTF-8, otherwise as bytes.
+ * Return the files in the form that the service takes: as text if they are UTF-8, otherwise as bytes.
  *
  * @param {ClassFile[]} files
  */
@@ -233,7 +233,7 @@ exercise.addEventListener("change", showParts);
 for (const id of ["zip", "folder", "files"]) {
   const input = byId(id, HTMLInputElement);
   whenChosen(input, (files) => {
-    // The same files can be chosen again.
+    // Empty the field, so that the tutor can choose the same files again.
     input.value = "";
     grade(files);
   });

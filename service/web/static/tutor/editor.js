@@ -123,7 +123,7 @@ function showPreview({ title, source, statement_html: statement, parts, figure }
   );
 }
 
-/** Show the real form with the text as it is now. Answers stay when it is opened again. */
+/** Show the students' form for the present text. Answers stay when the form is opened again. */
 async function tryOut() {
   tried.textContent = "";
   try {

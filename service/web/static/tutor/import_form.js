@@ -4,11 +4,11 @@ import { byId, h, visible, whenChosen } from "../shared/dom.js";
 import { worded } from "../shared/words/words.js";
 import { post, refusal } from "./tutor_service.js";
 
-// The most characters that the service takes, with room for the other fields and for escapes.
+// The maximum number of characters that the page sends: less than the service takes, for other fields and escapes.
 const MOST = 200_000;
 
 /**
- * Return an exercise id made from a file's name, or "" if it has no letters.
+ * Return an exercise id made from a file's name, or "" if the name has no letters or digits.
  *
  * @param {string} name
  */
@@ -18,8 +18,8 @@ export function idOf(name) {
 }
 
 /**
- * Let the form call `written` with the text of each new exercise. `named` takes a proposal for its id, and `id`
- * returns the id in the editor.
+ * Let the form call `written` with the text of each new exercise. `named` takes a proposed id for the exercise, and
+ * `id` returns the id in the editor.
  *
  * @param {{ id: () => string, named: (id: string) => void, written: (text: string) => void }} editor
  */

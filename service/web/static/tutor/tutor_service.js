@@ -3,7 +3,7 @@
 import { language, worded } from "../shared/words/words.js";
 
 const HOME = new URL("../", import.meta.url);
-// How often a request is repeated if the service is busy, and the longest pause before that in seconds.
+// How often a request is repeated if the service is busy, and the longest pause between two tries in seconds.
 const TRIES = 5;
 const LONGEST_PAUSE = 10;
 
@@ -15,7 +15,7 @@ const LONGEST_PAUSE = 10;
 export const address = (path) => new URL(path, HOME).href;
 
 /**
- * Post a body and return the response. Throws an Error with the reason if it is refused.
+ * Post a body and return the response. Throws an Error with the reason if the service refuses the request.
  *
  * @param {string} path
  * @param {BodyInit} body
@@ -67,7 +67,7 @@ export async function sendPatiently(path, body) {
 /** @param {number} seconds @returns {Promise<void>} */
 export const pause = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
 
-/** The service did not do what was asked. `pause` is the number of seconds until another try, or 0. */
+/** The service refused a request. `pause` is the number of seconds until another try, or 0. */
 class Refusal extends Error {
   /** @param {string} reason @param {number} pause @param {number} status */
   constructor(reason, pause, status) {

@@ -1,4 +1,4 @@
-// Reads ZIP archives, those of the service and those of learning platforms, and writes parts of one.
+// Reads ZIP archives from the service and from learning platforms, and writes archives with some of the entries.
 
 const END = 0x06054b50;
 const FILE = 0x02014b50;
@@ -10,7 +10,7 @@ const STORED = 0;
 const DEFLATED = 8;
 
 /**
- * Return the entries of an archive by their names, without folders. Throws an Error if it is damaged.
+ * Return the entries of an archive by their names, without folders. Throws an Error if the archive is damaged.
  *
  * @param {ArrayBuffer} buffer
  * @returns {Map<string, Front.ZipEntry>}
@@ -26,7 +26,7 @@ export function entries(buffer) {
     const [nameLength, extra, comment] = [28, 30, 32].map((offset) => view.getUint16(at + offset, true));
     const next = at + 46 + nameLength + extra + comment;
     const [size, local] = [20, 42].map((offset) => view.getUint32(at + offset, true));
-    // The extra field of the local header may have another length.
+    // The extra field in the local header may differ in length from that in the directory.
     const from = local + 30 + view.getUint16(local + 26, true) + view.getUint16(local + 28, true);
     if (next > end || from + size > end) throw new Error("The ZIP archive is damaged.");
     const name = text(new Uint8Array(buffer, at + 46, nameLength), (flags & IN_UTF_8) !== 0);
@@ -64,7 +64,7 @@ function text(name, isUtf8) {
 }
 
 /**
- * Return the bytes of an entry, or null if there are more than `most`. No more than that is unpacked.
+ * Return the bytes of an entry, or null if there are more than `most`. Unpacking stops after `most` bytes.
  *
  * @param {ArrayBuffer} buffer
  * @param {Front.ZipEntry} entry

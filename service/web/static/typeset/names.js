@@ -1,5 +1,5 @@
 // Typesets the names in a text: theta1 becomes θ with the index 1. service/typeset/names.py has the same rules and
-// says what they are; the cases of tests/typeset/names.json hold for both.
+// describes them; the cases in tests/typeset/names.json hold for both.
 
 import { h, message } from "../shared/dom.js";
 
@@ -35,7 +35,7 @@ const SIGN = new RegExp(
 /** @typedef {{ stem: string, below: string, above: string }} Name */
 
 /**
- * Return a text as texts and `<math>` elements. `symbols` are the names that the exercise declares.
+ * Return a text in pieces: plain texts and `<math>` elements. `symbols` are the names that the exercise declares.
  *
  * @param {string} text
  * @param {Set<string>} [symbols]
@@ -96,7 +96,7 @@ export function pieces(text, symbols) {
 }
 
 /**
- * Return the name that a match is, or null if it is a word.
+ * Return the name in a match, or null if the match is a word.
  *
  * @param {RegExpMatchArray} match
  * @param {Set<string>} symbols
@@ -136,7 +136,7 @@ function identifier(text) {
 }
 
 /**
- * Return an element of MathML with children; an object among them has its attributes.
+ * Return an element of MathML with children; an object among the arguments has the element's attributes.
  *
  * @param {string} tag
  * @param {...(string | Element | Record<string, string>)} parts

@@ -50,7 +50,7 @@ class ChoicesBox {
     this.element = h("div", { class: "choices" }, this.button, this.note, this.list);
     const close = () => this.#remove();
     this.element.addEventListener("close", close, { once: true });
-    // Another answer has other choices.
+    // After a change of the answer, other choices are valid.
     for (const { input } of part.cells) input.addEventListener("input", close, { once: true });
   }
 

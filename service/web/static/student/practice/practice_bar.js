@@ -54,7 +54,7 @@ export class PracticeBar {
   }
 
   /**
-   * Load the next robot of a level into the element; the first one has the level of the attribute `practice`.
+   * Load the next robot of a level into the element. Without a level, the attribute `practice` has the level.
    *
    * @param {number} [level]
    */
@@ -95,7 +95,7 @@ export class PracticeBar {
     this.show();
   }
 
-  /** Show the level, the convention and the marks of the robot in the element. Other exercises have no bar. */
+  /** Show the level and the convention of the robot in the element, and what is solved. Other exercises have no bar. */
   show() {
     const id = this.host.getAttribute("exercise");
     const robot = robotOf(id);

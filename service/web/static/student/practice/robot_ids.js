@@ -23,7 +23,7 @@ export function inConvention(id, convention) {
   return id.replace(/-(standard|modified)~/, `-${convention}~`);
 }
 
-// The situation that a slip in a column is about.
+// The situation of a robot that a slip in a column concerns.
 /** @type {Record<string, Api.Situation>} */
 const SITUATIONS = { a: "offset", d: "offset", theta: "turned" };
 

@@ -1,10 +1,10 @@
-// The situations that went wrong in practice, kept in the browser until they have gone right twice.
+// The situations in which the student made slips in practice. The browser keeps each one until it was right twice.
 
 const NAME = "dh-grader:practice-slips";
 const TIMES = 2;
 const SITUATIONS = /** @type {const} */ (["offset", "sliding", "parallel", "turned"]);
 
-/** How often each situation must still go right, and the one for which a robot was dealt. */
+/** How often each situation must still be right, and the situation for which a robot was chosen, by the robot's id. */
 /** @typedef {{ left: Partial<Record<Api.Situation, number>>, dealt: Record<string, Api.Situation> }} Kept */
 
 /** @param {string} base the address of the service @returns {Kept} */
@@ -28,7 +28,7 @@ function save(base, kept) {
 }
 
 /**
- * Return the situation that the next robot should have: the one that must go right most often; null if there is none.
+ * Return the situation that the next robot should have: the one that must still be right most often; null without any.
  *
  * @param {string} base
  * @returns {Api.Situation | null}
@@ -41,13 +41,13 @@ export function favoured(base) {
   return first ?? null;
 }
 
-/** Keep for which situation a robot was dealt. @param {string} base @param {string} id @param {Api.Situation | null} situation */
+/** Store the situation for which a robot was chosen. @param {string} base @param {string} id @param {Api.Situation | null} situation */
 export function noteDealt(base, id, situation) {
   save(base, { ...load(base), dealt: situation ? { [id]: situation } : {} });
 }
 
 /**
- * Keep what went wrong in a robot, or, if nothing did, that the situation for which it was dealt went right.
+ * Store the situation of a slip. Without a slip, the situation for which the robot was chosen was right once.
  *
  * @param {string} base
  * @param {string} id

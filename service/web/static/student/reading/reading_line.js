@@ -7,7 +7,7 @@ import { worded } from "../../shared/words/words.js";
 
 // The reading of a longer text may be cut off in its cell.
 const LONG = 40;
-/** What the columns of a kind of part ask for. @type {Record<string, string>} */
+/** Instructions for the columns of a part, by the kind of part. @type {Record<string, string>} */
 const GUIDES = {
   frames: worded(
     "Axis: the number of a joint. z and x: a direction, such as +y or [0, 1, 0]. o: the origin in the base frame. All joint variables are 0.",
@@ -36,7 +36,7 @@ export class ReadingLine {
     this.announce = announce;
   }
 
-  /** Show how a cell is read from now on. @param {Front.PartCell} cell */
+  /** From now on, show how this cell is read. @param {Front.PartCell} cell */
   enter(cell) {
     this.#current = cell;
     this.#show(cell);
@@ -70,14 +70,14 @@ export class ReadingLine {
       note,
     ) => [" ", h("span", { class: "quiet" }, ...typesetMessage(note.message, this.symbols))]) ??
       [];
-    // The cell itself shows how it is read.
+    // A cell with a short text shows itself how it is read.
     const isLong = cell.text.length > LONG;
     if (!isLong && !notes.length) return this.element.replaceChildren(...help(this.part));
     const whole = isLong ? mathml(reading.mathml) ?? visible(reading.text) : "";
     return this.element.replaceChildren(name, whole, ...notes);
   }
 
-  /** Say something else until the next cell is entered. @param {string} text @param {Api.PreviewNote[]} [notes] */
+  /** Show a text until the student enters the next cell. @param {string} text @param {Api.PreviewNote[]} [notes] */
   say(text, notes = []) {
     this.element.classList.remove("unread");
     this.element.replaceChildren(

@@ -1,16 +1,16 @@
-// The points that a part has lost, and where, as list items.
+// List items that say how many points a part has lost, and at which places.
 
 import { h, number } from "../../shared/dom.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { matrixOf } from "./places.js";
 import { severityName } from "../../shared/words/phrases.js";
 
-// A message of the report says this already.
+// The codes of losses about which the report already has a message.
 const NOTHING_READ = new Set(["no_answer", "not_read"]);
 
 /**
  * Return the items below the messages of a part: its lost points with their places, and why a row of zeros earned
- * little. A report of an older version has none.
+ * little. Reports of older versions have no such items.
  *
  * @param {Api.PartReport} report
  * @param {Set<string>} [symbols] that the exercise declares
@@ -23,7 +23,7 @@ export function lostItems({ lost = [], little_worth: little }, symbols) {
 }
 
 /**
- * Return the lines of lost points, each as the sum and the places. A loss of the whole part is a line of its own.
+ * Return the lines about lost points: each has a sum of points and places. A loss for the whole part has its own line.
  *
  * @param {Api.LostPoints[]} lost
  * @returns {[string, string][]}
@@ -39,7 +39,7 @@ export function lostLines(lost) {
 }
 
 /**
- * Return one entry for each matrix in place of those of its rows.
+ * Return the losses; for each matrix, one entry replaces the entries of the matrix's rows.
  *
  * @param {Api.LostPoints[]} lost
  */

@@ -1,4 +1,4 @@
-// The result of a part in its header: verdict and points, and whether the answer has changed since.
+// The result in the header of a part: verdict, points, and whether the answer has changed since the report.
 
 import { h } from "../../shared/dom.js";
 import { earnedInWords, mostInWords, verdictName } from "../../shared/words/phrases.js";
@@ -17,7 +17,7 @@ export class PartResult {
     this.elements = [this.badge, this.since, this.worth];
   }
 
-  /** The verdict, if the answer has not changed since. */
+  /** The verdict, unless the answer has changed since the report. */
   get verdict() {
     return this.since.hidden ? this.#verdict : null;
   }
@@ -32,7 +32,7 @@ export class PartResult {
     this.worth.textContent = report ? earnedInWords(report.points, report.max_points) : mostInWords(this.part.points);
   }
 
-  /** Say that the result is of the answer before a change. Return true if there is a result. */
+  /** Say that the result is for the answer before the change. Return true if there is a result. */
   outdated() {
     this.since.hidden = !this.#verdict;
     return Boolean(this.#verdict);

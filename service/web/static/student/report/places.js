@@ -9,7 +9,7 @@ const OF_MATRIX = /^(?<matrix>.+)\.(?<row>\d+)$/;
 
 /**
  * Return places in words, such as "row 1 d, θ; rows 2, 3", "A2 rows 1, 3 columns 1, 2" or "A3". If the places include
- * all cells of a row, or all rows of a matrix but the last, only the row or the matrix is named.
+ * all cells of a row, only the row is named; if they include all rows of a matrix (or all but one), only the matrix.
  *
  * @param {Api.Place[]} places
  * @param {Api.RowReport[]} [rows] of the part

@@ -1,4 +1,4 @@
-// A given table with a slip: each cell is a button that marks it as wrong, each row's number marks the whole row.
+// A given table with a slip: each cell is a button that marks the cell as wrong, each row number marks the whole row.
 
 import { h } from "../../shared/dom.js";
 import { SIGNS } from "../../shared/cell.js";
@@ -89,7 +89,7 @@ export class SlipMarks {
     return !this.value && texts.every((text) => text === "");
   }
 
-  /** The marked cells as they are posted: "2.alpha, 3.d". */
+  /** The marked cells as the answer names them: "2.alpha, 3.d". */
   get value() {
     return [...this.#buttons].filter(([, button]) => isPressed(button)).map(([place]) => place).join(", ");
   }
@@ -99,7 +99,7 @@ export class SlipMarks {
     for (const [place, button] of this.#buttons) press(button, places.has(place));
   }
 
-  /** Show whether the marks are right; null removes it. @param {Api.Verdict | null} verdict */
+  /** Show the verdict on the marks; null removes the verdict. @param {Api.Verdict | null} verdict */
   show(verdict) {
     if (verdict) this.element.dataset.verdict = verdict;
     else delete this.element.dataset.verdict;
@@ -109,7 +109,7 @@ export class SlipMarks {
     this.#sign.replaceChildren(...signs);
   }
 
-  /** Let nobody change the marks. */
+  /** Prevent changes of the marks. */
   lock() {
     for (const button of this.element.querySelectorAll("button")) button.disabled = true;
   }

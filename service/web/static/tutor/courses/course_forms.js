@@ -57,7 +57,7 @@ function fieldsOf(row) {
   return [exercise, points];
 }
 
-// Where the page finds after its reload what a form has done.
+// The storage key of the message about a form, which the page shows after its reload.
 const TOLD = "dh-grader:told";
 
 // The service takes 256 KiB and 20,000 commas at once. A character is up to three bytes; quotes are escaped.
@@ -65,8 +65,8 @@ const MOST = 60_000;
 const MOST_COMMAS = 15_000;
 
 /**
- * Return a class list in pieces that are short enough to be sent. Each begins with the headings, and has an empty
- * line for each line of earlier pieces, so that messages about it name the right line.
+ * Return a class list in pieces that are short enough to be sent. Each piece begins with the headings, and has an
+ * empty line for each line of earlier pieces, so that messages about the piece name the correct line.
  *
  * @param {string} csv
  */
@@ -119,7 +119,7 @@ async function post(form) {
   }
 }
 
-/** Load the page again, and say there what was done. @param {string} told */
+/** Reload the page, which then shows what was done. @param {string} told */
 function reload(told) {
   try {
     if (told) sessionStorage.setItem(TOLD, told);
@@ -129,7 +129,7 @@ function reload(told) {
   location.reload();
 }
 
-/** Say at the top of the page what a form has done before the reload. */
+/** After a reload, show at the top of the page what a form has done before. */
 function tellDone() {
   try {
     const told = sessionStorage.getItem(TOLD);

@@ -1,11 +1,11 @@
-// What the forms of a course say before a request and after it.
+// The sentences of the forms of a course, before and after a request.
 
 import { worded, wordedFor } from "../../shared/words/words.js";
 
 const ID = /^[a-z0-9]+(-[a-z0-9]+)*$/u;
 
 /**
- * Return what must be corrected before a form can be sent, or "".
+ * Return sentences about the mistakes in a form, or "" if the form can be sent.
  *
  * @param {Record<string, unknown>} body
  */
@@ -19,7 +19,8 @@ export function faultsIn({ id, exercises }) {
 }
 
 /**
- * Return what a request has done, or "" if the page shows it anyway. `answers` are those of all its pieces.
+ * Return a sentence about what a request has done, or "" if the page shows it anyway. `answers` has one response for
+ * each piece of the request.
  *
  * @param {any[]} answers
  * @param {number} [now]
@@ -39,7 +40,7 @@ export function doneBy(answers, now = Date.now()) {
 /** @param {Api.CourseAssignment} assignment @param {number} now */
 function savedAssignment({ title, due, closes, extensions }, now) {
   const told = [worded("Saved: {title}.", { title })];
-  // Some learners have other dates.
+  // If some learners have other dates, the warnings may not apply to them.
   if (extensions.length) return told[0];
   if (due && !closes) told.push(worded("No late attempts are accepted, because Closes is empty."));
   const end = closes ?? due;

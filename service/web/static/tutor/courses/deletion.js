@@ -1,4 +1,4 @@
-// Deletions on the pages of courses: first the service says what would go, then a second button deletes it.
+// Deletions on the pages of courses: first the service says what would be deleted, then a second button deletes it.
 
 import { h } from "../../shared/dom.js";
 import { language, worded, wordedFor } from "../../shared/words/words.js";
@@ -6,7 +6,7 @@ import { failed, tell } from "../records/records.js";
 import { address, send } from "../tutor_service.js";
 
 /**
- * Return what a deletion deletes, in words.
+ * Return in words what a deletion deletes.
  *
  * @param {Api.DeletedData} data
  */

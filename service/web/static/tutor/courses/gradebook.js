@@ -9,7 +9,7 @@ import { worded, wordedFor } from "../../shared/words/words.js";
 const course = byId("main", HTMLElement).dataset.course ?? "";
 const state = byId("state", HTMLElement);
 const list = byId("book", HTMLElement);
-// How many learners are shown before the rest is folded.
+// The number of learners that are shown; all others are folded.
 const SHOWN = 100;
 
 /** @type {Api.Gradebook} */
@@ -19,7 +19,7 @@ let sorting = { column: -1, descending: false };
 let isWhole = false;
 /** The places of the rows in alphabetical order. @type {Map<Api.GradebookRow, number>} */
 let places = new Map();
-// The names that several learners have.
+// Names that belong to several learners.
 let shared = new Set();
 
 const path = `v1/courses/${encodeURIComponent(course)}`;
@@ -125,7 +125,7 @@ function head(text, column, more = "") {
 }
 
 /**
- * Focus the heading that has replaced the pressed one.
+ * Focus the heading that has replaced the pressed heading.
  *
  * @param {Event} event
  */

@@ -9,7 +9,7 @@ const ACCENTS = /\p{Mn}/gu;
 const plain = (text) => text.normalize("NFKD").replace(ACCENTS, "").toLowerCase();
 
 /**
- * True if one of the texts contains the wanted one. Capitals and accents do not matter.
+ * True if one of the texts contains the wanted text. Capitals and accents do not matter.
  *
  * @param {string[]} texts
  * @param {string} wanted

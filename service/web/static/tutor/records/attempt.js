@@ -11,7 +11,7 @@ const id = byId("main", HTMLElement).dataset.attempt ?? "";
 const path = `v1/attempts/${encodeURIComponent(id)}`;
 const state = byId("state", HTMLElement);
 const place = byId("attempt", HTMLElement);
-// How many of the learner's attempts are listed: the newest ones.
+// The number of the learner's newest attempts that are listed.
 const MOST_LISTED = "20";
 
 async function load() {
@@ -19,7 +19,7 @@ async function load() {
     /** @type {Api.AttemptDetail} */
     const found = await get(path);
     const { exercise: name, variant, learner } = found.attempt;
-    // The answers are about the learner's variant, which has other numbers.
+    // If there is a variant, show this variant, because the answers are about its numbers.
     const shown = variant ? `${name}~${variant}` : name;
     /** @type {Api.Exercise | null} */
     const exercise = await get(`v1/exercises/${encodeURIComponent(shown)}`).catch(nullIfRefused);
@@ -152,7 +152,7 @@ function hintInWords({ part, code, row, cell, step, price }) {
 }
 
 /**
- * Return in words which share of its report's points a late attempt earns.
+ * Return in words the share of its points that a late attempt earns.
  *
  * @param {number} share
  */
@@ -244,7 +244,7 @@ class OverrideForm {
 
   /** @param {Api.AttemptDetail} found */
   show({ attempt, overrides }) {
-    // Empty without an override, because the points of the report would be rounded here.
+    // Without an override, the field is empty, because it would round the points of the report.
     this.points.value = String(attempt.awarded ?? "");
     this.withdrawal.hidden = attempt.awarded === undefined;
     this.list.replaceChildren(...overrides.toReversed().map(override));

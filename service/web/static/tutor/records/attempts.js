@@ -25,7 +25,7 @@ const form = byId("filters", HTMLFormElement);
 const state = byId("state", HTMLElement);
 const list = byId("list", HTMLElement);
 
-// The cursors of the pages up to the current one, which are also in the address. That of the first page is empty.
+// The cursors of all pages up to the current page, which are also in the address. The first page has an empty cursor.
 let cursors = [""];
 let turn = 0;
 

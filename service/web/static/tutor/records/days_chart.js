@@ -6,10 +6,10 @@ import { worded } from "../../shared/words/words.js";
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 160;
 const HEIGHT = 28;
-// A chart of more days has several days in each bar.
+// The maximum number of bars. A chart of more days has several days in each bar.
 const MOST_BARS = 40;
 const DAY = 24 * 60 * 60 * 1000;
-// How many days the text alternative lists.
+// The maximum number of days in the text alternative.
 const MOST_SAID = 10;
 
 /** @param {string} day */
@@ -36,7 +36,7 @@ export function daysCharts(all) {
 }
 
 /**
- * Return one chart; a bar of `most` has the full height.
+ * Return one chart; a bar for the count `most` has the full height.
  *
  * @param {Record<string, number>} counts
  * @param {number[]} bars

@@ -1,4 +1,4 @@
-// A small chart of the share of learners with a misconception in their first attempt, their second one, and so on.
+// A small chart of the share of learners with a misconception in their first attempt, second attempt, and so on.
 
 import { make } from "./days_chart.js";
 import { percent } from "./records.js";

@@ -1,4 +1,4 @@
-// A recorded submission with its report, as the student saw it. It is read-only.
+// A recorded submission with its report, as the student saw them. Both are read-only.
 
 import { h, visible } from "../../shared/dom.js";
 import { cellsOf } from "../../student/handin/answer_cells.js";
@@ -57,7 +57,7 @@ class RecordedPart extends PartView {
 /** A submission with one of its reports. */
 export class RecordedReport {
   /**
-   * `exercise` is what students see of it, or null if it no longer exists; `service` reads its entries.
+   * `exercise` is the exercise as students see it, or null if it no longer exists. `service` reads entries.
    *
    * @param {Api.Exercise | null} exercise
    * @param {Submission} submission
@@ -68,7 +68,7 @@ export class RecordedReport {
     this.submission = submission;
     /** @type {() => Front.Context} */
     const context = () => ({ exercise: exercise?.id ?? "", angle_unit: submission.angle_unit ?? "radians" });
-    // What a part needs from its host.
+    // The host of the parts, with all that they need.
     /** @type {Front.PartHost} */
     this.host = {
       service,
@@ -104,7 +104,7 @@ export class RecordedReport {
     const answer = this.submission.answers?.[report.part];
     const element = view?.element ?? bare(report);
     if (view) {
-      // Filling the cells removes their marks, so the report comes afterwards.
+      // Filling the cells removes their verdicts, so show the report after that.
       view.filled ??= this.#fill(view, answer);
       view.filled.then((isFilled) => {
         view.showReport(report);
@@ -118,14 +118,14 @@ export class RecordedReport {
     return element;
   }
 
-  /** Let the rows of a table be played. @param {Api.Exercise} exercise @param {RecordedPart} view */
+  /** Add a 3D view that plays the rows of a table. @param {Api.Exercise} exercise @param {RecordedPart} view */
   #play(exercise, view) {
     if (view.part.kind !== "dh_table" || view.isEmpty || view.element.querySelector(".played-table")) return;
     view.body.append(playedTable(exercise, view, this.host));
   }
 
   /**
-   * Put the answer into its cells. Return true if it fits.
+   * Put the answer into the cells of its part. Return true if the answer fits.
    *
    * @param {RecordedPart} view
    * @param {unknown} answer
@@ -134,7 +134,7 @@ export class RecordedReport {
     const read = typeof answer === "string" ? await this.#entries(view.part.id, answer) : answer;
     const state = cellsOf(view.layout, read);
     if (state) view.restore(state);
-    // The text as it was sent is below in any case.
+    // The answer does not fit: unfold the answer as it was sent.
     else view.element.querySelector(".as-sent")?.toggleAttribute("open", true);
     return state !== null;
   }

@@ -93,13 +93,13 @@ export function startOf(day, later = 0) {
   return Number.isNaN(start.getTime()) ? "" : start.toISOString();
 }
 
-/** Return the course and the assignment in the page's address; links on their pages lead here. */
+/** Return the course and the assignment in the page's address, which links from their pages contain. */
 export function within() {
   const asked = new URLSearchParams(location.search);
   return { course: asked.get("course") ?? "", assignment: asked.get("assignment") ?? "" };
 }
 
-/** Return the course, and the span of time from the fields "since" and "until"; it includes both days. */
+/** Return the filter: course, assignment, and the time from the day in "since" to the end of the day in "until". */
 export const span = () => ({
   since: startOf(fieldOf("since").value),
   until: startOf(fieldOf("until").value, 1),
@@ -107,7 +107,7 @@ export const span = () => ({
 });
 
 /**
- * Let the export links export the attempts of a filter. Hide the links of gradebooks if no exercise is chosen.
+ * Let the export links export the attempts of a filter. Hide links for gradebooks if no exercise is chosen.
  *
  * @param {Front.Filter} filter
  */
@@ -146,7 +146,7 @@ export function tell(state, text) {
 }
 
 /**
- * Return what an empty list shows.
+ * Return the element that an empty list shows.
  *
  * @param {string} title
  * @param {string} text

@@ -5,7 +5,7 @@ import { attemptsInWords, failed, learnerName, query, span, table, tell } from "
 import { worded } from "../../shared/words/words.js";
 import { address, pause, sendPatiently } from "../tutor_service.js";
 
-// How many changes are listed.
+// The maximum number of changes that are listed.
 const MOST_SHOWN = 200;
 // Seconds to wait while other processes regrade the last attempts.
 const OTHERS = 1;
@@ -70,7 +70,7 @@ export function regradeForm(exercise, done) {
   }
 
   /**
-   * Send requests until no attempt is left. The service works for about a second on each.
+   * Send requests until no attempt is left. The service works for about a second on each request.
    *
    * @param {boolean} apply
    */
@@ -80,7 +80,7 @@ export function regradeForm(exercise, done) {
     let failures = [];
     let graded = 0;
     let cursor;
-    // On the page of a course, only its attempts.
+    // On a course's page, regrade only the attempts of this course.
     const { course } = span();
     const path = `v1/exercises/${encodeURIComponent(exercise)}/regrade${query({ course })}`;
     for (;;) {
@@ -127,7 +127,7 @@ export function regradeForm(exercise, done) {
     const rows = changed.slice(0, MOST_SHOWN).map((
       { id, learner, ordinal, reasons, counted, ...ofExercise },
     ) => {
-      // The gradebook has the points of the assignment.
+      // If an attempt counts in an assignment, show the assignment's points, as in the gradebook.
       const { before, after, max_points: most, awarded } = counted ?? ofExercise;
       return [
         h(

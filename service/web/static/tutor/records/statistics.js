@@ -1,4 +1,4 @@
-// Statistics of an exercise: right answers by part, row and cell, misconceptions by day, identical wrong answers.
+// Statistics of an exercise: correct answers by part, row and cell, misconceptions by day, identical wrong answers.
 
 import { byId, h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
@@ -29,7 +29,7 @@ const state = byId("state", HTMLElement);
 const place = byId("statistics", HTMLElement);
 // The shares at which a cell gets the next colour. The cell also shows the number.
 const BANDS = [0.25, 0.5, 0.75, 0.9];
-// How many misconceptions and groups are shown before the rest is folded.
+// The number of misconceptions and groups that are shown; all others are folded.
 const SHOWN = 12;
 
 /** @typedef {{ title: string, isList: boolean, rows: Map<string, string>, columns: Map<string, string> }} PartNames */
@@ -57,7 +57,7 @@ async function show() {
 }
 
 /**
- * Return the names of parts, rows and columns that students see, by their labels in reports.
+ * Return the names that students see for parts, rows and columns, by the labels in reports.
  *
  * @param {string} id
  */
@@ -166,7 +166,7 @@ function partShares({ part, rows, ...share }) {
 }
 
 /**
- * Return a table with the share of right answers for each cell and row of a part.
+ * Return a table with the share of correct answers for each cell and row of a part.
  *
  * @param {string} part
  * @param {Api.RowFigures[]} rows
