@@ -23,8 +23,8 @@ const HINTS = {
 const ALL_PLACED = worded("All frames are placed. To change one by clicks, first select one of its cells.");
 // The length of the longest arrow for x, in pixels: long enough for fingers to hit only one end.
 const ARROW = 72;
-// The end of the arrow for z is moved until it is the width of a finger (44 pixels) away from all dots. This is the
-// largest number of moves, each an eighth of a finger.
+// The end of the arrow for z moves along the arrow, until it is a finger's width away from all dots. It moves at most
+// this number of steps; each step is an eighth of a finger's width.
 const FAR = 80;
 // A pointer that has moved farther than this, in pixels, has turned the view and has not clicked.
 const STILL = 4;

@@ -4,7 +4,7 @@
 const MOVE = 1300;
 const STILL = 350;
 const JUMP = 1600;
-// More milliseconds than these between two pictures do not count, so that a page in the background does not jump ahead.
+// The longest time between two pictures that counts, in milliseconds: a page in the background does not jump ahead.
 const LONGEST = 100;
 const SMALL = 1e-9;
 

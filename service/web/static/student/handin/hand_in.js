@@ -91,7 +91,7 @@ export class HandIn {
     this.resume();
   }
 
-  /** Send the hand-in again that the service has not confirmed, if there is one. */
+  /** If the service has not confirmed a hand-in, send it again. */
   resume() {
     const waiting = this.pending.get();
     if (waiting) this.#send(waiting, true);

@@ -32,7 +32,7 @@ export function keepSolved(base, level, id) {
   try {
     localStorage.setItem(nameOf(base, level), JSON.stringify([...before, id].slice(-MOST)));
   } catch {
-    // The page does not show this robot as solved later, but the report stays.
+    // The robot is not shown as solved, but its report is shown.
   }
 }
 

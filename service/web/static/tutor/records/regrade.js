@@ -127,7 +127,7 @@ export function regradeForm(exercise, done) {
     const rows = changed.slice(0, MOST_SHOWN).map((
       { id, learner, ordinal, reasons, counted, ...ofExercise },
     ) => {
-      // If an attempt counts in an assignment, show the assignment's points, as in the gradebook.
+      // If an assignment sets the exercise, show the points in the assignment, as in the gradebook.
       const { before, after, max_points: most, awarded } = counted ?? ofExercise;
       return [
         h(
