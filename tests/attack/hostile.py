@@ -50,7 +50,7 @@ class Case(NamedTuple):
 
 
 class Costly(NamedTuple):
-    """A case and its processor time as a multiple of the numpy floor."""
+    """A case, and its processor time as a multiple of the floor (a fixed computation in numpy)."""
 
     ratio: float
     case: Case
@@ -156,7 +156,7 @@ def _digest(data: bytes) -> bytes:
 
 
 def floor_seconds() -> float:
-    """Measure the processor time of the plain-numpy floor of ``make bench``."""
+    """Measure the processor time of the floor: the fixed computation in numpy of ``make bench``."""
     spent = []
     for _ in range(100):
         start = time.process_time()

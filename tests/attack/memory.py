@@ -1,6 +1,6 @@
 """`python -m tests.attack.memory --count 1000000`: test if many requests make the memory grow.
 
-Send requests to the routes of the service in this process: right and wrong tables and matrices,
+Send requests to the service's routes in this process: correct and wrong tables and matrices,
 pasted texts, previews, and hostile requests. No two requests are equal. Exit with 1 if the memory
 after the warm-up grows beyond the limit, or if a response is a server error. With ``--http``, send
 the requests over a connection to a separate process.

@@ -1,4 +1,4 @@
-"""The floor of the benchmarks: the kinematics of the Stanford arm in plain numpy."""
+"""The floor of the benchmarks: poses of the Stanford arm, computed in plain numpy."""
 
 import numpy as np
 from numpy.typing import NDArray

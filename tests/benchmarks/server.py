@@ -112,7 +112,7 @@ def running_server(
 
 
 async def post_all(port: int, requests: list[bytes], deadline: float) -> int:
-    """Send requests one after the other until the deadline; return the number of answers."""
+    """Send requests one after the other until the deadline; return the number of responses."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     done = 0
     for message in requests:
@@ -231,7 +231,7 @@ async def _per_second(port: int, messages: list[bytes]) -> float:
 
 
 def first_answer_seconds() -> float:
-    """Return the seconds from the start of the process to the first graded answer."""
+    """Return the seconds from the start of the process to the response with the first report."""
     start = time.perf_counter()
     with running_server(module="service") as port:
         asyncio.run(post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10))

@@ -1,4 +1,4 @@
-"""Measure processor time as a multiple of the floor.
+"""Measure processor time as a multiple of the floor: a fixed computation in plain numpy.
 
 Other programs do not count in processor time. Calls alternate with the floor, so that both are
 affected if the machine is slow for a while.
@@ -15,7 +15,7 @@ WARM_UP = 3
 
 
 def floor() -> object:
-    """Compute the floor of ``make bench``."""
+    """Do the computation that is the floor of ``make bench``."""
     return floors.stanford_pose(32)
 
 
@@ -27,7 +27,7 @@ def seconds(action: Callable[[], object]) -> float:
 
 
 def floor_seconds() -> float:
-    """Return the median time of the floor."""
+    """Return the median processor time of the floor."""
     return median(seconds(floor) for _ in range(1000))
 
 

@@ -36,7 +36,7 @@ class Results:
 
     @property
     def per_second(self) -> float:
-        """The number of answers per second."""
+        """The number of responses per second."""
         return len(self.waits) / self.seconds
 
     def quantile(self, share: float) -> float:
@@ -54,7 +54,7 @@ class Mix:
 
 
 class Client:
-    """A student who sends requests one by one, and waits for each answer."""
+    """A student who sends requests one by one, and waits for each response."""
 
     def __init__(
         self,
@@ -176,7 +176,7 @@ def submitted(
 ) -> Results:
     """Run clients for some seconds; return their results. ``run`` is part of the learners' names.
 
-    Each client pauses for ``pause`` seconds after each answer.
+    Each client pauses for ``pause`` seconds after each response.
     """
     results = Results() if results is None else results
     began = time.perf_counter()

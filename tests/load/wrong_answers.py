@@ -132,7 +132,7 @@ def in_turn(running: Service, bodies: Sequence[Body]) -> tuple[float, list[float
 
 
 async def _at_once(running: Service, bodies: Sequence[Body]) -> float:
-    """Send each body on a connection of its own; return the seconds until all are answered."""
+    """Send each body on a connection of its own; return the seconds until all have a response."""
 
     async def connect() -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
         return await asyncio.open_connection("127.0.0.1", running.port)

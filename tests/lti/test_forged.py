@@ -363,7 +363,7 @@ def test_every_reason_says_what_to_do() -> None:
 
 @pytest.mark.long
 def test_two_platforms_and_two_courses_with_the_same_user(tool: Tool, platform: Platform) -> None:
-    """A user id means one learner in two courses of a platform, and another at another platform."""
+    """A user id is one learner in two courses of a platform, but two learners at two platforms."""
     other = platform.registration | {"id": "second", "client_id": "client-2"}
     new = NewRegistration.model_validate(other)
     tool.do(lambda it: add_registration(it, new, datetime.now(UTC)))

@@ -62,7 +62,7 @@ class Browser:
         self._client, self._platform, self._rush = client, platform, rush
 
     async def view(self, user: str, *, is_new: bool) -> None:
-        """Open the exercise. A new browser requests all scripts; another one has cached them."""
+        """Open the exercise. A new browser requests all scripts; old browsers have cached them."""
         began = time.perf_counter()
         try:
             await self._view(user, is_new=is_new)
