@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { History } from "../../../service/web/static/shared/history.js";
 
-/** A cell that changes and says so to a history. */
+/** A cell that notes its changes in a history. */
 class Cell {
   constructor(history, text = "") {
     this.history = history;

@@ -107,7 +107,7 @@ test("a sweep sends three requests, each for pictures between the earlier ones",
 test("between its pictures a sweep follows the arm", async () => {
   const sweep = new Sweep(service, [0, 0.5], 0, { low: -Math.PI, high: Math.PI });
   await sweep.load(() => {});
-  // A chord is off its arc by the radius times step squared over 8; no radius is more than 3.
+  // The distance between a chord and its arc is the radius times step squared over 8; no radius is more than 3.
   const tolerance = (3 * (2 * Math.PI / 87) ** 2) / 8;
   for (let angle = -Math.PI; angle <= Math.PI; angle += 0.1) {
     const { frames, values } = sweep.at(angle);

@@ -4,7 +4,7 @@ import { PendingHandIn } from "../../../../service/web/static/student/handin/pen
 
 const pending = (key) => ({ key, body: { exercise: "scara", answers: { table: key } } });
 
-/** Give the page a storage that two tabs share; without `works`, each use of it throws. */
+/** Give the page a storage that two tabs share; unless `works`, each use of the storage throws an error. */
 function storage(works = true) {
   const kept = new Map();
   const checked = (use) => (...words) => {
@@ -37,7 +37,7 @@ test("a confirmed hand-in leaves that of another tab alone", () => {
   one.clear("a");
   assert.deepEqual(new PendingHandIn("scara").get(), pending("b"));
   other.clear("b");
-  // What is confirmed is not pending again, in no tab.
+  // A confirmed hand-in is never pending again, in any tab.
   assert.deepEqual([one.get(), other.get(), new PendingHandIn("scara").get()], [null, null, null]);
 });
 

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { offersOf } from "../../../../service/web/static/robot/placing/offers.js";
 
-// Joint 1 along z, joint 2 along y at x = a; the tool is at x = a + b, beside a direction that depends on b.
+// Joint 1 is along z, joint 2 is along y at x = a. The tool is at x = a + b, in a direction that depends on b.
 const linesAt = (a, b) => [
   [[0, 0, 0.11], [0, 0, 1]],
   [[a, 0, 0], [0, 1, 0]],

@@ -1,4 +1,4 @@
-// What went wrong comes back until it has gone right twice.
+// A situation with a slip comes back until the student was right twice.
 
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";

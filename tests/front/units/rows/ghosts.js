@@ -1,4 +1,4 @@
-// Reads rows from the standard input, as JSON: each with its frame, its numbers, its convention, and places between 0
+// Reads rows from the standard input, as JSON: each row has a frame, numbers, a convention, and places between 0
 // and 4. Writes the ghost frame at each place.
 
 import { frameAt, movesOf } from "../../../../service/web/static/robot/rows/row_moves.js";

@@ -52,7 +52,7 @@ test("the joint after a row depends on the convention and on a fixed row before 
   assert.deepEqual(after("standard", [0, 1, 2, 3]), [0, 1, 2, null]);
 });
 
-// Play up to `end`; return each place that is shown, and what `stopped` was told.
+// Play up to `end`; return all places that are shown, and the argument of `stopped`.
 function played(end, { reduced = false, still = () => false } = {}) {
   const waiting = [];
   const ask = (run) => waiting.push(run);

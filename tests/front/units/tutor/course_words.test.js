@@ -1,4 +1,4 @@
-// What the forms of a course say before a request and after it.
+// The sentences of the forms of a course, before and after a request.
 
 import assert from "node:assert/strict";
 import test from "node:test";
