@@ -1,4 +1,4 @@
-"""The data classes of attempts: new, recorded and listed ones, and filters.
+"""Data classes for new, recorded and listed attempts, and for filters of attempts.
 
 This module loads no database driver.
 """
@@ -12,12 +12,12 @@ MOST_ON_A_PAGE: Final = 100
 
 
 def hint_points(price: float, max_points: float) -> float:
-    """Return the cost of hints in points: the share ``price`` of ``max_points``, at most all."""
+    """Return the cost of hints: ``price`` times ``max_points``, but at most ``max_points``."""
     return round(min(price, 1.0) * max_points, 6)
 
 
 class GradesFormat(StrEnum):
-    """The formats of exported attempts: all attempts, or a gradebook of those that count."""
+    """The formats of exports: a list of all attempts, or a gradebook of the attempts that count."""
 
     CSV = "csv"
     JSONL = "jsonl"
@@ -26,7 +26,7 @@ class GradesFormat(StrEnum):
 
     @property
     def is_gradebook(self) -> bool:
-        """True if the format is a gradebook, with one column for one exercise."""
+        """True if the format is a gradebook; a gradebook has the points of one exercise only."""
         return self in (GradesFormat.CANVAS, GradesFormat.MOODLE)
 
 
@@ -34,10 +34,10 @@ class GradesFormat(StrEnum):
 class NewAttempt:
     """An attempt to be recorded; ``submission`` and ``report`` are JSON.
 
-    ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent it;
-    idempotency keys are unique for each owner. ``assignment`` is the number of an assignment of a
-    course, or None. ``variant`` is the seed of a variant of the exercise, or None. ``hint_price``
-    is what the hints before the attempt cost, as a share of its points.
+    ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent the
+    attempt; idempotency keys are unique for each owner. ``assignment`` is the number of an
+    assignment of a course, or None. ``variant`` is the seed of a variant of the exercise, or None.
+    ``hint_price`` is the price of the hints before the attempt, as a share of the attempt's points.
     """
 
     exercise: str

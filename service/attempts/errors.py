@@ -4,7 +4,7 @@
 class StoreDownError(Exception):
     """The database cannot be reached, cannot write, or does not respond.
 
-    The operation was not done, unless only the answer to a commit was lost.
+    The operation was not done, unless only the database's reply to a commit was lost.
     """
 
 

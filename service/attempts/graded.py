@@ -19,7 +19,7 @@ class AttemptReport:
 
 
 class AttemptGrading:
-    """Grades one request: once for level ``full``, and once for all lower levels."""
+    """Grades one request at most twice: for level ``full``, and for all lower levels together."""
 
     def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
         self._exercise = exercise
@@ -28,11 +28,11 @@ class AttemptGrading:
         self._reports: dict[FeedbackLevel, AttemptReport] = {}
 
     def has(self, most: FeedbackLevel) -> bool:
-        """True if the report with at most this level needs no further grading."""
+        """True if the report, limited to the level ``most``, needs no further grading."""
         return _grading_level(self._level(most)) in self._graded
 
     def at(self, most: FeedbackLevel) -> AttemptReport:
-        """Return the report with at most the level ``most``, and its outcome."""
+        """Return the report, limited to the level ``most``, and its outcome."""
         level = self._level(most)
         if level not in self._reports:
             self._reports[level] = self._report(most, level)
@@ -55,5 +55,5 @@ class AttemptGrading:
 
 
 def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
-    """Return the level of grading that is enough for a report at ``level`` and its outcome."""
+    """Return the level at which to grade for both a report at ``level`` and its outcome."""
     return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS

@@ -1,7 +1,8 @@
-"""The hints that learners take at recorded attempts: functions on a connection.
+"""Database functions for the hints that learners take at recorded attempts.
 
-A hint belongs to the attempt whose report has its message. Its price reduces the points of the
-learner's later attempts at the exercise, in the same assignment or outside of all assignments.
+A hint explains a message, and belongs to the attempt whose report has this message. The price of
+the hint reduces the points of the learner's later attempts at the exercise, in the same assignment
+or outside of all assignments.
 """
 
 from collections import Counter
@@ -43,7 +44,10 @@ class HintRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class HintStepOf:
-    """A step of the hint for a message; ``row`` and ``cell`` are "" if the message has none."""
+    """A step of the hint for a message.
+
+    ``row`` or ``cell`` is "" if the message is not about a row or a cell.
+    """
 
     part: str
     code: str
@@ -125,7 +129,7 @@ def hints_before(connection: Connection, attempt_id: str) -> list[TakenHint]:
 
 
 def hints_of(connection: Connection, learner: str) -> dict[tuple[int, str], list[TakenHint]]:
-    """Return a learner's hints by the number of the assignment and the exercise, oldest first."""
+    """Return a learner's hints by (assignment number, exercise); each list is oldest first."""
     mine = _TAKEN.add_columns(attempts.c.assignment, attempts.c.exercise).where(
         attempts.c.learner == learner, attempts.c.assignment.is_not(None)
     )
@@ -136,7 +140,7 @@ def hints_of(connection: Connection, learner: str) -> dict[tuple[int, str], list
 
 
 def hint_figures(connection: Connection, chosen: ColumnElement[bool]) -> list[HintFigures]:
-    """Return how often each step of a hint was taken at the chosen attempts, most often first."""
+    """Count the steps of each hint that were taken at the chosen attempts; sort by frequency."""
     counted = (
         select(hints.c.part, hints.c.code, hints.c.step, func.count().label("times"))
         .join_from(hints, attempts)
@@ -154,7 +158,7 @@ def hint_figures(connection: Connection, chosen: ColumnElement[bool]) -> list[Hi
 
 
 def _same_place(attempt: Row[Any]) -> ColumnElement[bool]:
-    """Return the condition that another attempt has this learner, exercise and assignment."""
+    """Return the condition for attempts with ``attempt``'s learner, exercise and assignment."""
     return and_(
         attempts.c.exercise == attempt.exercise,
         attempts.c.learner == attempt.learner,

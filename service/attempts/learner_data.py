@@ -1,4 +1,4 @@
-"""All records of one learner, and the deletion of old attempts: functions on a connection."""
+"""Database functions that read all records of one learner, and that delete old attempts."""
 
 import json
 from collections.abc import Mapping
@@ -60,7 +60,7 @@ _SCORES: Final = (
 
 
 def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
-    """Return all records of a learner, for JSON."""
+    """Return all records of a learner as values for JSON."""
     which = {"learner": learner}
 
     def rows(table: Table, condition: ColumnElement[bool]) -> list[dict[str, Any]]:
@@ -103,7 +103,7 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
 
 
 def is_older(before: datetime) -> ColumnElement[bool]:
-    """Return the condition for attempts whose retention time began before a moment.
+    """Return the condition for attempts whose retention time began before ``before``.
 
     The retention time begins with the attempt. For an attempt in an assignment, the time begins
     when the last learner can no longer hand in; without a due date, the time never begins.
@@ -138,7 +138,7 @@ def months_before(now: datetime, months: int) -> datetime:
 
 
 def _known(row: Row[Any]) -> dict[str, Any]:
-    """Return what a row says about the learner."""
+    """Return the columns of a row for JSON, without internal columns and without None."""
     return {name: _plain(name, value) for name, value in _named(row).items() if value is not None}
 
 

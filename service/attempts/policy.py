@@ -30,7 +30,7 @@ class Ruling:
 
 
 def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
-    """Return the ruling on the next attempt of a learner with ``counted`` counted attempts.
+    """Return the terms of a learner's next attempt after ``counted`` counted attempts.
 
     Raises AttemptRefusedError.
     """

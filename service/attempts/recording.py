@@ -37,7 +37,7 @@ _ALL: Final = func.count(attempts.c.ordinal)
 
 
 def _standing(counted: ColumnElement[int]) -> Select[Any]:
-    """Return one statement that reads a whole standing: several statements would be slower."""
+    """Return the SQL statement that reads a ``Standing``; several statements would be slower."""
     earlier = select(attempts.c.number).where(
         attempts.c.owner == bindparam("owner"),
         attempts.c.idempotency_key == bindparam("idempotency_key"),
@@ -104,7 +104,8 @@ def standing(
 ) -> Standing:
     """Return how many attempts of a learner count, and the attempt with this idempotency key.
 
-    Attempts count in the assignment, or, without one, outside of all assignments.
+    With ``assignment``, only attempts in this assignment count; without ``assignment``, only
+    attempts outside of all assignments.
     """
     which: dict[str, str | int | None] = {
         "exercise": exercise,
@@ -121,7 +122,7 @@ def standing(
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
-    """Write the attempt; return None if its ordinal or its key has been taken in the meantime."""
+    """Write the attempt; return None if another attempt has its ordinal or idempotency key."""
     values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
     values["id"] = secrets.token_hex(16)
     statement = _NEW_ATTEMPT[connection.dialect.name]
@@ -187,7 +188,7 @@ def _key(outcome: Outcome) -> dict[str, str]:
 
 
 def _add_outcome(connection: Connection, outcome: Outcome) -> bool:
-    """Insert the outcome; return False if it is there already."""
+    """Insert the outcome; return False if the database already has it."""
     new = _key(outcome) | {"content": outcome.content}
     statement = _NEW_OUTCOME[connection.dialect.name].returning(outcomes.c.id)
     return connection.scalar(statement, new) is not None

@@ -104,7 +104,7 @@ class AttemptStore:
         idempotency_key: str | None,
         assignment: int | None = None,
     ) -> Standing:
-        """Return how many attempts of a learner count, and the attempt with this key."""
+        """Count a learner's attempts, and find the attempt with this idempotency key."""
         with self.measure("standing"):
             return await self._running.run(
                 lambda connection: standing(
@@ -115,9 +115,10 @@ class AttemptStore:
     async def record(
         self, before: Standing, attempt_after: AttemptAfter
     ) -> RecordedAttempt | Standing:
-        """Write the next attempt durably; see ``record_next``.
+        """Write the attempt that ``attempt_after`` returns for the current standing.
 
-        The writer thread calls ``attempt_after`` while other jobs wait.
+        The result is that of ``record_next``. The writer thread calls ``attempt_after`` while other
+        jobs wait.
         """
         with self.measure("record"):
             return await self._running.run(
@@ -185,8 +186,9 @@ class AttemptStore:
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
         """Delete all records of a learner; return their counts and the state of erasure.
 
-        The state of erasure is the result of ``overwrite_deleted``. If the state is False, the
-        writer thread tries again every minute.
+        The state of erasure is True if the deleted rows are overwritten, and False if they are not:
+        then the writer thread tries again every minute. The state is None for PostgreSQL, which
+        overwrites deleted rows by itself.
         """
         with self.measure("forget"):
             deleted = await self._running.run(lambda connection: forget(connection, learner))

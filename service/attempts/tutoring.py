@@ -60,7 +60,7 @@ def override(
 
 @dataclass(frozen=True, slots=True)
 class LearnerData:
-    """The number of rows of each kind that belong to a learner."""
+    """The numbers of a learner's attempts, earlier reports, overrides and courses."""
 
     attempts: int
     earlier_reports: int
@@ -79,7 +79,7 @@ def data_of(connection: Connection, learner: str) -> LearnerData:
 
 
 def forget(connection: Connection, learner: str) -> LearnerData:
-    """Delete all records of a learner, also in courses; return the counts of attempts.
+    """Delete all records of a learner, also in courses; return the counts in ``LearnerData``.
 
     Outcomes stay: they contain verdicts and codes, but no learners and no answers.
     """

@@ -1,4 +1,4 @@
-"""The bodies of requests for the numbers that draw a table or a mechanism."""
+"""The bodies of requests for the numbers with which a table or a mechanism is drawn."""
 
 from typing import Annotated, Any, Final, Literal
 

@@ -1,4 +1,4 @@
-"""The bodies of requests around a grading: many at once, hints, and other choices of frames."""
+"""The bodies of requests about grading: many submissions, hints, and other choices of frames."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The bodies of learners: what they hand in, and their own courses, assignments and attempts."""
+"""The bodies of routes for learners: hand-ins, and the learner's own courses and attempts."""
 
 from datetime import datetime
 from typing import Annotated

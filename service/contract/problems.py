@@ -1,4 +1,4 @@
-"""RFC 9457 problem details: the body of every unsuccessful answer."""
+"""RFC 9457 problem details: the body of every unsuccessful response."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""What was sent to learning platforms: the bodies of its routes."""
+"""The bodies of routes about the scores that are sent to learning platforms."""
 
 from datetime import datetime
 from typing import Literal

@@ -1,4 +1,4 @@
-"""The bodies of requests with which tutors change recorded attempts, and get tokens of learners."""
+"""The bodies of requests with which tutors change recorded attempts or get tokens for learners."""
 
 from datetime import datetime
 from typing import Annotated, Final

@@ -66,7 +66,7 @@ def _messages(messages: tuple[Feedback, ...], changed: ChangedText) -> tuple[Fee
 
 
 def _correction(correction: Correction | None, changed: ChangedText) -> Correction | None:
-    """Return a correction in words with its text changed; a formula stays."""
+    """Return a correction with changed text if it is in words; a formula stays as it is."""
     if correction is None or correction.latex is not None:
         return correction
     return replace(correction, text=changed(correction.text))

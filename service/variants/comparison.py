@@ -19,7 +19,7 @@ Form: TypeAlias = tuple[str, tuple[float, ...]]
 
 @dataclass(frozen=True, slots=True)
 class VariantDifficulty:
-    """What makes a robot hard: counts, each of which is a column of a table of variants.
+    """Counts of what makes a robot hard. A table of variants shows each count in a column.
 
     ``turns`` counts the twists that are not 0, and ``odd_twists`` the twists that are not multiples
     of 90°. ``free`` counts the pairs of parallel neighbouring axes, where a frame may be chosen.
@@ -78,7 +78,7 @@ def difficulty_of(exercise: Exercise) -> VariantDifficulty:
 
 
 def _home(exercise: Exercise) -> dict[str, Numbers]:
-    """Return a value of each symbol: 0 for joints, and lengths that are not equal by accident."""
+    """Return a value for each symbol: 0 for a joint variable, other values are all different."""
     return {
         variable.name: np.array([0.0 if variable.joint is not None else 0.31 + 0.0713 * i])
         for i, variable in enumerate(exercise.variables)

@@ -27,7 +27,7 @@ _PER_LINE: Final = 8
 
 @dataclass(frozen=True, slots=True)
 class CheckedVariant:
-    """A variant with its form, its difficulty, its lazy points and the faults of its answers."""
+    """A variant with its form and difficulty, a lazy answer's points, and remarks on answers."""
 
     seed: str
     title: str

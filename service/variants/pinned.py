@@ -1,6 +1,6 @@
 """Exercises with the choices that ``[vary]`` had when an assignment got its variants.
 
-So a correction of an exercise file does not change the numbers of learners.
+So a correction of an exercise file does not change the numbers in the learners' variants.
 """
 
 import json
@@ -23,10 +23,11 @@ def choices_of(exercises: Mapping[str, Exercise]) -> Mapping[str, Any]:
 
 
 def pinned(exercise: Exercise, choices: str | None) -> Exercise:
-    """Return the exercise with the choices of an assignment; ``choices`` is JSON by exercise.
+    """Return the exercise with the choices of an assignment.
 
-    The choices of the file apply if the assignment has no choices for the exercise, or if its
-    choices no longer fit the texts of the file.
+    ``choices`` is a JSON object with the choices for each exercise. The choices of the file apply
+    if the assignment has no choices for the exercise, or if the assignment's choices no longer fit
+    the texts of the file.
     """
     if exercise.vary is None or choices is None:
         return exercise

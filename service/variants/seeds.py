@@ -1,7 +1,7 @@
 """The seed of a learner. It is derived from a secret. Clients can neither compute nor choose it.
 
-If seeds are deployed, it is the deployed seed with the largest keyed hash. So one more deployed
-seed changes the variants of only a few learners.
+If seeds are deployed, the learner's seed is the deployed seed with the largest keyed hash. So one
+more deployed seed changes the variants of only a few learners.
 """
 
 import hashlib
@@ -17,7 +17,7 @@ _LENGTH: Final = 16
 def seed_of(
     secret: str, learner: str, exercise: str, number: int, deployed: Sequence[str] = ()
 ) -> str:
-    """Return the seed of a learner; ``number`` counts the deals from 0."""
+    """Return the seed of a learner who got another variant ``number`` times."""
     if deployed:
         return max(deployed, key=lambda seed: _keyed(secret, learner, exercise, number, seed))
     whole = int.from_bytes(_keyed(secret, learner, exercise, number, ""), "big")

@@ -55,7 +55,7 @@ class BuiltVariants:
         return len(self._built)
 
     def get(self, exercise: Exercise, seed: str) -> Exercise:
-        """Return a variant; build it if it is not there. Raises NoVariantError."""
+        """Return a variant, from memory or newly built. Raises NoVariantError."""
         if exercise.vary is None:
             return built(exercise, seed)
         # A changed file has another ``Vary``, so that its variants are built again.
@@ -86,7 +86,7 @@ def values_of(version: str) -> str:
 
 
 def hidden_variant(exercise: Exercise, seed: str) -> Exercise:
-    """Return the variant of a seed with the id of the plain exercise, which hides the seed.
+    """Return the variant of a seed. Its id is that of the plain exercise, which hides the seed.
 
     Raises NoVariantError.
     """

@@ -1,10 +1,10 @@
 """Regrade outdated attempts. Several processes may share the work through the database.
 
-A worker locks the attempts that it takes, and removes them from the queue in the same commit. If
-the worker dies, the database releases its locks, and another worker takes its attempts. In
-PostgreSQL, workers skip locked rows (SKIP LOCKED). In SQLite, only one process can write at a time,
-and even the recording of attempts waits for it: a worker therefore grades first, and locks the file
-only while it writes.
+A worker locks the attempts that it takes. One commit writes their new reports and removes the
+attempts from the queue. If the worker dies, the database releases the locks, and another worker
+takes the attempts. In PostgreSQL, workers skip locked rows (SKIP LOCKED). In SQLite, only one
+process can write at a time, and even the recording of attempts waits for this process: a worker
+therefore grades first, and locks the file only while it writes.
 """
 
 import json
@@ -54,7 +54,7 @@ _BATCH_SECONDS: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class CountedPoints:
-    """The points of an attempt in its assignment, as the gradebook has them."""
+    """The points of an attempt in its assignment, as the gradebook shows them."""
 
     before: float
     after: float
@@ -64,11 +64,11 @@ class CountedPoints:
 
 @dataclass(frozen=True, slots=True)
 class RegradedAttempt:
-    """The points of an attempt before and after a regrade, as the exercise file gives them.
+    """The points of an attempt before and after a regrade, on the scale of the exercise file.
 
-    ``reasons`` names the parts whose result has changed. Points that a tutor has ``awarded`` stay
-    and count. ``counted`` has the points in the assignment, or is None if no assignment sets the
-    exercise.
+    ``reasons`` names the parts whose result has changed. If a tutor has ``awarded`` points, these
+    points stay and count. ``counted`` has the points on the scale of the assignment; None if no
+    assignment sets the exercise.
     """
 
     id: str
@@ -106,12 +106,12 @@ class Regrading:
         self._memoized = MemoizedReports()
 
     def outdated(self, connection: Connection) -> list[int]:
-        """Return the numbers of the attempts that another version has graded."""
+        """Return the numbers of attempts graded with another version of exercise or program."""
         numbers = select(attempts.c.number).where(self._is_outdated()).order_by(attempts.c.number)
         return list(connection.scalars(numbers))
 
     def outdated_count(self, connection: Connection) -> int:
-        """Count the attempts that another version has graded."""
+        """Count the attempts graded with another version of the exercise or of the program."""
         return connection.scalar(select(func.count()).where(self._is_outdated())) or 0
 
     def outdated_after(
@@ -149,7 +149,7 @@ class Regrading:
         return connection.scalar(waiting) or 0
 
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
-        """Regrade some attempts of the queue that no other worker has taken, in a transaction.
+        """Regrade, in one transaction, some queued attempts that no other worker has taken.
 
         The result is empty if no such attempts are left, if no attempt of the batch needs a
         regrade, or, in SQLite, if another worker was faster.
@@ -160,7 +160,7 @@ class Regrading:
     def work(
         self, connection: Connection, among: Sequence[int] | None = None
     ) -> list[RegradedAttempt]:
-        """Regrade a batch of the queue and remove it, in the caller's transaction.
+        """Regrade a batch and remove it from the queue, in the caller's transaction.
 
         If ``among`` is given, take only these attempts.
         """

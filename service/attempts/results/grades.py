@@ -71,7 +71,8 @@ def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> 
     """Yield the attempts in a format, line by line.
 
     ``csv`` and ``jsonl`` have every attempt. ``canvas`` and ``moodle`` are gradebooks for these
-    platforms, with the attempt of each learner that counts; ``title`` names the assignment there.
+    platforms: they have only the attempts that count. For Canvas, ``title`` is the heading of the
+    points.
     """
     match form:
         case GradesFormat.CSV:
@@ -97,7 +98,7 @@ _Value = str | float | bool | None
 
 
 def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
-    """The values of ``_FIELDS``; ``points`` are the tutor's points if there are any."""
+    """The exported values of an attempt, by ``_FIELDS``; a tutor's points have precedence."""
     each = graded.attempt
     return (
         each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,
@@ -111,7 +112,7 @@ def _as_cell(value: _Value) -> str | float | None:
 
 
 def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
-    """Yield a gradebook for Canvas, with learners by login and a line of points possible.
+    """Yield a gradebook for Canvas: the maximum points, then the points of each learner's login.
 
     Source: Canvas, "How do I import grades in the Gradebook?".
     """

@@ -55,13 +55,13 @@ def shown_report(recorded: str, language: Language) -> str:
 
 
 def sentence_in(report: Mapping[str, Any], text: str) -> str:
-    """Return the sentence of a text in a recorded report; ``report`` is the JSON of the report."""
+    """Return the translatable sentence for a text of a recorded report (parsed JSON)."""
     sentences = report.get("sentences")
     return text if sentences is None else _known(sentences)(text)
 
 
 def _divided(recorded: str) -> tuple[list[Any] | None, str]:
-    """Return the list of sentences, and the report without it."""
+    """Return the list of sentences in a recorded report, and the report without this list."""
     if not recorded.startswith(_START):
         return None, recorded
     sentences, end = _DECODER.raw_decode(recorded, len(_START))
@@ -69,7 +69,7 @@ def _divided(recorded: str) -> tuple[list[Any] | None, str]:
 
 
 def _known(sentences: list[Any]) -> Callable[[str], str]:
-    """Return a function that returns a text of the report as a sentence."""
+    """Return a function that returns the sentence for a text of the report."""
     known = {str(each): each for each in map(_read, sentences)}
 
     def sentence(text: str) -> str:

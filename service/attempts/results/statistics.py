@@ -174,7 +174,7 @@ class _PartCount:
             self.rows[row].add(cells, times)
 
     def figures(self, name: str) -> PartFigures:
-        """Return the figures of the rows that more than half of the detailed reports have.
+        """Return the figures of the part, and of the rows that most detailed reports have.
 
         The other rows were added to the table by a few students.
         """
@@ -219,7 +219,7 @@ def _commonest(
 def _newest_reports(
     connection: Connection, chosen: ColumnElement[bool], among: Set[int]
 ) -> dict[int, Any]:
-    """The newest report with each outcome: the reports on later attempts may say more."""
+    """The newest report with each outcome, because newer reports may say more."""
     newest = (
         select(func.max(attempts.c.number))
         .where(chosen, attempts.c.outcome.in_(among))
@@ -230,7 +230,7 @@ def _newest_reports(
 
 
 def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
-    """The first message with a code in a part; None if the report is too terse to have it."""
+    """The first message with ``code`` in a part; None if the report is too terse to have it."""
     told = (each for each in report["parts"] if each["part"] == part)
     texts = (each["message"] for each in _messages(told) if each["code"] == code)
     text = next(texts, None)

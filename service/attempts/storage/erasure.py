@@ -40,7 +40,7 @@ def overwrite_deleted(engine: Engine, tries: int = _TRIES) -> bool | None:
 
 
 def finish_overwriting(engine: Engine) -> None:
-    """Truncate SQLite's log if that is possible now. Other programs may have deleted rows, too."""
+    """Truncate SQLite's log if possible, because other programs may have deleted rows, too."""
     if engine.dialect.name != "sqlite":
         return
     with suppress(SQLAlchemyError, OSError):

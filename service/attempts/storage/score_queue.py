@@ -98,7 +98,7 @@ def queue_score(
 def queue_scores(
     connection: Connection, chosen: ColumnElement[bool], priority: Priority = Priority.CHANGE
 ) -> None:
-    """Queue the scores to which the attempts that meet the condition ``chosen`` belong."""
+    """Queue the scores of the chosen attempts; ``chosen`` is an SQL condition."""
     having = select(attempts.c.assignment, attempts.c.learner).where(
         chosen, attempts.c.assignment.is_not(None)
     )
@@ -114,9 +114,9 @@ def queue_scores(
 
 
 def forget_scores(connection: Connection, learner: str) -> None:
-    """Queue the clearing of a learner's scores at the platforms, under a random name.
+    """Queue the clearing of a learner's scores at the platforms, under a random learner id.
 
-    Rows whose score was never sent are deleted. The platform's id of the learner stays in the row
+    Rows whose score was never sent are deleted. The platform's id for the learner stays in the row
     until the platform has cleared the score.
     """
     mine = scores.c.learner == learner

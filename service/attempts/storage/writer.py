@@ -69,7 +69,7 @@ class AttemptWriter:
     async def run(self, work: Callable[[Connection], R]) -> R:
         """Return the result of ``work`` after its commit. Raises StoreDownError.
 
-        After an error nothing was written, unless only the answer to the commit was lost.
+        After an error nothing was written, unless only the database's reply to the commit was lost.
         """
         begun_at = self._begun_at
         if begun_at is not None and monotonic() - begun_at > _TIMEOUT:
@@ -111,8 +111,8 @@ class AttemptWriter:
     def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
         """Wait for jobs; return them, and True if the writer was closed.
 
-        Return no jobs when it is time to tidy up. Wait ``gather`` seconds for others after the
-        first job.
+        Return no jobs when it is time to tidy up. After the first job, wait ``gather`` seconds for
+        other jobs.
         """
         jobs: list[_Job] = []
         try:

@@ -17,7 +17,7 @@ Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]
 
 
 def class_folder(page: Pages) -> Folder:
-    """Return a function that yields the files of a class; ``page`` writes one submission.
+    """Return a function that yields the files of a class; ``page`` writes a submission's page.
 
     The function takes submissions one by one. It keeps only a line for each submission and the
     counts for the index.

@@ -97,7 +97,7 @@ def _band_of(share: Share) -> str:
 
 
 def _span_of(each: ScoreBin) -> str:
-    """Return the range of scores of a column of the histogram in words."""
+    """Return the range of scores that a column of the histogram covers, in words."""
     low, high = f"{each.low * 100:.0f}", f"{each.high * 100:.0f}"
     if each.high == 1:
         return say("{low} to {high} %", low=low, high=high)

@@ -69,7 +69,7 @@ class Overview:
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Return the learner, or the submission's name if the learner has several submissions."""
+        """Return the name of the learner, or of the submission if the learner has several."""
         return line.learner if self._learners[line.learner] == 1 else line.name
 
     @property
@@ -79,7 +79,10 @@ class Overview:
 
 
 def _problems(submission: GradedSubmission) -> tuple[str, ...]:
-    """Return the distinct problems, each after the title of its exercise if there are several."""
+    """Return the distinct problems of a submission.
+
+    If there are several exercises, each problem follows the title of its exercise.
+    """
     has_several = len(submission.files) > 1
     told = (
         f"{file.exercise.title}: {file.problem}" if has_several else file.problem

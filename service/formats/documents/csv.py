@@ -23,7 +23,7 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    """Return the cells of a submission. If nothing was graded, points are empty."""
+    """Return the cells of a submission's line. If nothing was graded, the points are empty."""
     is_graded = submission.is_graded
     results = part_results(submission, setting.language)
     return [

@@ -20,7 +20,7 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    """Return the cells of a learner. An empty grade keeps the old grade on import."""
+    """Return the cells of a learner's line. An empty grade keeps the old grade on import."""
     parts = (f"{each.name}: {_earned(each)}" for each in part_results(submission, setting.language))
     return [
         submission.learner,

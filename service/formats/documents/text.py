@@ -112,7 +112,7 @@ def _print_indented(line: Text, console: Console) -> None:
 
 
 def write(report: Report, console: Console, translation: Translation | None = None) -> None:
-    """Print the report. If the console's encoding lacks the signs, they are plain ASCII."""
+    """Print the report; replace the signs by ASCII if the console's encoding lacks them."""
     _Page(console, translation).report(report)
 
 

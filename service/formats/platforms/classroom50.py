@@ -1,7 +1,8 @@
 """The ``result.json`` of a Classroom 50 autograder, schema ``classroom50/result/v1``.
 
 Source: https://github.com/foundation50/classroom50, ``schemas/result-v1.schema.json``, and its
-wiki, "Advanced Autograding". A score is a whole number there, so it counts hundredths of a point.
+wiki, "Advanced Autograding". In Classroom 50, a score is a whole number, so the scores in this file
+count hundredths of a point.
 """
 
 from collections.abc import Mapping

@@ -63,7 +63,7 @@ def _failure(result: PartResult) -> Element:
 
 
 def _element(tag: str, *children: Element, **attributes: str) -> Element:
-    """Return an element. Its attributes become visible text without characters XML forbids."""
+    """Return an element; replace invisible characters in its attributes: XML may forbid them."""
     made = Element(tag, {name: visible(value) for name, value in attributes.items()})
     made.extend(children)
     return made

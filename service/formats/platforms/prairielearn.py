@@ -1,7 +1,7 @@
 """The ``results.json`` of a PrairieLearn external grader.
 
 Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading results". An
-unreadable submission is not gradable there, so it costs no attempt.
+unreadable submission is reported as not gradable, so it costs no attempt.
 """
 
 from typing import Any, Final

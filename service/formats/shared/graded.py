@@ -25,9 +25,10 @@ class AnsweredPart:
 class AnsweredExercise:
     """An assigned exercise, with the facts that formats need.
 
-    ``worth`` is its points in a submission: the points of its parts, unless an assignment gives it
-    another weight. ``symbols`` are the names that it declares, if they are known. ``task`` has the
-    paragraphs of a variant's texts, because the student may have these texts nowhere else.
+    ``worth`` is the exercise's points in a submission: the points of its parts, unless an
+    assignment gives the exercise another weight. ``symbols`` are the names that the exercise
+    declares, if they are known. ``task`` has the paragraphs of a variant's texts, because the
+    student may have these texts nowhere else.
     """
 
     id: str
@@ -45,7 +46,10 @@ class AnsweredExercise:
 
 
 def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
-    """Return an exercise for results. ``worth`` is by default the points of its parts."""
+    """Return an exercise with the facts that formats need.
+
+    ``worth`` is by default the sum of the points of the parts.
+    """
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
     symbols = exercise.symbols if isinstance(exercise, Exercise) else frozenset()
@@ -72,7 +76,7 @@ class GradedFile:
     """A file with its report, or with the problem that prevents a report.
 
     If both exist, only a part of the submission could be used. ``file`` is the path of the file,
-    and ``names`` are the files as the student named them, without a path or name of a platform.
+    and ``names`` are the names that the student gave the files, without additions of a platform.
     ``file`` and ``names`` are empty if there is no file for the exercise.
     """
 
@@ -147,7 +151,7 @@ class GradedSubmission:
 
 
 class Visibility(StrEnum):
-    """When students see a result, on platforms where the grader decides it.
+    """When students see a result, on platforms where the grader decides this.
 
     The names are Gradescope's.
     """

@@ -4,7 +4,8 @@ A template is named by its path below ``service/``. Every value that a template 
 visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
 
 Each language has its own Jinja2 environment. In its templates, ``{% trans %}`` prints HTML of the
-language's catalogue, ``_("…")`` prints a text of it, and a ``Sentence`` is printed in the language.
+language's catalogue, and ``_("…")`` prints a text of the catalogue. A ``Sentence`` is printed in
+the language.
 """
 
 import base64
@@ -185,5 +186,5 @@ def _translated(language: Language, text: str) -> str:
 
 
 def _filled(text: str, language: Language, values: Mapping[str, object]) -> Markup:
-    """Return HTML of a template or of its catalogue with escaped values."""
+    """Return HTML from a template or from the language's catalogue, with escaped values."""
     return own_html(text) % {name: _finalize(language, each) for name, each in values.items()}

@@ -58,10 +58,10 @@ _RESULTS: Final = (YOURS, EXPECTED)
 class Message:
     """A message as visible texts of one line each.
 
-    ``label`` is the sign of the verdict on the place for an error, otherwise the name of the
-    severity. ``places`` names the rows and cells, ``text`` is the message itself, ``offers`` says
-    what to write instead, and ``example`` is a counterexample; all but ``text`` may be empty.
-    ``verdict`` is the verdict on the place.
+    ``verdict`` is the verdict on the place. For an error, ``label`` is the sign of this verdict;
+    otherwise, ``label`` is the name of the severity. ``places`` names the rows and cells, ``text``
+    is the message itself, ``offers`` says what to write instead, and ``example`` is a
+    counterexample; all but ``text`` may be empty.
     """
 
     severity: Severity

@@ -25,7 +25,7 @@ LONGEST: Final = 600
 
 @dataclass(frozen=True, slots=True)
 class PartResult:
-    """An assigned part with its report; without a report, its file has a problem.
+    """An assigned part with its report. If there is no report, the part's file has a problem.
 
     ``name`` is one line, and unique in the submission. Points are weighted as in the submission.
     Texts are in ``language``.
@@ -122,7 +122,7 @@ def _reports(file: GradedFile) -> Iterator[tuple[AnsweredPart, PartReport | None
 
 
 def distinct_names() -> Callable[[str], str]:
-    """Return a function that makes names visible, and adds a number to repeated names."""
+    """Return a function that replaces invisible characters in names, and numbers repeated names."""
     used: set[str] = set()
 
     def distinct(name: str) -> str:

@@ -15,7 +15,7 @@ _UNBROKEN: Final = "\u00a0\u202f"
 
 
 def visible(text: str) -> str:
-    """Return the text in one line, without invisible characters and commands to builds."""
+    """Return the text in one line, without invisible characters and without build commands."""
     if not text.isprintable():
         text = "".join(
             c if c.isprintable() or c in _UNBROKEN else "\N{REPLACEMENT CHARACTER}" for c in text

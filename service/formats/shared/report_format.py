@@ -67,9 +67,9 @@ class ReportFormat:
 def single(
     document: Callable[[GradedSubmission, Setting], bytes],
 ) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
-    """Return the ``pieces`` of a format whose document holds exactly one submission.
+    """Return the function ``pieces`` for a format whose document holds exactly one submission.
 
-    They raise UnusableSettingError for any other number of submissions.
+    The function raises UnusableSettingError for any other number of submissions.
     """
 
     def pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:

@@ -27,9 +27,10 @@ def first_robot(level: int, convention: Convention) -> PracticeId:
 def candidates(
     level: int, convention: Convention, after: PracticeId | None
 ) -> Iterator[PracticeId]:
-    """Yield robots in order. The caller takes the first robot that suits, or else the last.
+    """Yield consecutive robots, beginning after ``after``, or with a random robot.
 
-    Consecutive robots are all different for a long time.
+    The caller takes the first suitable robot, or else the last robot. Many consecutive robots are
+    all different.
     """
     start = first_robot(level, convention) if after is None else after.following()
     start = replace(start, level=level, convention=convention)
@@ -43,11 +44,11 @@ def has_situation(name: PracticeId, favour: Situation) -> bool:
 
 
 def asks_enough(robot: Exercise) -> bool:
-    """True if only zeros and joint variables earn little in a generated robot.
+    """True if an answer of only zeros and joint variables earns little for a generated robot.
 
-    For a few robots of a hundred, such an answer earns more, and students do not get these robots
-    as the next one. Which robots these are depends on the marking. A link to a robot must not
-    depend on the marking, so these robots exist nevertheless.
+    For a few robots in a hundred, this answer earns more, and students do not get these robots as
+    the next robot. Which robots these are depends on the marking. A link to a robot must not depend
+    on the marking, so these robots exist nevertheless.
     """
     [part] = robot.parts
     [table] = [robot.robot.tables[convention] for convention in robot.conventions]

@@ -1,4 +1,4 @@
-"""The difficulty of a generated robot, counted; and the situations that it has."""
+"""The difficulty of a generated robot as counts, and the situations that the robot has."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -22,10 +22,11 @@ class Situation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Difficulty:
-    """What makes a robot difficult, each counted.
+    """Counts of what makes a robot difficult.
 
-    ``turns`` are changes of direction from one axis to the next, ``choices`` the rows in which
-    more than a sign is free (parallel axes, sliding joints), ``odd`` the twists of 30°, 45°, 60°.
+    ``turns`` counts the changes of direction from one axis to the next. ``choices`` counts the rows
+    in which more than a sign is free (parallel axes, sliding joints). ``odd`` counts the twists of
+    30°, 45° or 60°.
     """
 
     joints: int
@@ -37,7 +38,7 @@ class Difficulty:
 
     @property
     def total(self) -> int:
-        """One number: odd twists and joints count twice."""
+        """The sum of the counts, in which odd twists and joints count twice."""
         once = self.turns + self.offsets + self.sliding + self.choices
         return 2 * (self.joints + self.odd) + once
 

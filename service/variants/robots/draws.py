@@ -17,11 +17,11 @@ class Draws:
         self._words = _words(text)
 
     def below(self, limit: int) -> int:
-        """Return an integer from 0 to ``limit - 1``; all are equally likely to one in a million."""
+        """Return an integer from 0 to ``limit - 1``; all have nearly the same probability."""
         return next(self._words) * limit >> _BITS
 
     def chance(self, percent: int) -> bool:
-        """True in this percentage of the draws."""
+        """True with a probability of ``percent`` %."""
         return self.below(100) < percent
 
     def one_of(self, choices: Sequence[T]) -> T:

@@ -1,4 +1,4 @@
-"""A level and a number -> a robot: draw robots until one has no reason to be refused."""
+"""A level and a number -> a robot: draw random robots until one is acceptable."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -19,7 +19,7 @@ _SIMPLE: Final = 2
 
 @dataclass(frozen=True, slots=True)
 class Generated:
-    """A robot that may be asked for, its links at home, and the view of its figure."""
+    """An accepted robot, its links at home, and the view in its figure."""
 
     plan: Plan
     path: HomePath

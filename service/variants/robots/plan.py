@@ -43,7 +43,10 @@ class PlannedRow:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A robot as it is drawn, which may still be refused. ``letters`` is False for numbers."""
+    """A random robot, which may still be refused.
+
+    ``letters`` is True if its lengths are letters, and False if they are numbers.
+    """
 
     rows: tuple[PlannedRow, ...]
     letters: bool
@@ -55,7 +58,7 @@ class Plan:
 
 
 def plan(level: Grammar, draws: Draws) -> Plan | None:
-    """Return a robot by the grammar, or None if the draws contradict it."""
+    """Return a robot that follows the grammar, or None if the draws contradict the grammar."""
     count = draws.weighted(level.joints)
     kinds = [draws.chance(level.sliding) for _ in range(count)]
     if sum(kinds) > level.most_sliding:
@@ -127,7 +130,7 @@ def _cost(way: tuple[int, int]) -> tuple[int, bool]:
 
 
 def _about(z: AxisDirection, x: AxisDirection, degrees: int) -> AxisDirection:
-    """Return a direction x turned about z by a multiple of 90°."""
+    """Return the direction ``x``, turned about ``z`` by a multiple of 90°."""
     for _ in range(degrees // 90 % 4):
         x = cross(z, x)
     return x
@@ -205,7 +208,7 @@ def _within(angle: int) -> int:
 
 
 class _Lengths:
-    """Different lengths in a drawn order."""
+    """Different lengths in a random order."""
 
     def __init__(self, draws: Draws) -> None:
         self._draws = draws

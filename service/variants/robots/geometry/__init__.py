@@ -1,1 +1,1 @@
-"""The geometry of generated robots: directions, links at home, and what is refused."""
+"""The geometry of generated robots: directions, links at home, and reasons to refuse a robot."""

@@ -1,6 +1,6 @@
 """The links of a planned robot at home, as the figure draws them: sliding joints are extended.
 
-Plain floats and a table of sines, so that every machine refuses the same robots.
+The module uses plain floats and a table of sines, so that every machine refuses the same robots.
 """
 
 from collections.abc import Iterator, Sequence
@@ -88,7 +88,7 @@ def dot(first: HomePoint, second: HomePoint) -> float:
 
 
 def gap(one: tuple[HomePoint, HomePoint], other: tuple[HomePoint, HomePoint]) -> float:
-    """Return the distance of two straight pieces.
+    """Return the distance between two straight pieces.
 
     Source: Ericson, *Real-Time Collision Detection*, §5.1.9.
     """
@@ -112,7 +112,10 @@ def _clamped(share: float) -> float:
 def seen(
     points: Sequence[HomePoint], azimuth: int, elevation: int
 ) -> Iterator[tuple[float, float]]:
-    """Yield points in a view: right and up, as ``service/figures/geometry/view.py`` has them."""
+    """Yield the coordinates of points in a view, to the right and upwards.
+
+    These are the coordinates of ``service/figures/geometry/view.py``.
+    """
     ca, sa, ce, se = _VIEWS[azimuth, elevation]
     for px, py, pz in points:
         yield ca * py - sa * px, ce * pz - se * (ca * px + sa * py)

@@ -1,4 +1,4 @@
-"""The reasons for which a planned robot is drawn again."""
+"""The reasons to refuse a planned robot, so that another random robot takes its number."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,14 +41,14 @@ _GENERIC: Final = (0.731, -1.157, 0.419, 1.933, -0.587, 2.311, -1.723)
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The view in which a robot is drawn."""
+    """The view in which a figure shows a robot."""
 
     azimuth: int
     elevation: int
 
 
 def reason_against(plan: Plan, path: HomePath) -> str | None:
-    """Return why a robot is drawn again, or None."""
+    """Return the reason to refuse a planned robot, or None."""
     if _tells_little(plan.rows):
         return "a lazy answer earns too much"
     if _turns_back(path) or _touches(path):
@@ -70,7 +70,7 @@ def _tells_little(rows: Sequence[PlannedRow]) -> bool:
 
 
 def _turns_back(path: HomePath) -> bool:
-    """True if a piece of the path leads back along the one before."""
+    """True if a piece of the path leads back along the piece before it."""
     steps = [difference(end, start) for start, end in path.pieces]
     return any(
         dot(one, other) < -0.87 * (dot(one, one) * dot(other, other)) ** 0.5

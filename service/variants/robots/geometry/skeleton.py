@@ -1,7 +1,7 @@
-"""The directions of a small robot's axes at home, by number, so that no two numbers are alike.
+"""The directions of a small robot's axes at home; each number has its own directions.
 
-There are few simple robots: of 500 random ones, 100 are like an earlier one. So the seed of a
-simple level numbers the directions, and only the rest is random.
+There are few simple robots: of 500 random robots, 100 are like an earlier robot. So the number of a
+simple robot determines its directions, and only the rest is random.
 """
 
 from dataclasses import dataclass
@@ -37,9 +37,9 @@ class Skeleton:
 
 
 def skeleton(level: Grammar, number: int) -> Skeleton | None:
-    """Return the skeleton with a number; greater numbers than there are skeletons repeat them.
+    """Return the skeleton with this number. Numbers after the last skeleton repeat the skeletons.
 
-    Return None if two sliding joints in a row would be parallel.
+    Return None if two consecutive sliding joints would be parallel.
     """
     sizes = _sizes(level)
     total = sum(size for _, size in sizes)
@@ -84,7 +84,7 @@ def _decoded(sliding: tuple[bool, ...], left: int) -> Skeleton | None:
 
 
 def perpendicular(direction: AxisDirection) -> list[AxisDirection]:
-    """Return the four directions at a right angle to one, in a fixed order."""
+    """Return the four directions perpendicular to ``direction``, in a fixed order."""
     return [each for each in _AXES if not any(a * b for a, b in zip(each, direction, strict=True))]
 
 

@@ -22,7 +22,7 @@ _UNCOUNTED = {
 
 
 def upgrade() -> None:
-    """Create the tables, and indexes to list attempts by time and count them without reports."""
+    """Create the tables, and indexes to list and count attempts without reading reports."""
     for columns in _BEFORE:
         op.drop_index(f"ix_attempts_{'_'.join(columns)}", "attempts")
     for name, columns in _NOW.items():

@@ -1,4 +1,4 @@
-"""Add courses, their learners and assignments, and keys of a course or a learner."""
+"""Add courses, their learners and assignments, and keys for one course or one learner."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Add variants of exercises: in attempts, in assignments, and new ones for a learner."""
+"""Add variants to attempts and assignments, and the number of deals to each learner."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Add the choices of the variants of an assignment, so that a corrected file keeps them."""
+"""Store what an assignment's variants may vary, so that a corrected file changes no variant."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,5 +8,5 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    """Add the column. Assignments get their choices with the next hand-in."""
+    """Add the column ``choices``. An assignment gets its choices with the next hand-in."""
     op.add_column("assignments", sa.Column("choices", sa.Text))

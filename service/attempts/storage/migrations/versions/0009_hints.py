@@ -1,4 +1,4 @@
-"""Add hints that have a price: those that learners took, and the prices of assignments."""
+"""Add the priced hints that learners took, and the prices of hints in assignments."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Add the files that students hand in at platforms, which this service grades."""
+"""Add the files that students submit on platforms and that this service grades."""
 
 import sqlalchemy as sa
 from alembic import op
