@@ -1,4 +1,4 @@
-"""`python -m service` is `dh-grader`."""
+"""`python -m service` runs the command `dh-grader`."""
 
 from service.cli import main
 

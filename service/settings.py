@@ -32,7 +32,7 @@ class SettingsError(Exception):
 
 
 class Settings(BaseSettings):
-    """The settings. Each is read from the variable DH_GRADER_ with its name in capitals."""
+    """The settings. The environment variable DH_GRADER_HOST sets ``host``, and so on."""
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True)
 
@@ -284,7 +284,7 @@ def _unknown() -> Iterator[str]:
 
 
 def _origin_in(text: str) -> str:
-    """The origin that a browser sends for an address, or ""."""
+    """The origin of a web address as browsers send it, or "" for an unusable address."""
     try:
         parts = urlsplit(text)
         port = f":{parts.port}" if parts.port is not None else ""

@@ -51,7 +51,8 @@ def working_time() -> float:
 async def in_slices(work: Callable[[], R], give_way: Callable[[], Awaitable[None]]) -> R:
     """Return the result of ``work``; await ``give_way`` between its slices.
 
-    Exceptions of both are raised. If ``give_way`` raises one, the work ends at its checkpoint.
+    Exceptions of ``work`` and of ``give_way`` are raised. If ``give_way`` raises one, ``work`` ends
+    at its current checkpoint.
     """
     sliced = _Sliced(work)
     sliced.gr_context = contextvars.copy_context()

@@ -27,7 +27,7 @@ _SAME_NUMBER: Final = 1e-9
 
 
 def model_answer(exercise: Exercise) -> Iterator[Remark]:
-    """Yield parts in which the model answer does not get full marks, in radians or in degrees."""
+    """Yield failures of parts whose model answer lacks full marks, in radians or in degrees."""
     answers = solve(exercise).answers
     fields = {part.id: f"parts[{i}]" for i, part in enumerate(exercise.parts)}
     too_long = [part for part, answer in answers.items() if _longest(answer) > LIMITS.characters]
@@ -72,7 +72,7 @@ def _longest(answer: object) -> float:
 
 
 def failed_checks(exercise: Exercise) -> Iterator[Remark]:
-    """Yield checks whose answer does not get the expected result."""
+    """Yield a failure for each check whose answer does not get the expected result."""
     for i, check in enumerate(exercise.checks):
         reports = _graded(exercise, check.answers, check.angle_unit)
         for part, problem in _problems(check, reports):

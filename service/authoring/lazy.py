@@ -1,4 +1,4 @@
-"""The marks of lazy answers, which need no knowledge: zeros and joint variables."""
+"""The points of lazy answers, which need no knowledge: zeros and joint variables."""
 
 import math
 from collections.abc import Iterator, Mapping

@@ -80,7 +80,7 @@ def _told(exercise: Exercise, example: Example, model_answers: Any) -> list[tupl
 
 
 def _with_changes(answer: Any, changes: Mapping[str, str]) -> Any:
-    """Return a model answer with other texts in the cells ``row/cell``."""
+    """Return a model answer with other texts in some cells; ``changes`` has them by row/cell."""
     changed = json.loads(json.dumps(answer))
     for place, written in changes.items():
         rows = changed["rows"] if isinstance(changed, dict) else changed

@@ -1,4 +1,4 @@
-"""Check that a given table has the slip that the exercise file asks for."""
+"""Check that the slip that an exercise file asks for fits a table of the robot."""
 
 from collections.abc import Iterator
 

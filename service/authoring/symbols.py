@@ -37,7 +37,7 @@ _LOOK_ALIKE: Final = str.maketrans("IlO", "110")
 
 
 def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
-    """Yield names that are also a shorthand or a joint variable, or look like something else."""
+    """Warn of names that are also a shorthand or a joint variable, or look like another name."""
     for variable in exercise.variables:
         for problem in _problems(variable, exercise):
             yield warning(f"symbols.{variable.name}", problem)
@@ -54,7 +54,7 @@ def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
 
 
 def unused_symbols(exercise: Exercise) -> Iterator[Remark]:
-    """Yield symbols that no formula of the file uses."""
+    """Yield a warning for each symbol that no formula of the file uses."""
     used = {name for _, formula, _ in exercise.fields() for name in formula.symbols}
     for variable in exercise.variables:
         if variable.joint is None and variable.name not in used:
@@ -93,7 +93,7 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
 
 
 def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
-    """Yield narrow ranges, lengths that may be 0, and lengths of very different size."""
+    """Warn of narrow ranges, lengths that may be 0, and lengths of very different size."""
     for variable in exercise.variables:
         yield from _range(variable)
     sizes = {v.name: max(abs(v.low), abs(v.high)) for v in exercise.variables if v.kind == "length"}
@@ -150,7 +150,7 @@ def _range(variable: Variable) -> Iterator[Remark]:
 
 
 def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
-    """Yield angles without a unit that exceed a full turn, and so are probably in degrees."""
+    """Warn of angles without a unit beyond a full turn, which are probably in degrees."""
     for field, formula, quantity in exercise.fields():
         for term in _bare_terms(formula.tree, is_angle=quantity == "angle"):
             constant = Expression(formula.source, term, (), frozenset())

@@ -74,7 +74,7 @@ def setup_script() -> BundledFile:
 
 
 def template(platform: str, name: str) -> bytes:
-    """Return the content of a platform's file."""
+    """Return the content of the template ``name`` for a platform."""
     return (_TEMPLATES / platform / name).read_bytes()
 
 

@@ -85,7 +85,7 @@ def _places(content: BundleContent) -> Iterator[str]:
 
 
 def _pages_of_variants(content: BundleContent) -> Iterator[BundledFile]:
-    """Yield the statements of all variants, and the script that chooses one of each exercise."""
+    """Yield the statements of all variants, and a script that chooses a variant per exercise."""
     if content.variants is None:
         return
     pages: dict[str, dict[str, str]] = {}

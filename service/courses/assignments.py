@@ -1,4 +1,4 @@
-"""The assignments of a course and the extensions of learners: functions on a connection."""
+"""Database functions for the assignments of a course and the extensions of learners."""
 
 import json
 import secrets
@@ -77,7 +77,7 @@ def change_assignment(
 def extend(
     connection: Connection, course: str, assignment: str, extension: Extension
 ) -> CourseAssignment:
-    """Give a learner other dates or another limit. Without any, end the extension.
+    """Give a learner other dates or another limit; if ``extension`` has none, end it.
 
     Attempts that are no longer late get their points back. Raises CourseError.
     """
@@ -225,7 +225,7 @@ def _closes_needs_due() -> CourseError:
 
 
 def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
-    """Give late attempts that are not late any more all points of their reports."""
+    """Restore the points of attempts that were late, and are in time by the current dates."""
     named = ("number", "learner", "at", "report", "max_points", "hint_price")
     late = select(*(attempts.c[name] for name in named)).where(
         attempts.c.assignment == row.number, attempts.c.is_late

@@ -37,9 +37,10 @@ def assigned(
 
 
 def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
-    """Return the learner's variant under the plain id, or the exercise if it has no variants.
+    """Return the learner's variant, or the exercise if it has no variants.
 
-    Raises CourseError if the file has a fault in this variant; the message does not have the seed.
+    The variant has the id of the plain exercise. Raises CourseError if the file has a fault in this
+    variant; the message does not have the seed.
     """
     if seed is None:
         return exercise
@@ -57,10 +58,10 @@ def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
 def assigned_seed(
     connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
 ) -> tuple[LearnerTerms, Exercise, str | None]:
-    """Return the terms of an assignment, and the exercise with the seed of the learner's variant.
+    """Return the terms of an assignment, the exercise, and the seed of the learner's variant.
 
-    The exercise has the choices of the assignment. The seed is None if there are no variants.
-    Raises CourseError.
+    In the exercise, ``[vary]`` has the choices of the assignment. The seed is None if there are no
+    variants. Raises CourseError.
     """
     terms = terms_of(connection, course, assignment, learner)
     if exercise.id not in terms.exercises:
@@ -77,9 +78,10 @@ def assigned_seed(
 def own_variant(
     connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
 ) -> Exercise:
-    """Return the learner's variant of an exercise under its plain id, or the exercise itself.
+    """Return the learner's variant of an exercise, or the exercise itself.
 
-    The exercise itself is returned if there are no variants, or if the variant cannot be made.
+    The variant has the id of the plain exercise. The exercise itself is returned if there are no
+    variants, or if the variant cannot be made.
     """
     own = pinned(exercise, terms.choices)
     seed = _dealt_seed(connection, terms, learner, own)
@@ -110,7 +112,7 @@ def pin_choices(
 ) -> None:
     """Store the choices of an assignment's exercises, so that a changed file changes no variant.
 
-    Stored choices stay. With ``renew``, they are replaced. Raises CourseError.
+    Choices that are stored already stay, unless ``renew`` is True. Raises CourseError.
     """
     row = assignment_row(connection, course, assignment)
     if row.variants is None:
@@ -160,7 +162,7 @@ def learner_variants(
 
 
 def _told(exercise: Exercise, own: Exercise, seed: str, deal: int) -> LearnerVariant:
-    """Return a variant for tutors; ``own`` has the choices of the assignment."""
+    """Return the data of a variant for tutors; ``own`` has the choices of the assignment."""
     assert exercise.vary is not None
     assert own.vary is not None
     values = own.vary.written(seed)

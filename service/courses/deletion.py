@@ -1,4 +1,4 @@
-"""Delete courses and assignments, and remove learners: functions on a connection."""
+"""Database functions that delete courses and assignments, and that remove learners."""
 
 from datetime import datetime
 

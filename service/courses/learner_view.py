@@ -205,7 +205,7 @@ def has_priced_hints(
 
 
 def has_full_marks(connection: Connection, learner: str, number: int, exercise: str) -> bool:
-    """True if an attempt has full marks before deductions for lateness and hints."""
+    """True if an attempt of the learner has full marks before deductions."""
     return _is_full(_attempts(connection, learner).get((number, exercise), []))
 
 

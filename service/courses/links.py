@@ -1,7 +1,7 @@
-"""Personal links: keys of single learners, whose texts follow from the installation's secret.
+"""Personal links: each has a key for one learner, which follows from the installation's secret.
 
-Only a hash of a key is stored. Its text can be computed again, so a tutor can print the links of a
-class twice.
+Only a hash of the key is stored. The service can compute the key again, so a tutor can print the
+links of a class twice.
 """
 
 import secrets
@@ -69,7 +69,7 @@ def written_links(links: Iterable[PersonalLink]) -> Iterator[bytes]:
 def revoke_links(
     connection: Connection, course: str, learners: Collection[str] | None, now: datetime
 ) -> int:
-    """End the links of these or all learners; return the number of ended links."""
+    """End the links of ``learners``, or of all learners; return the number of ended links."""
     mine = (keys.c.course == course) & keys.c.learner.is_not(None) & keys.c.revoked_at.is_(None)
     if learners is not None:
         mine &= keys.c.learner.in_(learners)

@@ -1,4 +1,4 @@
-"""Courses and their learners in the database: functions on a connection."""
+"""Database functions for courses and their learners."""
 
 import secrets
 from collections.abc import Iterable
@@ -72,7 +72,7 @@ def learners(connection: Connection, course_id: str, now: datetime) -> list[Cour
 
 
 def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearner]) -> int:
-    """Add learners to a course, or change those who are there; return the number of new ones.
+    """Add learners, or change learners of the course; return the number of new learners.
 
     A learner without an id is found by the e-mail address. Raises CourseError.
     """

@@ -42,11 +42,11 @@ _OF_ASSIGNMENT: Final = _OF_COURSE.where(assignments.c.id == bindparam("assignme
 
 @dataclass(frozen=True, slots=True)
 class LearnerTerms:
-    """The terms of an assignment for one learner, with an extension if there is one.
+    """The terms of an assignment for one learner, including the learner's extension.
 
     ``number`` is the row number of the assignment, ``exercises`` has the points of each exercise.
-    ``variants`` is the secret of the learners' variants, None if there are none. ``choices`` says
-    what the variants may vary, as JSON; None if the exercise files define this.
+    ``variants`` is the secret from which the learners' seeds follow; None if there are no variants.
+    ``choices`` says what the variants may vary, as JSON; None if the exercise files define this.
     """
 
     number: int
@@ -63,7 +63,7 @@ class LearnerTerms:
     choices: str | None = field(default=None, repr=False)
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
-        """The highest level of the learner's attempt; never more than the exercise allows."""
+        """The highest feedback level for an attempt; never more than the exercise allows."""
         if self.feedback is None:
             return exercise.feedback_at(ordinal)
         most = min(exercise.feedback_by_attempt, key=list(FeedbackLevel).index)
@@ -76,7 +76,7 @@ class LearnerTerms:
         return self.rules.hint_prices
 
     def state(self, now: datetime) -> AssignmentState:
-        """Whether the learner can hand in."""
+        """Whether the learner can hand in: not yet, in time, late, or no longer."""
         if self.rules.opens is not None and now < self.rules.opens:
             return "not_open"
         if self._is_over(now):
@@ -84,7 +84,7 @@ class LearnerTerms:
         return "late" if self._is_past_due(now) else "open"
 
     def may_practise(self, now: datetime, *, is_full: bool) -> bool:
-        """True if unrecorded answers may be graded; ``is_full`` is True after full marks."""
+        """True if unrecorded answers may be graded; ``is_full`` means there are full marks."""
         if self.practice == "after":
             return is_full or self._is_past_due(now)
         return self.practice == "open"
@@ -182,7 +182,8 @@ def own_dates(
 ) -> tuple[datetime | None, datetime | None]:
     """Return the due date and the closing date for a learner with this extension.
 
-    Late attempts are accepted until the latest of all dates.
+    The closing date is the latest date of the assignment and of the extension; None if neither of
+    them has a closing date.
     """
     new_due = due or assignment.due
     if new_due is not None and assignment.opens is not None:

@@ -1,1 +1,1 @@
-"""Hints on demand: what to look at, the rule with its picture, and the rule on this row."""
+"""Hints on demand: what to look at, a rule with its picture, and the rule applied to a row."""

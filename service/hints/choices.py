@@ -1,7 +1,7 @@
-"""Other valid tables of the same robot: the frames of a right table, chosen otherwise.
+"""Other valid tables of a robot, made by choosing frames of a correct table differently.
 
 A frame between two rows may be turned by a half turn about its x or z axis, and slid along its z
-axis if the next axis is parallel. Which of these the exercise allows is decided by grading.
+axis if the next axis is parallel. Grading decides which of these changes the exercise allows.
 """
 
 import re
@@ -39,7 +39,7 @@ class FrameChoice:
 def other_choices(
     exercise: Exercise, part: DhTableSpec, rows: Sequence[Cells], submission: Submission
 ) -> list[FrameChoice]:
-    """Return up to three other right tables; none if the table ``rows`` is not right."""
+    """Return up to three other correct tables; none if the table ``rows`` is not correct."""
     convention = part.convention
     if not isinstance(convention, Convention) or part.frames != "free":
         return []
@@ -63,9 +63,9 @@ def other_choices(
 def _changed(
     rows: Sequence[Cells], convention: Convention, lengths: Sequence[str]
 ) -> Iterator[FrameChoice]:
-    """Yield tables in which one frame between two rows is chosen otherwise.
+    """Yield tables in which one frame between two rows is chosen differently.
 
-    The first ones differ in as many ways as possible.
+    The first tables differ in as many ways as possible.
     """
     ways: list[Callable[[list[Cells], int, Convention], FrameChoice]]
     ways = [_reversed_x, _reversed_z, *(partial(_slid, length=length) for length in lengths[:1])]
@@ -98,7 +98,7 @@ def _reversed_z(rows: list[Cells], i: int, convention: Convention) -> FrameChoic
 
 
 def _slid(rows: list[Cells], i: int, convention: Convention, length: str) -> FrameChoice:
-    """Slide the frame along its z axis, which is parallel to the next or to the one before."""
+    """Slide the frame along its z axis, which is parallel to the next or the previous z axis."""
     between = rows[i if convention is Convention.STANDARD else i + 1]["alpha"]
     is_opposite, is_standard = between in _HALF_TURNS, convention is Convention.STANDARD
     here, after = rows[i]["d"], rows[i + 1]["d"]

@@ -31,10 +31,10 @@ _SYMBOLS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 @dataclass(frozen=True, slots=True)
 class _Scene:
-    """Two frames, the corner of the way between them, and the indices of the parameters.
+    """Two frames, the corner of the path between them, and the indices of the parameters.
 
-    The columns of ``before`` and ``after`` are x, z and the origin. A row goes from the first
-    origin over the corner to the second one.
+    The columns of ``before`` and ``after`` are x, z and the origin. The path has two straight
+    pieces, a and d, which meet at the corner.
     """
 
     before: Numbers
@@ -44,7 +44,7 @@ class _Scene:
 
     @property
     def x(self) -> Numbers:
-        """The axis of a and α."""
+        """The x axis, along which a is measured, and about which α is measured."""
         return (self.after if self.is_standard else self.before)[:, 0]
 
     @property
@@ -52,7 +52,7 @@ class _Scene:
         return self.indices["a"] == "i"
 
     def length(self, name: str) -> Numbers:
-        """Return the ends ``(2, 3)`` of a or d."""
+        """Return the two end points of a or d, as an array ``(2, 3)``."""
         ends = [self.before[:, 2], self.corner, self.after[:, 2]]
         first = (name == "d") == self.is_standard
         return np.array(ends[:2] if first else ends[1:])
@@ -121,7 +121,7 @@ def _turned(vector: Numbers, axis: Numbers, angle: float | Numbers) -> Numbers:
 
 
 def _axes(sheet: Sheet, scene: _Scene) -> None:
-    """Draw the two joint axes, and the way from one frame to the other."""
+    """Draw the two joint axes, the path between the two frames, and the frames."""
     for frame in (scene.before, scene.after):
         ends = np.array([scene.corner, frame[:, 2]])
         along = (ends - frame[:, 2]) @ frame[:, 1]

@@ -1,7 +1,7 @@
 """The rules of DH and of kinematics that hints explain, each in three sentences.
 
-A rule is the field ``rule`` of the records of misconceptions. No sentence contains a value: of the
-exercise, a hint names only rows, columns, axes and frames. In ``look`` and ``apply`` are these
+The field ``rule`` in a record of a misconception names a rule. No sentence contains a value: a hint
+names only rows, columns, axes and frames of the exercise. ``look`` and ``apply`` may have these
 fields: ``{row}``, the axes ``{z_before}`` and ``{z}``, ``{x_before}`` and ``{x_here}``, the axis
 ``{x}`` of the parameters a and α, the axis ``{axis}`` of d and θ, and ``{entry}``, the place in an
 answer that is not a table.
@@ -22,7 +22,7 @@ class Rule:
 
     ``look`` and ``apply`` are templates, the other texts are sentences.
     ``modified`` is the statement in the modified convention if it differs from the standard one.
-    ``pictured`` are the parameters that its picture shows; a rule without any has no picture.
+    ``pictured`` are the parameters that the picture shows; if there are none, there is no picture.
     """
 
     title: str

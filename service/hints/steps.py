@@ -53,9 +53,10 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class HintStep:
-    """A step of a hint. ``rule`` is the name of the rule if the step has its picture.
+    """A step of a hint.
 
-    ``screen`` is the screen of *DH in ten minutes* that explains the rule, or "" without one.
+    ``rule`` is the rule whose picture the step shows, if any. ``screen`` is the screen of *DH in
+    ten minutes* that explains the rule, or "".
     """
 
     title: str
@@ -122,8 +123,8 @@ def _convention(
 ) -> Convention:
     """Return the convention in which the answer was read.
 
-    For a part without a convention, this is the robot's convention; without a table, the standard
-    one.
+    For a part without a convention, return the robot's convention. If the robot has no DH table,
+    return the standard convention.
     """
     if isinstance(part, DhRowSpec | FramesSpec | LinkTransformsSpec):
         return part.convention
@@ -143,7 +144,7 @@ def _convention(
 def _fields(
     topic: Topic, part: PartSpec, convention: Convention, report: PartReport
 ) -> dict[str, str]:
-    """Return the values of the fields of a sentence."""
+    """Return the values for the fields in the sentences of a rule."""
     labels = [row.label for row in report.rows if row.label != MARKED]
     if isinstance(part, DhTableSpec) and topic.row in labels:
         index = labels.index(topic.row)

@@ -67,7 +67,7 @@ def home_axes(arm: Arm) -> tuple[list[HomeAxis], Matrices]:
 def _sliding_axes_moved(axes: list[HomeAxis], tip: Numbers) -> list[HomeAxis]:
     """Move each sliding axis to the next axis, which saves lengths in the table.
 
-    Of a sliding axis, only the direction matters.
+    Only the direction of a sliding axis matters.
     """
     moved = list(axes)
     for i in reversed(range(len(axes))):
@@ -83,7 +83,7 @@ def _sliding_axes_moved(axes: list[HomeAxis], tip: Numbers) -> list[HomeAxis]:
 
 
 def common_normal(first: HomeAxis, second: HomeAxis) -> tuple[Numbers, Numbers]:
-    """Return the feet on both axes of their common normal. The axes must not be parallel."""
+    """Return both ends of the common normal of two axes, which must not be parallel."""
     normal = np.cross(first.direction, second.direction)
     between = second.point - first.point
     squared = float(normal @ normal)

@@ -101,7 +101,7 @@ answers.table = {_answer(rows)}
 
 
 def _answer(rows: Sequence[Row[str]]) -> str:
-    """Return a table as an answer of a check."""
+    """Return a table as the answer of a check, in TOML."""
     lines = ["a, alpha, d, theta", *(", ".join(row) for row in rows)]
     return '"""\n' + "\n".join(lines) + '\n"""'
 
@@ -148,7 +148,7 @@ def variable_names(structure: str) -> list[str]:
 
 
 def without_clashes(robot: HomeRobot) -> Letters:
-    """Return the letters; a constant in the d of a sliding joint is not called d, but h."""
+    """Return the letters; a constant length d of a sliding joint gets the letter h."""
     sliding = {i for i, kind in enumerate(robot.structure) if kind == "P"}
     return {
         cell: f"h{cell[0] + 1}" if cell[0] in sliding and cell[1] == D else name
@@ -211,7 +211,7 @@ def _table(rows: Sequence[Row[str]]) -> str:
 
 
 def _symbols(robot: HomeRobot) -> str:
-    """Return the symbols: the letters, and sliding joints with a range that moves visibly."""
+    """Return the section of symbols: variables of sliding joints, and letters, with ranges."""
     lines = []
     for i, kind in enumerate(robot.structure, 1):
         if kind == "P":

@@ -22,10 +22,10 @@ _IS_ANGLE = np.isin(np.arange(4), (ALPHA, THETA))
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A standard table of constants ``(joints, 4)``, and how its ends lie in the robot.
+    """A standard table of constants ``(joints, 4)``, and the poses at both of its ends.
 
-    ``base`` is frame {0} in the base link; ``tool`` is the tip in frame {n}. Each is the identity
-    if the exercise's frame and the robot's are the same.
+    ``base`` is the pose of frame {0} in the base link, and ``tool`` is the pose of the tip in frame
+    {n}. A pose is the identity if its two frames are the same.
     """
 
     table: Table
@@ -53,7 +53,7 @@ def _snapped(table: Table) -> Table:
 
 
 def _base_frame(axis: HomeAxis) -> Matrices:
-    """Return frame {0}: on the axis, as near to the base link as possible, x0 along its x."""
+    """Return frame {0}, on the axis nearest to the base link, with x0 near the link's x axis."""
     x = np.eye(3)[int(axis.parallel_to(np.eye(3)[0]))]
     x = x - (x @ axis.direction) * axis.direction
     return _frame(axis.nearest(np.zeros(3)), x / np.linalg.norm(x), axis.direction)
@@ -66,7 +66,7 @@ def _frame(origin: Numbers, x: Numbers, z: Numbers) -> Matrices:
 
 
 def _normal(before: HomeAxis, axis: HomeAxis, frame: Matrices) -> tuple[Numbers, Numbers]:
-    """Return x_i and the origin of frame i: on ``axis``, by the common normal."""
+    """Return x_i and the origin of frame i, from the common normal of the two axes."""
     if not axis.parallel_to(before.direction):
         foot, origin = common_normal(before, axis)
         between = origin - foot
@@ -81,7 +81,7 @@ def _normal(before: HomeAxis, axis: HomeAxis, frame: Matrices) -> tuple[Numbers,
 
 
 def _row(frame: Matrices, x: Numbers, origin: Numbers, z: Numbers) -> tuple[Numbers, Matrices]:
-    """Return the row to a frame with x-axis ±``x``, with the sign that has fewer offsets."""
+    """Return a row and its frame; x is ``x`` or ``-x``, whichever gives the simpler row."""
     choices = []
     for sign in (1.0, -1.0):
         here = _frame(origin, sign * x, z)
@@ -133,9 +133,9 @@ def greatest_difference(
     exact_pose: Callable[[Numbers], Matrices],
     samples: int = 100,
 ) -> tuple[float, float]:
-    """Return the greatest difference in position and in angle between the arm and the robot.
+    """Return the greatest difference in position and in angle between the table and the robot.
 
-    The two are compared at random values of the joint variables.
+    The poses of both are compared at random values of the joint variables.
     """
     values = np.random.default_rng(1).uniform(-np.pi, np.pi, (samples, len(structure)))
     lengths, angles = [], []

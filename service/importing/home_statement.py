@@ -46,7 +46,7 @@ Letters = Mapping[tuple[int, int], str]
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """A direction in words: templates of its sentences, and the values that all of them have."""
+    """A direction in words: templates for sentences, and the values for all these templates."""
 
     slides: str
     turns: str
@@ -59,7 +59,7 @@ class _Way:
 class HomeRobot:
     """A standard table of constants, the joints' types, and letters in place of some lengths.
 
-    The table may have one row more than joints, for a fixed tool frame.
+    The table may have one row more than the robot has joints, for a fixed tool frame.
     ``letters`` has the letter of a cell by row and column. A minus sign in the table stays in
     front of the letter. A number as text may take the place of a letter: the statement then has
     sums such as "0.2 + 0.35".
@@ -84,7 +84,7 @@ class HomeRobot:
 
 
 class UnevenLettersError(ValueError):
-    """A length and a crooked angle meet in one coordinate, so letters give no readable text."""
+    """A letter in a coordinate has a factor other than 1 or -1: the text would be unreadable."""
 
 
 def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
@@ -114,10 +114,10 @@ def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
 
 
 def tool_label(robot: HomeRobot, convention: Convention) -> str:
-    """Return the label of the tool frame: the number of rows, or e for a fixed row in addition.
+    """Return the label of the tool frame: "e" if a fixed row leads to it, else the number of rows.
 
-    In the modified convention, frame n is on the last axis. If the tool frame is not, the table
-    has a row e.
+    In the modified convention, frame n is on the last axis. If the tool frame is not on this axis,
+    the table has a row e.
     """
     last_a, last_alpha = robot.table[-1, [A, ALPHA]]
     fixed = convention is Convention.MODIFIED and max(abs(last_a), abs(last_alpha)) > _SAME

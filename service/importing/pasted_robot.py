@@ -67,7 +67,7 @@ def _read(text: str, scope: DrawingScope) -> StudentTable:
 
 
 def _kind(table: StudentTable, i: int) -> str | None:
-    """Return R or P by the cell of row i that has the joint's variable; None for a fixed row."""
+    """Return R if θ of row i has the joint's variable, P if d may have it, else None."""
     variable = f"theta{i + 1}"
     _, _, d, theta = table.rows[i].entries
     if theta.expression is not None and variable in theta.expression.symbols:
@@ -96,7 +96,7 @@ def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple
 
 
 def _values(formula: Expression, names: list[str]) -> tuple[float, float]:
-    """Return two values: one with all symbols 0, and one with only the symbols ``names`` 1."""
+    """Return two values: with all symbols 0, and with 1 for ``names`` and 0 for all others."""
     values = {name: np.array([0.0, float(name in names)]) for name in formula.symbols}
     [found] = evaluate_all([formula], values, {})
     at_zero, at_one = np.broadcast_to(np.asarray(found, dtype=np.float64), 2)

@@ -27,7 +27,7 @@ class RefusedRobotError(ValueError):
 
 
 class SeveralTipsError(RefusedRobotError):
-    """The tree of links has several ends, and no link of the tool is named."""
+    """The tree of links has several ends, and the author has not named the tool's link."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

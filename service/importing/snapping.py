@@ -1,6 +1,7 @@
-"""Makers round: 1.5708 means π/2. Snap numbers before any common normal is computed.
+"""Undo the rounding in robot files: 1.5708 means π/2.
 
-Two axes that should be parallel and are 0.000004 rad apart have a common normal kilometres away.
+Numbers are snapped before any common normal is computed: two axes that should be parallel and are
+0.000004 rad apart have a common normal kilometres away.
 """
 
 import math
@@ -19,8 +20,9 @@ _LENGTH_DECIMALS: Final = 5
 def snapped_angle(text: str) -> float:
     """Return an angle in radians as the multiple of 15° that it was rounded from, if any.
 
-    A number is a rounded multiple if it is within 1e-4 of the multiple. It is also a rounded
-    multiple if it has at least two decimals and is the multiple, rounded to as many decimals.
+    A number is a rounded multiple if it is within 1e-4 of the multiple. A number with two or more
+    decimals is also a rounded multiple if it equals the multiple, rounded to the same number of
+    decimals.
 
     >>> snapped_angle("1.57") == math.pi / 2, snapped_angle("1.6")
     (True, 1.6)

@@ -56,7 +56,7 @@ class Arm:
         return "".join("P" if joint.prismatic else "R" for joint in self.joints)
 
     def pose(self, values: Numbers) -> Matrices:
-        """Return the pose of the tip in the base link at values of the joints."""
+        """Return the pose of the tip in the base link at these values of the joint variables."""
         pose = np.eye(4)
         for joint, value in zip(self.joints, values, strict=True):
             pose = pose @ joint.before @ _motion(joint, float(value))
@@ -76,7 +76,7 @@ def _motion(joint: UrdfJoint, value: float) -> Matrices:
 
 @dataclass(slots=True)
 class _Joint:
-    """A joint as its element states it."""
+    """A joint as its XML element states it."""
 
     name: str
     kind: str

@@ -87,7 +87,7 @@ def drawn_slip(
 
 
 def _tries(table: ModelTable, seed: int, wanted: str | None) -> Iterator[tuple[str, SlipChange]]:
-    """Yield the codes in turn, each with one of its changes, in the order of the seed."""
+    """Yield codes in turn, each with a change that may cause it; ``seed`` sets the order."""
     draws = SlipDraws(f"find the slip\n{seed}")
     codes = draws.shuffled(list(SLIPS)) if wanted is None else [wanted]
     left = {name: draws.shuffled(changes_of(name, table)) for name in codes}

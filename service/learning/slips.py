@@ -44,7 +44,7 @@ def _is_single(cell: CellText) -> bool:
 
 
 def _own(table: ModelTable) -> Iterator[tuple[TableCell, CellText, Joint]]:
-    """Yield the cells of the joint variables."""
+    """Yield each cell of a joint variable with its text and its joint."""
     for (i, j), cell in _each(table):
         joint = table.joint_of(i)
         if joint is not None and cell.variable:
@@ -271,7 +271,7 @@ def _joint_numbering_by_kind(table: ModelTable) -> Iterator[SlipChange]:
 
 
 def _numbered(joint: Joint, number: int, table: ModelTable) -> str:
-    """Return the variable of a joint with another number, in the naming of this robot."""
+    """Return the name of a joint's variable with another number, as this robot names it."""
     letters = joint.variable.rstrip("0123456789")
     known = {each.variable for each in table.joints}
     name = f"{letters}{number}"

@@ -75,7 +75,7 @@ class SlipCounts:
 
 
 def _slips(part: PartReport) -> dict[tuple[str, bool], str]:
-    """The first sentence of the part by code, and by whether the entry is unreadable."""
+    """The first sentence in the part with each code, separately for unreadable entries."""
     found: dict[tuple[str, bool], str] = {}
     for message, verdict in _counted(part):
         found.setdefault((message.code, verdict is Verdict.UNREADABLE), message.message)

@@ -105,7 +105,10 @@ def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_C
 
 
 def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
-    """The exercises that the file name matches, each with the part, or "" for the exercise."""
+    """The index of each exercise that the file name matches, and the part in the name.
+
+    The part is "" if the name has only the exercise.
+    """
     path = PurePosixPath(name.lower())
     is_one = len(assignment.exercises) == 1
     found = ((i, _place(path, each, is_one)) for i, each in enumerate(assignment.exercises))
@@ -284,9 +287,10 @@ def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
 def read_body(
     content: FileContent, assigned: AssignedExercise, part: str | None = None
 ) -> GradeRequest:
-    """Read the answers to the assigned parts; with ``part``, perhaps only the answer to this part.
+    """Read the answers to the assigned parts.
 
-    Raises UnusableFileError.
+    If the content has no key ``answers``, it is the answer to ``part`` or to the only assigned
+    part. Raises UnusableFileError.
     """
     part = part or assigned.only_part
     value = content.value
@@ -371,7 +375,7 @@ def _fault(detail: "ErrorDetails") -> str:
 
 
 def of_file(name: str, problem: str) -> Sentence:
-    """Return the problem of a file, after its name."""
+    """Return a sentence with the name and the problem of a file."""
     return say("{file} {problem}", file=name, problem=problem)
 
 

@@ -218,7 +218,7 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
 
 
 def with_seeds(assignment: Assignment, seeds: Mapping[str, str]) -> Assignment:
-    """Return the assignment with variants of exercises; ``seeds`` are by the id of the exercise.
+    """Return the assignment with variants of exercises; ``seeds`` has the seeds by exercise id.
 
     The variants have the ids of the plain exercises. Raises NoVariantError.
     """

@@ -3,9 +3,9 @@
 Moodle (``mod/assign/classes/downloader.php``, earlier ``mod/assign/locallib.php``) names a folder
 ``Ada Byron_1234_assignsubmission_file``, in older versions with another ``_`` at the end, or puts
 the same text before the name of a file. Canvas (``lib/content_zipper.rb``) puts
-``byronada_LATE_1234_56789_`` before the name of a file. A typed text has the name
-``byronada_1234_text.html``, and an address ``byronada_1234_link.html``. For anonymous students,
-``anon_x7Gh2`` replaces the name and the number.
+``byronada_LATE_1234_56789_`` before the name of a file. A text that a student typed in Canvas has
+the name ``byronada_1234_text.html``, and a web address has the name ``byronada_1234_link.html``.
+For anonymous students, ``anon_x7Gh2`` replaces the name and the number.
 """
 
 import re

@@ -32,8 +32,8 @@ class Translation(Protocol):
 class Sentence(str):
     """A text in English that remembers its ``template`` and ``values``.
 
-    ``plural`` is the template for any other number than 1 of ``count``; it is empty if the template
-    counts nothing.
+    ``plural`` is the template for a ``count`` other than 1; it is empty if the sentence counts
+    nothing.
     """
 
     __slots__ = ("plural", "template", "values")
@@ -52,7 +52,7 @@ class Sentence(str):
         return self
 
     def __getnewargs__(self) -> tuple[Any, ...]:
-        """Return what makes an equal sentence, for copies in other processes."""
+        """Return the arguments that make an equal sentence, for copies in other processes."""
         return self.template, self.values, self.plural
 
 

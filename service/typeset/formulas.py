@@ -24,10 +24,10 @@ _NAME: Final = re.compile(
 
 
 def formula(text: str) -> str:
-    """Return a formula in any names as HTML with MathML, or as text if it is unreadable.
+    """Return a formula as HTML with MathML, or as text if it is unreadable.
 
-    Browsers do not break a formula into lines. So each term of a sum becomes a formula of its own,
-    and a long term becomes text.
+    Every word may be a name. Browsers do not break a formula into lines. So each term of a sum
+    becomes a separate formula, and a long term becomes text.
     """
     try:
         tree = _read(text).tree

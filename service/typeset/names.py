@@ -4,7 +4,7 @@ r"""Typeset the names in a text: theta1 becomes θ with the index 1.
 `tests/typeset/names.json` hold for both. These are names:
 
 - the symbols that an exercise declares; ``a``, ``A`` and ``I`` in a longer text are English words,
-- Greek letters, also by their small English names: alpha, phi_2,
+- Greek letters, also their names in lower case: alpha, phi_2,
 - a letter with an index or a superscript: x0, z_i, L1, R_2^0, R^T,
 - a word with an index of one letter or of digits: Rot_z,
 - frames in braces: {0}, {i-1}, {e},
@@ -61,7 +61,7 @@ class TypesetName(NamedTuple):
 
     @property
     def mathml(self) -> str:
-        """Return the element of the name."""
+        """Return the name as a MathML element."""
         if not self.stem.startswith("{"):
             return scripted(self.stem, self.below, self.above)
         brace = '<mo stretchy="false">{}</mo>'.format
@@ -84,12 +84,12 @@ def typeset(text: str, symbols: Container[str] = ()) -> str:
 
 
 def unbound(text: str, symbols: Container[str]) -> str:
-    """Return a part of a line as HTML, without the final step ``in_one_line``."""
+    """Return a part of a line as HTML with its names in MathML, as input of ``in_one_line``."""
     return "".join(_html(text, symbols))
 
 
 def in_one_line(html: str) -> str:
-    """Keep formulas of an HTML text in one line with the brackets and signs next to them."""
+    """Return HTML in which no line breaks between a formula and brackets or signs next to it."""
     return _RUN.sub(lambda run: f'<span class="maths">{run[0]}</span>', html)
 
 
@@ -119,7 +119,7 @@ def pieces(text: str, symbols: Container[str] = ()) -> Iterator[str | TypesetNam
 
 
 def _name(match: re.Match[str], symbols: Container[str]) -> TypesetName | None:
-    """Return the name that a match is, or None if it is a word."""
+    """Return the match as a name, or None if the match is an ordinary word."""
     if match["frame"]:
         return TypesetName(match["frame"].replace("-", "−"))
     stem, below, above = match["stem"], match["below"] or "", match["above"] or ""

@@ -1,1 +1,1 @@
-"""The points of a course: the gradebook, and the workbook with it."""
+"""The points of a course: the gradebook, and the workbook that contains the gradebook."""
