@@ -29,7 +29,8 @@ class KeptServices:
     ) -> tuple[Any, AttemptStore, KeyRing]:
         """Return the application, store and keys for this kind and catalogue, with empty tables.
 
-        The application must keep the catalogue alive, because the catalogue's id is the key.
+        The application must keep the catalogue alive, because Python's id of the catalogue is used
+        to find the application again.
         """
         place = kind, id(catalogue)
         if place not in self._built:

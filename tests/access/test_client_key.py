@@ -1,4 +1,4 @@
-"""The client of an address."""
+"""The address of a request decides which client the request counts for."""
 
 import pytest
 

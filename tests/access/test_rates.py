@@ -34,7 +34,7 @@ def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
 
 
 def waits(rates: Rates, *callers: tuple[Caller, str]) -> list[bool]:
-    """True for each request that has to wait."""
+    """Return, for each request in order, whether it has to wait."""
 
     async def ask() -> list[bool]:
         return [await rates.seconds_to_wait(*each) > 0 for each in callers]

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
-    """Wait until the server prints its port; only the test's own timeout limits that."""
+    """Wait until the server prints its port; only the test's own timeout limits the wait."""
     while True:
         text = log.read_text(encoding="utf-8")
         if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
@@ -42,7 +42,7 @@ class Served:
 
 @contextmanager
 def served(folder: Path, *, module: str = "service", **environment: str) -> Iterator[Served]:
-    """Start a real process, `python -m service serve`, that logs into a folder; end it at last.
+    """Run a real process, `python -m service serve`, that logs into a folder.
 
     Another ``module`` may start the service with a change.
     """

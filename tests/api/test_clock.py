@@ -63,7 +63,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Term:
-    """A course with a key during some hours in which the clock changes."""
+    """A service with a key, called at moments between which the clock jumps."""
 
     def __init__(self, store: AttemptStore, clock: Clock, scara: Exercise, **rules: Any) -> None:
         now = datetime.now(UTC)

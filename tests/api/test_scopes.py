@@ -134,7 +134,7 @@ _number = count()
 
 @dataclass(frozen=True)
 class Guarded:
-    """A service with keys: for each column of the statuses, the credentials of its callers.
+    """A service with keys; ``credentials`` are of the callers in each column of the statuses.
 
     ``open_app`` is the same service without keys.
     """
@@ -168,7 +168,7 @@ class Guarded:
     async def send(
         self, client: httpx.AsyncClient, route: str, language: str = "en"
     ) -> httpx.Response:
-        """Send a request that the route accepts from a caller with the right."""
+        """Send a request that the route accepts from a caller with the required right."""
         for file in self.editor_dir.iterdir():
             file.unlink()
         new = {"id": f"new-{next(_number)}"} if route in MAKING else {}
@@ -395,7 +395,7 @@ def _state(store: AttemptStore) -> list[Any]:
 
 
 async def _told(guarded: Guarded, credential: str, mark: str) -> list[str]:
-    """Return the routes whose answers to a caller contain a mark."""
+    """Return the routes whose responses to a caller contain the text ``mark``."""
     found = []
     # That route grades files of the request itself.
     routes = sorted(RIGHTS.keys() - {"POST /tutor/class"})

@@ -52,7 +52,7 @@ def table(dice: random.Random) -> str:
 
 
 def spelled(text: str, i: int) -> str:
-    """Double the blank at each bit of ``i`` that is 1: a different text with the same meaning."""
+    """Return the text with some blanks doubled: the k-th blank if bit k of ``i`` is 1."""
     first, *others = text.split(" ")
     return first + "".join(" " * (1 + (i >> k & 1)) + each for k, each in enumerate(others))
 
@@ -60,7 +60,7 @@ def spelled(text: str, i: int) -> str:
 def fill(
     store: AttemptStore, exercise: Exercise, count: int, *, no_two_alike: bool = False
 ) -> None:
-    """Record ``count`` attempts, like those of a class or all different."""
+    """Record ``count`` attempts: with repeated tables as in a class, or all different."""
     dice = random.Random(1)
     tables = [table(dice) for _ in range(count if no_two_alike else min(TABLES, count))]
     if no_two_alike:

@@ -13,7 +13,7 @@ from tests.attempts.databases import KINDS, new_file
 
 @pytest.fixture(scope="session")
 def killable() -> Any:
-    """A class of processes that start quickly: a fork server has imported the service."""
+    """A class of processes that start quickly, because a fork server has imported the service."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(
         ["service.attempts.regrades.outdated", "service.attempts.store", "service.server.start"]
@@ -36,7 +36,7 @@ def sqlite_url(file_with_tables: str, tmp_path: Path) -> str:
 
 @pytest.fixture(params=KINDS)
 def database_url(request: pytest.FixtureRequest) -> str:
-    """The URL of a database with migrated, empty tables, of each kind in turn."""
+    """The URL of a database with migrated, empty tables; tests run with each kind of database."""
     url: str = request.getfixturevalue(f"{request.param}_url")
     return url
 

@@ -35,10 +35,10 @@ TABLE = "a1 0 0 θ1\na2 {} 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 
 
 class Acknowledged:
-    """Posts attempts from several threads until all replicas are dead; stores the answered ids.
+    """Posts attempts from several threads until all replicas are dead; stores the confirmed ids.
 
-    If a replica is dead, the request is sent to the next one with the same key. Every fifth request
-    is sent to all of them.
+    If a replica is dead, the request is sent to the next replica with the same key. Every fifth
+    request is sent to all replicas.
     """
 
     def __init__(self, ports: Sequence[int]) -> None:
@@ -99,7 +99,7 @@ def killed_at_random(
 ) -> None:
     """Kill one replica after the other; assert that acknowledged attempts are recorded once.
 
-    After each kill, wait for an answer of the others and up to ``most`` seconds more.
+    After each kill, wait for a response of another replica and up to ``most`` seconds more.
     """
     dice = random.Random(seed)
     logs = [folder / f"log{i}" for i in range(replicas)]

@@ -96,7 +96,7 @@ def check_whole(url: str) -> None:
 
 
 def kill_before(url: str, statement: int, killable: Any) -> bool:
-    """Migrate in a process that dies before a statement; return False if there are fewer."""
+    """Migrate in a process that dies before statement no. ``statement``; False if it survives."""
     process = killable(target=_open, args=(url, statement))
     process.start()
     process.join(ANSWER)

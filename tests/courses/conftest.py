@@ -31,7 +31,7 @@ NO_TWIST = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
 
 @dataclass
 class Class:
-    """A course ``robots`` of a running store; ``keys`` are those in the links of the learners."""
+    """The course ``robots`` in a running store; ``keys`` has the key in each learner's link."""
 
     store: AttemptStore
     keys: Mapping[str, str]
@@ -62,13 +62,13 @@ class Class:
         return asyncio.run(self.send(*words, **body))
 
     def hand_in(self, key: str, answers: Any = None, learner: str = "ada") -> httpx.Response:
-        """Hand scara in."""
+        """Submit answers to the exercise scara."""
         path = "/v1/courses/robots/assignments/homework/attempts"
         body = {"exercise": "scara", "answers": answers or NO_TWIST}
         return self.ask("POST", path, learner, key, **body)
 
     def own(self, learner: str = "ada") -> Any:
-        """Return the learner's state at scara."""
+        """Return the learner's state at the exercise scara."""
         [course] = self.ask("GET", "/v1/me", learner).json()["courses"]
         return course["assignments"][0]["exercises"][0]
 
@@ -86,7 +86,7 @@ def services(
 def class_(
     request: pytest.FixtureRequest, services: KeptServices, catalogue: Mapping[str, Exercise]
 ) -> Class:
-    """The class, in the kind of database of the parameter."""
+    """The class, in a database of the kind that the parameter names."""
 
     def build(store: AttemptStore, keys: KeyRing) -> Any:
         access = Access(OPEN_HERE, read_attempts=None, keys=keys)
@@ -107,5 +107,5 @@ def class_(
 
 
 def days(count: float) -> str:
-    """Return the moment in ``count`` days."""
+    """Return the moment ``count`` days from now."""
     return (NOW + timedelta(days=count)).isoformat()

@@ -1,4 +1,4 @@
-"""An assignment file or options become an assignment, or are refused with the reason."""
+"""An assignment file or options become an assignment, or the refusal gives the reason."""
 
 from pathlib import Path
 

@@ -44,7 +44,7 @@ def points(class_: Class) -> list[list[float | None]]:
 
 
 def all_right() -> Any:
-    """Return the answers of the lecture to all parts of scara."""
+    """Return correct answers to all parts of scara, from the first check in its file."""
     file = Path(__file__).parents[2] / "exercises/scara.toml"
     return tomllib.loads(file.read_text(encoding="utf-8"))["checks"][0]["answers"]
 
@@ -206,7 +206,7 @@ def test_all_lists_have_the_order_of_family_names(class_: Class) -> None:
 
 
 def test_an_exercise_with_the_same_robot_is_no_practice_either(class_: Class) -> None:
-    """A copy of an exercise, or one that finds the slip in its table, would give it away."""
+    """Practice with another exercise on the same robot would give away the assigned table."""
 
     def practised(exercise: str) -> list[int]:
         paths = [f"/v1/exercises/{exercise}/{last}" for last in ("grade", "solution")]
@@ -245,7 +245,7 @@ def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class
 
 
 def test_waiting_for_a_turn_makes_no_hand_in_late(class_: Class) -> None:
-    """The service was busy: the request arrived before the due date, and gets its turn after it."""
+    """A busy service gets a request before the due date, and grades it after the due date."""
     class_.assign(due=(NOW + timedelta(minutes=-1)).isoformat())
     inner = class_.app
 

@@ -1,4 +1,4 @@
-"""Variants in assignments: each learner has one of their own, and never sees its seed."""
+"""Variants in assignments: each learner has a personal variant, and never sees its seed."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Courses and assignments are deleted and learners removed, with nothing left of them."""
+"""Nothing is left of deleted courses, deleted assignments and removed learners."""
 
 import asyncio
 from functools import partial
@@ -34,7 +34,7 @@ TABLES = (
 
 
 def rows(class_: Class) -> dict[str, int]:
-    """Return the number of rows of each table that has some."""
+    """Return the number of rows of each table that is not empty."""
 
     def counted(connection: Any) -> dict[str, int]:
         found = {
@@ -49,7 +49,7 @@ def rows(class_: Class) -> dict[str, int]:
 
 @pytest.fixture
 def tutored(class_: Class) -> Class:
-    """A class with an extension, two attempts of ada, one of grace, and points of a tutor."""
+    """A class with an extension, two attempts by ada, and one by grace with a tutor's points."""
     class_.assign(due=days(1))
     more = Extension.model_validate({"learner": "ada", "due": days(2)})
     class_.do(partial(extend, course="robots", assignment="homework", extension=more))

@@ -27,7 +27,7 @@ BOTH = pytest.mark.parametrize("class_", KINDS, indirect=True)
 
 
 def set_up(class_: Class) -> Class:
-    """Record an attempt of ada in each of two courses, with the points of an older version."""
+    """Record an attempt by ada in each of two courses, with the points of an older version."""
     class_.assign()
     exercises = [{"exercise": "scara", "points": 10}]
     new = NewAssignment.model_validate({"id": "homework", "title": "H", "exercises": exercises})

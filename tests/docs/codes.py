@@ -67,7 +67,7 @@ def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
 
 
 def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
-    """Return the classes that carry a code, with the position of that argument."""
+    """Return the classes that carry a code, with the position of their argument ``code``."""
     carriers: dict[str, int] = {}
     heirs: list[tuple[str, set[str]]] = []
     for node in nodes:
@@ -95,7 +95,7 @@ def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
 
 
 def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
-    """Yield the functions that pass a code on, with the position of that argument."""
+    """Yield the functions that pass a code on, with the position of their argument ``code``."""
     for node in nodes:
         if isinstance(node, Function) and node.name != "__init__" and CODE in _arguments(node):
             place = _arguments(node).index(CODE)
@@ -139,7 +139,10 @@ def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
 
 
 def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None:
-    """Return the code argument of a call; None without one; if it is unknown, the call itself."""
+    """Return the argument ``code`` of a call, or None if the call has no such argument.
+
+    If the argument cannot be found, return the call itself.
+    """
     for keyword in call.keywords:
         if keyword.arg == CODE:
             return keyword.value

@@ -128,7 +128,7 @@ def page() -> str:
 
 
 def _section(heading: str, model: type[BaseModel], text: str = "", first: str = "") -> str:
-    """Return a section on the keys of a model without those of its base class.
+    """Return a section on the keys of a model, without the keys of its base class.
 
     ``first`` is the row of the key ``kind``.
     """

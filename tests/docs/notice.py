@@ -83,7 +83,7 @@ _ARM_FILES: Final = (
 def _joints(
     name: str, folder: str, source: str, rights: str, licence: str, text: str, arms: str
 ) -> Vendored:
-    """Return the work that the joints of some arms are from."""
+    """Return the third-party work from which the joints of some arms were copied."""
     version = folder.rpartition("-")[2]
     files = tuple(f"{_ARMS}/{folder}/{arm}.urdf" for arm in arms.split())
     title = f"{name}, the joints of arms"

@@ -2,8 +2,8 @@
 
 ``python -m tests.docs.sentences > docs/sentences.md`` writes it. The examples come from the records
 of misconceptions, docs/messages.md, ``sentence_examples.toml``, the checks in the exercise files,
-and the corpus of formulas. Each example is handed in. The page shows each sentence with the first
-example that causes it.
+and the corpus of formulas. Each example is graded. The page shows each sentence with the first
+example that causes the sentence.
 """
 
 import sys
@@ -211,7 +211,7 @@ Known = tuple[Template, frozenset[str]]
 
 
 def known_templates() -> list[Known]:
-    """Return the templates of the files that read, judge and explain."""
+    """Return the templates of sentences in the code that reads, judges and explains."""
     codes: dict[str, set[str]] = {}
     for use in messages_page.program():
         codes.setdefault(use.file, set()).add(use.code)
@@ -270,7 +270,7 @@ def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], lis
 
 
 def _section(met: Iterable[Template], code: str) -> str:
-    """Return the section of messages.md with the code and most codes of the files of ``met``."""
+    """Return the section of messages.md with ``code`` and most codes from the files of ``met``."""
     told = [use.code for use in messages_page.program() for each in met if use.file == each.file]
     listed: dict[str, set[str]] = {}
     for line in messages_page.LINES:

@@ -105,7 +105,7 @@ def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
 
 
 def _of_joined(node: ast.JoinedStr) -> Iterator[tuple[str, ...]]:
-    """Yield the pieces of an f-string, after those of the strings in its values."""
+    """Yield the pieces of the strings in an f-string's values, then the f-string's own pieces."""
     pieces = [""]
     for value in node.values:
         if isinstance(value, ast.Constant):
@@ -117,7 +117,7 @@ def _of_joined(node: ast.JoinedStr) -> Iterator[tuple[str, ...]]:
 
 
 def _of_call(call: ast.Call) -> Iterator[tuple[str, ...]]:
-    """Yield the pieces of the templates of ``say``, and of the strings in their values."""
+    """Yield the pieces of the templates in a call of ``say``, and of the strings in its values."""
     for each in call.args:
         if isinstance(each, ast.Constant):
             yield _of_sentence(str(each.value))
@@ -127,7 +127,7 @@ def _of_call(call: ast.Call) -> Iterator[tuple[str, ...]]:
 
 
 def _of_sentence(template: str) -> tuple[str, ...]:
-    """Return the pieces of a template of ``say`` between its gaps."""
+    """Return the pieces between the gaps in a template of ``say``."""
     pieces = [""]
     for text, name, _, _ in Formatter().parse(template):
         pieces[-1] += text

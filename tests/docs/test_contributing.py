@@ -12,7 +12,7 @@ STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading", SERVICE /
 
 
 def on_the_map() -> Iterator[Path]:
-    """Yield the files and folders of the map; deeper indentation means inside."""
+    """Yield the files and folders of the map; an indented line is inside the folder above it."""
     above: list[tuple[int, Path]] = []
     chart = PAGE[PAGE.index("## The map") : PAGE.index("## Five recipes")]
     for indent, names in re.findall(r"^    ( *)((?:\w+(?:/|\.py) +)+)", chart, re.MULTILINE):

@@ -14,7 +14,7 @@ _COLUMN = re.compile(r"(?<!\\)\|")
 
 
 def rows(*heads: str) -> list[tuple[str, ...]]:
-    """Return the rows of the tables with these column heads, without the marks of code."""
+    """Return the rows of the tables with these column heads, without backticks."""
     found: list[tuple[str, ...]] = []
     inside = False
     for line in PAGE.split("\n"):

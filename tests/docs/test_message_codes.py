@@ -36,7 +36,7 @@ PASTED_NOTED = "A pasted table or matrix that is read, with a note"
 
 
 class Line(NamedTuple):
-    """A line of a table of codes; ``example`` is the columns after the meaning."""
+    """A line of a table of codes; ``example`` has the cells that follow the meaning."""
 
     section: str
     code: str

@@ -10,7 +10,7 @@ The words after the three backticks say what a code block does:
     csv FILE expected is the text of a file that an earlier command has written
     toml, json, yaml, sh  is only read
 
-In the output, `…` matches any text within a line, and alone on a line any lines.
+In the output, `…` matches any text within a line. A line with only `…` matches any lines.
 `$ export NAME=VALUE` sets a variable for the commands that follow.
 """
 
@@ -60,7 +60,7 @@ class Reader:
         monkeypatch.chdir(folder)
 
     def follow(self, page: str) -> None:
-        """Run all blocks of the page; fail with the line of a block that is not right."""
+        """Run all blocks of the page; if a block is wrong, fail with the number of its line."""
         for block in blocks(page):
             match block.language:
                 case "console":

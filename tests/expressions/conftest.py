@@ -1,9 +1,9 @@
 """The vocabulary of an arm: joints 1, 2, 4 turn, joint 3 slides.
 
 The test of ``service/expressions/x/y.py`` is ``x/test_y.py``. The tests in this folder are for the
-whole reader: written cases (``corpus``, and ``repairs`` for its repairs), random texts (``fuzz``),
-properties of trees, formulas printed by SymPy, memoized readings, and that no text is run as a
-program.
+whole reader: written cases (``corpus``, and ``repairs`` for the reader's repairs), random texts
+(``fuzz``), properties of trees, formulas printed by SymPy, and memoized readings. One test checks
+that no text is run as a program.
 """
 
 import numpy as np

@@ -135,7 +135,7 @@ def numbers(name: str) -> dict[str, float]:
 
 
 def names() -> list[str]:
-    """Return the names of the files that contain values."""
+    """Return the names of the files in corpus/ whose cases have values."""
     return sorted(
         file.stem for file in FOLDER.glob("*.txt") if file.stem not in {"errors", "hostile"}
     )

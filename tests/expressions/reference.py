@@ -1,4 +1,4 @@
-"""An independent evaluator of formulas: a few nodes of Python's own grammar.
+"""An independent evaluator of formulas, which Python itself parses.
 
 It shares no code with the program and evaluates only arithmetic.
 """

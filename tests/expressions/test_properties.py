@@ -92,7 +92,7 @@ def test_latex_reads_back_to_the_same_values(tree: Node) -> None:
 
 
 def _oracle(node: Node, values: dict[str, float]) -> sympy.Expr:
-    """Build the same formula in SymPy, with 40 digits."""
+    """Build the formula of a tree in SymPy, with numbers of 40 digits."""
     match node:
         case Number(value):
             return sympy.Float(value, 40)

@@ -71,7 +71,7 @@ class Service:
                 return connection
 
     def ask(self, sent: bytes, source: str = "127.0.0.1") -> list["Answer"]:
-        """Send bytes, close the sending end, and return all answers."""
+        """Send bytes, close the sending end, and return all responses."""
         with self.connect(sent, source) as connection:
             connection.shutdown(socket.SHUT_WR)
             return answers(connection)
@@ -89,7 +89,7 @@ class Service:
 
 
 class Answer:
-    """The status, headers and body of one answer."""
+    """The status, headers and body of one response."""
 
     def __init__(self, head: bytes, body: bytes) -> None:
         line, *fields = head.decode("ascii").split("\r\n")
@@ -114,7 +114,7 @@ def received(connection: socket.socket) -> bytes:
 
 
 def answers(connection: socket.socket) -> list[Answer]:
-    """Return all answers until the server closes the connection. Fails if one is incomplete."""
+    """Return all responses until the server closes the connection. Fail if one is incomplete."""
     stream, found = received(connection), []
     while stream:
         head, end, rest = stream.partition(b"\r\n\r\n")

@@ -93,7 +93,7 @@ class Process:
     async def ask(
         self, address: str, port: int, size: int, *costs: float, trusted: bool = False
     ) -> float:
-        """Send one request; return the seconds until its answer."""
+        """Send one request; return the seconds until its response."""
         asked = False
 
         async def receive() -> dict[str, Any]:

@@ -20,7 +20,7 @@ WRONG = 10 * WRONG[:-1] + 9 * WRONG[-1:] + [0.050]
 
 
 def cost(choose: random.Random) -> float:
-    """Return the seconds of a student's grading: half the answers are wrong, some in many cells."""
+    """Return the random duration of a grading in seconds; half of the answers are wrong."""
     right = choose.random() < 0.5
     return 0.001 if right else choose.choice([0.002, 0.003, 0.003, 0.004, 0.004, 0.006, 0.015])
 
@@ -30,8 +30,8 @@ def waits(
 ) -> Waits:
     """Return the sorted waiting times of six honest clients.
 
-    ``attack`` holds the parameters of ``attacker``, if sixteen of them attack. The honest clients
-    share one address unless ``apart``.
+    If ``attack`` has the parameters of ``attacker``, sixteen attackers send requests, too. The
+    honest clients share one address unless ``apart``.
     """
     process = Process(monkeypatch, step)
     ports = itertools.count(1000)

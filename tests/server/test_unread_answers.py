@@ -1,4 +1,4 @@
-"""The bytes of unread answers count towards the limit of the client's connection."""
+"""The bytes of unread responses count towards the limit of the client's connection."""
 
 import asyncio
 import contextlib
@@ -18,14 +18,14 @@ LIMIT = 24 * MB
 
 
 async def large(_scope: Any, _receive: Any, send: Any) -> None:
-    """Send a large answer in one piece."""
+    """Send a large response in one piece."""
     length = (b"content-length", str(ANSWER).encode())
     await send({"type": "http.response.start", "status": 200, "headers": [length]})
     await send({"type": "http.response.body", "body": bytes(ANSWER)})
 
 
 async def unsent_to(clients: int, *, reading: bool) -> tuple[int, int]:
-    """Return the unsent bytes of answers to ``clients``, and the number of connected clients."""
+    """Return the unsent bytes of the responses to some clients, and how many stay connected."""
     loop = asyncio.get_running_loop()
     config = uvicorn.Config(large, http=GuardedProtocol, ws="none", log_level="critical")
     config.load()

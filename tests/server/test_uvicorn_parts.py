@@ -83,7 +83,7 @@ def set_on_self(of: type) -> set[str]:
 
 
 def read_from(of: type, *owners: str) -> Iterator[str]:
-    """Yield the attributes of ``owners`` that a class uses: ``name`` for ``self.name``."""
+    """Yield the names of the attributes that a class uses of ``owners``, such as ``self``."""
     for node in ast.walk(tree_of(of)):
         if isinstance(node, ast.Attribute) and ast.unparse(node.value) in owners:
             yield node.attr

@@ -1,4 +1,4 @@
-"""Every answer that depends on the language of the reader says so, whatever its route."""
+"""Every response that depends on the reader's language says so in its headers."""
 
 import asyncio
 import json
@@ -26,7 +26,10 @@ def says_so(answer: httpx.Response) -> bool:
 
 
 def silent(guarded: Guarded, credential: str, routes: set[str]) -> tuple[list[str], set[str]]:
-    """Return the routes whose German answers lack language headers, and all with German answers."""
+    """Return the routes whose German responses lack language headers.
+
+    Also return the set of all routes with German responses.
+    """
 
     async def answers() -> dict[str, httpx.Response]:
         async with guarded.client(credential) as client:

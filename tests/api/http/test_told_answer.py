@@ -1,4 +1,4 @@
-"""Answers in the language of the reader: by query, by header, or English."""
+"""Responses in the language of the reader: chosen by query, by header, or English."""
 
 import tomllib
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""Only a request from the machine itself counts as a tutor's, whatever a student sends."""
+"""Only a request from the machine itself has a tutor's rights, whatever a student sends."""
 
 import asyncio
 from typing import Any

@@ -42,7 +42,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Tutor:
-    """A client of a service in this process, which it calls at ``at``, by default this machine."""
+    """A client of a service in this process; ``at`` is the service's address, by default local."""
 
     def __init__(
         self, exercises: Mapping[str, Exercise], store: AttemptStore | None,
@@ -57,7 +57,7 @@ class Tutor:
             return client.request(method, path, json=body)
 
     def asked(self, path: str, **more: str) -> httpx.Response:
-        """Return the answer of a route to its body in ``BODIES``."""
+        """Return the response of a route to the route's body in ``BODIES``."""
         body = BODIES[path]
         return self.ask("GET" if body is None else "POST", path, body, **more)
 

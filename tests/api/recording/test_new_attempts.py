@@ -126,7 +126,7 @@ def test_outcomes_have_their_codes_at_every_level(course_of: Any, store: Attempt
 
 @pytest.fixture
 def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
-    """Return the list of the levels of all gradings of attempts from now on."""
+    """Return a list to which each later grading of an attempt adds its feedback level."""
     done: list[FeedbackLevel] = []
 
     def counted(exercise: Exercise, submission: Submission) -> GradedAnswers:
@@ -157,7 +157,7 @@ def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vai
     store: AttemptStore,
     gradings: list[FeedbackLevel],
 ) -> None:
-    """This holds for two replicas, and for whichever number an attempt gets."""
+    """Two replicas get twelve attempts at once, and first grade each as the first attempt."""
     levels = (first, FeedbackLevel.VERDICTS, FeedbackLevel.HINTS)
     exercise = replace(
         catalogue["scara"], feedback_by_attempt=levels, attempts=AttemptsSpec(limit=10)

@@ -1,4 +1,4 @@
-"""The answers to a supervisor with a real database, and the queries that they cost."""
+"""Responses to a supervisor's health checks with a real database, and their database queries."""
 
 import asyncio
 import logging
@@ -26,7 +26,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 def asked(app: FastAPI, path: str, times: int = 1) -> list[httpx.Response]:
-    """Return the answers to several requests at once."""
+    """Return the responses to several simultaneous requests."""
 
     async def ask() -> list[httpx.Response]:
         transport = httpx.ASGITransport(app)

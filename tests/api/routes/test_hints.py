@@ -68,7 +68,7 @@ def test_other_hints_are_refused(
 
 
 def test_more_feedback_does_not_change_a_hint(client: httpx.Client) -> None:
-    """A report at the level full has other messages together, but the same hints."""
+    """A report at the level full groups messages differently, but the hints are the same."""
     body = {**ASKED, "step": 3}
     full = client.post(PATH, json={**body, "feedback": str(FeedbackLevel.FULL)})
     assert full.json() == client.post(PATH, json=body).json()

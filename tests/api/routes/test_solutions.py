@@ -1,4 +1,4 @@
-"""Model solutions over HTTP: off by default, for right answers, and without delaying others."""
+"""Model solutions over HTTP: off by default, given for right answers, never blocking others."""
 
 import asyncio
 import subprocess
@@ -142,7 +142,7 @@ REWORDED = "a1, 0, 0, q1 + 360°\na2, 0, 0, q2"
 
 
 def own_answers(exercise: Exercise, *without: str) -> dict[str, object]:
-    """Return the model answers, without some parts."""
+    """Return the model answers to all parts but the parts ``without``."""
     return {each.part: each.answer for each in solved(exercise).parts if each.part not in without}
 
 

@@ -1,4 +1,4 @@
-"""Deleted data is in no file of SQLite any more, or the caller learns that it still is."""
+"""Deleted data is in no file of SQLite any more; otherwise, the caller learns about it."""
 
 import random
 import time

@@ -1,4 +1,4 @@
-"""A course in a new database, and learners who hand in over HTTP until it is confirmed."""
+"""A course in a new database, and learners who repeat each hand-in until it is confirmed."""
 
 import asyncio
 import json
@@ -28,7 +28,7 @@ TRIES: Final = 1200
 
 @dataclass(frozen=True)
 class HandIn:
-    """A hand-in of a learner, ``at`` seconds after the beginning; ``body`` names its exercise."""
+    """A hand-in of a learner, ``at`` seconds after the start; ``body`` names the exercise."""
 
     learner: str
     assignment: str
@@ -39,7 +39,7 @@ class HandIn:
 
 @dataclass
 class Outcome:
-    """The answers to hand-ins: waits in seconds, and ids of attempts by idempotency key."""
+    """The responses to hand-ins: waits in seconds, and ids of attempts by idempotency key."""
 
     waits: list[float] = field(default_factory=list)
     attempts: dict[str, str] = field(default_factory=dict)
@@ -80,10 +80,11 @@ def assign(url: str, name: str, exercises: Sequence[str], **fields: Any) -> None
 
 
 class Learners:
-    """Learners with their links.
+    """Learners with the keys in their links.
 
-    Each has an address and a connection of its own for each hand-in. If the connection breaks, the
-    learner sends the same hand-in again with the same key, to the next of the ``ports``.
+    Each learner has a separate address, and each hand-in has a separate connection. If the
+    connection breaks, the learner sends the hand-in again with the same key, to the next of the
+    ``ports``.
     """
 
     def __init__(self, ports: Sequence[int], keys: Mapping[str, str], outcome: Outcome) -> None:

@@ -34,7 +34,7 @@ OTHERS = 10
 
 
 class Fleet:
-    """Services over one database. Each can be killed, and is then started again."""
+    """Services over one database. A killed service is started again."""
 
     def __init__(self, url: str, folder: Path, kind: str) -> None:
         self._settings = {"DH_GRADER_DATABASE": url, "DH_GRADER_SECRET": SECRET}
@@ -84,7 +84,7 @@ class Fleet:
 
 @contextmanager
 def fleet(url: str, folder: Path, kind: str) -> Iterator[Fleet]:
-    """Run the services of a kind of database."""
+    """Run as many services as tests use with this kind of database."""
     made = Fleet(url, folder, kind)
     yield made
     made.close()
@@ -110,7 +110,7 @@ async def _round(fleet: Fleet, learners: Learners, number: int, choose: random.R
 
 
 def killed(url: str, folder: Path, kind: str, rounds: int) -> tuple[Outcome, list[str]]:
-    """Kill a process in each of the rounds; return the answers, and the broken promises."""
+    """Kill a process in each round; return the responses and sentences about failures."""
     names = [f"greedy{i}" for i in range(rounds)] + [f"u{i}" for i in range(OTHERS)]
     keys, outcome, choose = enrol(url, names), Outcome(), random.Random(rounds)
     assign(url, "homework", [EXERCISE])

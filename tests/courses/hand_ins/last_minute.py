@@ -1,8 +1,8 @@
 """`python -m tests.courses.hand_ins.last_minute`: a class hands in just before it is due.
 
-150 learners hand three exercises in, within 20 seconds, and more and more of them the nearer the
-due date is. Half of the tables have slips. Print the waiting times. Exit with 1 if an answer is a
-failure, or if a hand-in is late, lost or recorded twice.
+150 learners submit three exercises each within 20 seconds, most of them near the due date. Half of
+the tables have slips. Print the waiting times. Exit with 1 if a response is a failure, or if a
+hand-in is late, lost or recorded twice.
 """
 
 import argparse
@@ -68,7 +68,7 @@ def last_minute(
     seconds: float,
     spare: float = SPARE,
 ) -> tuple[Outcome, list[str]]:
-    """Let a class hand in; return the answers, and the broken promises.
+    """Let a class hand in; return the responses and sentences about failures.
 
     The last learner hands in ``spare`` seconds before the due date.
     """
@@ -111,7 +111,7 @@ def graded(url: str) -> int:
 
 
 def main() -> int:
-    """Run it on each database; return the exit code."""
+    """Let a class hand in with each kind of database; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--learners", type=int, default=150)
     parser.add_argument("--seconds", type=float, default=20.0)

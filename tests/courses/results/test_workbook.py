@@ -59,7 +59,7 @@ def _row(row: ElementTree.Element, texts: list[str]) -> list[str | float | None]
 
 
 def as_tutor(class_: Class, course: str | None = "robots") -> Class:
-    """Return the class as a tutor of a course asks for it."""
+    """Return the class with the key of a tutor, by default of a tutor of the course robots."""
     text, until = new_key_text(), NOW + timedelta(days=1)
     digest = SECRET.key_digest(text)
     class_.do(lambda it: add_key(it, "", digest, {Scope.TUTOR}, None, NOW, until, course))
@@ -68,7 +68,7 @@ def as_tutor(class_: Class, course: str | None = "robots") -> Class:
 
 @pytest.fixture
 def graded(class_: Class) -> Any:
-    """A class in which ada has handed in twice, and the name of grace is a formula."""
+    """A class in which ada has handed in twice, and the learner grace has a formula as name."""
     class_.assign(due=days(1))
     for key in "ab":
         assert class_.hand_in(key).status_code == 201

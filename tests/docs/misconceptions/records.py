@@ -1,12 +1,12 @@
-"""Write the lists of codes that are made from the records of misconceptions into the pages of docs.
+"""Write lists of codes, made from the records of misconceptions, into pages of docs/.
 
-``python -m tests.docs.misconceptions.records`` writes them between their marks::
+``python -m tests.docs.misconceptions.records`` writes the lists between comments::
 
     <!-- records: WrongPosition -->
     <!-- end -->
 
-A mark names the kinds of cases whose codes are listed: ``records`` in a table with meanings and
-examples, ``codes`` in a line.
+A comment names the kinds of cases whose codes are listed: ``records`` lists the codes in a table
+with meanings and examples, ``codes`` lists the codes in a line.
 """
 
 import re
@@ -28,7 +28,7 @@ _LONGEST: Final = 90
 
 
 def kinds_in(page: str) -> Iterator[tuple[str, str]]:
-    """The kinds of cases whose records are in a page's tables, each with its section."""
+    """Each kind of cases whose records a table of the page lists, and the table's section."""
     for found in _MARKED.finditer(page):
         if found[2] == "records":
             section = _HEADING.findall(page, 0, found.start())[-1]
@@ -36,7 +36,7 @@ def kinds_in(page: str) -> Iterator[tuple[str, str]]:
 
 
 def records_in(names: list[str]) -> list[Record]:
-    """The records with a code of these kinds of cases and of their base classes, in order."""
+    """The records that have codes, for these kinds of cases and their base classes, in order."""
     kinds = {base for each in all_records() for base in each.of.__mro__}
     known = {kind.__name__: kind for kind in {record.of for record in all_records()} | kinds}
     bases = [base for name in names for base in known[name].__mro__]
@@ -45,7 +45,7 @@ def records_in(names: list[str]) -> list[Record]:
 
 
 def written(page: str) -> str:
-    """The page with the lists between its marks."""
+    """The page with the current lists between its comments."""
     return _MARKED.sub(lambda found: f"{found[1]}{_LISTS[found[2]](_names(found))}{found[4]}", page)
 
 
@@ -76,7 +76,7 @@ def _example(records: list[Record], code: str) -> str:
 
 
 def _causes(example: Example, code: str, codes: tuple[str, ...]) -> bool:
-    """True if the example of a record with these codes causes this one."""
+    """True if the example causes ``code``; the example's record has the codes ``codes``."""
     return len(codes) == 1 or code in trace_of(*example).codes
 
 

@@ -1,4 +1,4 @@
-"""The rounded decimals of a formula: numbers with a point and three or more figures."""
+"""The rounded decimals of a formula: numbers with a point and three or more digits."""
 
 import numpy as np
 import pytest

@@ -35,7 +35,7 @@ def grammar() -> dict[str, list[list[Part]]]:
 
 
 def alternatives(words: list[str], closing: str = "") -> list[list[Part]]:
-    """Parse the alternatives up to ``closing``; remove their words from the front of ``words``."""
+    """Parse alternatives up to ``closing``; remove the parsed words from the front of ``words``."""
     found: list[list[Part]] = [[]]
     while words:
         word = words.pop(0)
@@ -55,7 +55,7 @@ TERMINALS = sorted(set(re.findall(r"\b[A-Z]+\b", str(GRAMMAR))))
 
 
 class Recogniser:
-    """Finds all places in ``terminals`` where a part of the grammar may end, given its start."""
+    """Finds where in ``terminals`` a part of the grammar may end that begins at ``start``."""
 
     def __init__(self, terminals: Sequence[str]) -> None:
         self.terminals = terminals

@@ -24,7 +24,7 @@ def spelling(*typed: str, unit: AngleUnit = "radians") -> Spelling:
 
 
 def printed(formula: str, *typed: str, unit: AngleUnit = "radians") -> str:
-    """Return ``formula`` in the common spelling of the ``typed`` formulas."""
+    """Return ``formula`` in the spelling that the ``typed`` formulas use."""
     return to_text(read(formula, ARM).tree, spelling(*typed, unit=unit))
 
 

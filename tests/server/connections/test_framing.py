@@ -70,7 +70,7 @@ def test_a_request_ends_at_the_same_place_however_it_is_cut(
 
 
 def refused(data: bytes, length: int | None = 0) -> HTTPStatus | None:
-    """Return the status with which bytes are refused, at once and in parts, or None."""
+    """Return the status with which bytes are refused, or None; send them at once and in parts."""
     statuses: set[HTTPStatus | None] = set()
     for step in (len(data), 997):
         framing = Framing()

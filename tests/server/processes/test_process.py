@@ -43,7 +43,7 @@ def runs(process: int) -> bool:
 
 
 def check_end(running: Service) -> None:
-    """Terminate the service while one request is incomplete and two connections have none."""
+    """Terminate the service while one body and one head are incomplete, and one client is idle."""
     with (
         running.connect(preview()[:HALF]) as half,
         running.connect(b"GET /healthz HTT") as head,
@@ -193,7 +193,7 @@ def written_draft(running: Service) -> str:
 
 
 def check_draft(running: Service, draft: str) -> None:
-    """Check that each of some connections, which the workers share, shows the changed draft."""
+    """Check over six connections, which the workers share, that each shows the changed draft."""
     with ExitStack() as lines:
         opened = [lines.enter_context(running.connect()) for _ in range(6)]
         for line in opened:

@@ -23,7 +23,7 @@ Messages = list[dict[str, Any]]
 
 
 class Client:
-    """A connection that sends one request and records the answer."""
+    """A connection that sends one request and records the response."""
 
     def __init__(
         self, address: str, port: int = 1, body: bytes = b"{}", path: str = "/v1/preview"
@@ -38,7 +38,7 @@ class Client:
         self.answer: Messages = []
 
     def reset(self) -> None:
-        """Send the same request again."""
+        """Let the connection send its request again."""
         self._body = list(self._sent)
 
     async def receive(self) -> dict[str, Any]:

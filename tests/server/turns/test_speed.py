@@ -10,7 +10,7 @@ from service.server.turns.speed import Speed
 
 @pytest.fixture
 def measured(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The next measurements; the last one is repeated."""
+    """The list of the next simulated measurements; the last measurement is repeated."""
     times = [1e-4]
 
     def ticks() -> Iterator[float]:

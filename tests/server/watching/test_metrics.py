@@ -85,7 +85,7 @@ def test_each_worker_returns_the_metrics_of_all_workers(tmp_path: Path) -> None:
 
 
 def told(client: tuple[str, int], **settings: Any) -> httpx.Response:
-    """Return the answer to `GET /metrics` from an address, after a request for an exercise."""
+    """Return the response to `GET /metrics` from an address, after a request for an exercise."""
     app = installed_app(Settings(**settings))
 
     async def ask() -> httpx.Response:
