@@ -119,7 +119,7 @@ def is_older(before: datetime) -> ColumnElement[bool]:
 
 
 def delete_older(connection: Connection, before: datetime) -> int:
-    """Delete the attempts that ``is_older`` selects, with their reports; return their number."""
+    """Delete the attempts that ``is_older`` selects; return the number of deleted attempts."""
     return delete_attempts(connection, is_older(before))
 
 

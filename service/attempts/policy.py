@@ -1,4 +1,4 @@
-"""The rules for attempts: times, the limit, and points of late attempts and after hints."""
+"""The rules for attempts: dates, the limit, and deductions for lateness and for hints."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -20,8 +20,8 @@ class AttemptRefusedError(Exception):
 class Ruling:
     """The terms on which an attempt is accepted.
 
-    ``ordinal`` counts the learner's attempts from 1; ``worth`` is the share of the points that the
-    attempt earns.
+    ``ordinal`` counts the learner's attempts from 1. ``worth`` is a factor on the attempt's points:
+    1, or the worth of a late attempt.
     """
 
     ordinal: int

@@ -79,7 +79,7 @@ def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswer
 
 
 def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_Claim]]:
-    """The files that answer each exercise. Raises UnusableFileError if no file answers any."""
+    """The files that answer each exercise. Raises UnusableFileError if no file answers one."""
     claims: list[list[_Claim]] = [[] for _ in assignment.exercises]
     unnamed = []
     for file in files:
@@ -249,7 +249,7 @@ def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseA
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
-    """Merge the answers of several files. Raises UnusableFileError if two files contradict."""
+    """Merge the answers of files. Raises UnusableFileError if files contradict each other."""
     answers: dict[str, Any] = {}
     came_from: dict[str, str] = {}
     options: dict[str, Any] = {}

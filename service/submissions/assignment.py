@@ -138,7 +138,7 @@ class Assignment:
 
 
 class UnknownPartNameError(LookupError):
-    """An exercise has no part of this name; the message suggests the nearest."""
+    """An exercise has no part of this name; the message suggests the nearest name."""
 
 
 def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:

@@ -1,4 +1,4 @@
-"""Find an exercise by its id, or suggest the nearest."""
+"""Find an exercise by its id, or suggest the nearest id."""
 
 import difflib
 from collections.abc import Iterable, Mapping

@@ -106,7 +106,7 @@ def bulleted(sentences: Sequence[str]) -> Sentence:
 
 
 def told(text: str, translation: Translation | None) -> str:
-    """Return a sentence in a language; None is English. A text without a template stays."""
+    """Return a sentence in a language; None is English. Other texts are returned as they are."""
     # The translation of the empty text is the head of a catalogue.
     if translation is None or not isinstance(text, Sentence) or not text.template:
         return text

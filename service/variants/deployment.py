@@ -1,4 +1,4 @@
-"""Deployed variants: some seeds that a tutor has looked at, all different and equally hard."""
+"""Deployed variants: a tutor has looked at them, and they are different, but equally hard."""
 
 import re
 import tomllib

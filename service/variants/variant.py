@@ -19,7 +19,7 @@ MOST_BUILT: Final = 512
 
 
 class NoVariantError(LookupError):
-    """An exercise has no variants, or none of this seed; the message is for people."""
+    """An exercise has no variants, or no variant for this seed; the message is for people."""
 
 
 def built(exercise: Exercise, seed: str) -> Exercise:

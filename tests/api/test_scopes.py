@@ -355,7 +355,7 @@ def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
 
 
 def _strangers(guarded: Guarded) -> dict[str, str]:
-    """Return credentials of callers who know nothing of the learner zora of the course robots."""
+    """Return credentials of callers who must learn nothing about zora in the course robots."""
 
     def made(connection: Connection) -> dict[str, str]:
         found = {}

@@ -1,4 +1,4 @@
-"""The backup commands of docs/operations.md, run while attempts are recorded, and restored."""
+"""The backup commands of docs/operations.md run while attempts are recorded; none is missing."""
 
 import os
 import re

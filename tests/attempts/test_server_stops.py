@@ -1,4 +1,4 @@
-"""PostgreSQL stops during recording: no attempt is lost, and clients get a clear answer."""
+"""PostgreSQL stops during recording: no attempt is lost, and clients get a clear response."""
 
 import asyncio
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ ATTEMPTS = "/v1/exercises/scara/attempts"
 
 
 class Course:
-    """Learners who repeat each attempt under its key until it is recorded."""
+    """Learners who send each attempt with the same idempotency key until it is recorded."""
 
     def __init__(self, client: httpx.AsyncClient) -> None:
         self._client = client

@@ -1,8 +1,8 @@
 """Find the sentences of all messages of the program, by reading its source.
 
 A template is a string of at least two words in the code that reads, judges or explains. Each value
-in an f-string is a gap, and so is each ``{name}`` in the template of a sentence. Texts for
-programmers (docstrings, patterns, the text of a ValueError) are no templates.
+in an f-string and each ``{name}`` in the template of a sentence is a gap. Texts for programmers
+(docstrings, patterns, the text of a ValueError) are no templates.
 """
 
 import ast
@@ -66,7 +66,7 @@ class Template:
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:
-    """Return the templates of these files in order, each once for a file."""
+    """Return the templates of these files in order; each template is once per file."""
     found = [
         Template(pieces, file)
         for file, text in files.items()

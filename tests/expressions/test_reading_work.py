@@ -57,7 +57,7 @@ def test_a_repair_tries_at_most_1200_symbols() -> None:
 
 
 def test_a_run_of_letters_takes_linear_time() -> None:
-    """The time was quadratic when each place of a run copied all pieces after it."""
+    """The time was quadratic when the reader copied all following pieces at each place."""
     start = time.process_time()
     for i in range(100):
         outcome("sin" * 26 + str(i))

@@ -1,7 +1,7 @@
 """`python -m tests.server.impatient`: the service with short timeouts, so that tests are quick.
 
 It has two more routes, `GET /hanging` and `GET /working` (in a thread), which never answer. The
-environment variable ``TIMEOUT`` lengthens all timeouts but those of heads and of the shutdown.
+environment variable ``TIMEOUT`` lengthens all timeouts except for heads and the shutdown.
 """
 
 import asyncio

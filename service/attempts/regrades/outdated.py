@@ -90,7 +90,7 @@ class RegradedAttempt:
 
 
 class Regrading:
-    """Regrades the attempts at an exercise with its current version and the current program.
+    """Regrades the attempts at an exercise with the current versions of exercise and program.
 
     With ``course``, it regrades only the attempts in the assignments of this course.
     """

@@ -58,7 +58,7 @@ def graded_attempts(
 
 
 def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
-    """The last attempt, or the first one with the most points; None if no attempt counts."""
+    """By ``rule``: the last attempt or the first with most points; None if no attempt counts."""
     counted = [each for each in of_learner if each.ordinal is not None]
     if not counted:
         return None

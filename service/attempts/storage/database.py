@@ -73,7 +73,7 @@ def open_database(url: str, *, create: bool = True) -> Engine:
 
 
 def migration_state(connection: Connection) -> tuple[str | None, str | None]:
-    """Return the version of the tables, None if there are none, and the newest version."""
+    """Return the version of the tables (None without tables), and the newest known version."""
     config = Config()
     config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
     newest = ScriptDirectory.from_config(config).get_current_head()
@@ -216,7 +216,7 @@ def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
 
 
 def is_deadlock(error: Exception) -> bool:
-    """True if PostgreSQL ended this transaction because of a deadlock; it can be tried again."""
+    """True if a deadlock in PostgreSQL ended the transaction, which can then be tried again."""
     return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
 
 

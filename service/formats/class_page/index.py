@@ -90,7 +90,7 @@ def _sentence_of(slip: CountedSlip) -> str:
 
 
 def _band_of(share: Share) -> str:
-    """Return the CSS class with the colour of a share."""
+    """Return the CSS class for the colour that shows a share."""
     if share.value is None:
         return "share-none"
     return f"share{sum(share.value >= low for low in _BANDS) - 1}"

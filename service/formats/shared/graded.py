@@ -88,7 +88,7 @@ class GradedFile:
 
     @property
     def weight(self) -> float:
-        """Return the points in the submission for one point of the report."""
+        """Return the factor that converts points of the report into points of the submission."""
         return self.exercise.worth / self.exercise.points
 
     @property

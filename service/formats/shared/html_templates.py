@@ -151,7 +151,7 @@ def _told(value: object, language: Language) -> str:
 
 
 def _telling(shown: Callable[..., str], language: Language) -> Callable[..., str]:
-    """Return a filter that puts a sentence into the language, then applies ``shown``."""
+    """Return a filter that translates a sentence into the language, then applies ``shown``."""
 
     def filtered(text: object, symbols: Container[str] = ()) -> str:
         return shown(_told(text, language), symbols)

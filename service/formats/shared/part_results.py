@@ -90,7 +90,7 @@ class PartResult:
         return list(first_lines(lines, MESSAGES_TOLD, self.language.translation))
 
     def lines(self) -> list[str]:
-        """Return the lines of the messages, then those of the lost points."""
+        """Return the lines of the messages, then the lines about lost points."""
         return [*self.message_lines(), *self.marks()]
 
 

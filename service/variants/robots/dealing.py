@@ -20,7 +20,7 @@ _MOST_FOR_NOTHING = 0.25
 
 
 def first_robot(level: int, convention: Convention) -> PracticeId:
-    """Return any robot of a level."""
+    """Return a random robot of a level."""
     return PracticeId(level, convention, secrets.randbelow(_FIRST))
 
 

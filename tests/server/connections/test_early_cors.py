@@ -1,4 +1,4 @@
-"""Pages of the configured origins may read refusals."""
+"""Web pages from the configured origins may read the responses that refuse their requests."""
 
 import pytest
 
