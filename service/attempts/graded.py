@@ -55,5 +55,5 @@ class AttemptGrading:
 
 
 def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
-    """Return the level at which to grade for both a report at ``level`` and its outcome."""
+    """Return the level at which one grading gives both a report at ``level`` and its outcome."""
     return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS

@@ -103,7 +103,7 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
 
 
 def is_older(before: datetime) -> ColumnElement[bool]:
-    """Return the condition for attempts whose retention time began before ``before``.
+    """Return the condition for attempts whose retention time began before the moment ``before``.
 
     The retention time begins with the attempt. For an attempt in an assignment, the time begins
     when the last learner can no longer hand in; without a due date, the time never begins.

@@ -20,8 +20,8 @@ class AttemptRefusedError(Exception):
 class Ruling:
     """The terms on which an attempt is accepted.
 
-    ``ordinal`` counts the learner's attempts from 1. ``worth`` is a factor on the attempt's points:
-    1, or the worth of a late attempt.
+    ``ordinal`` counts the learner's attempts from 1. The attempt's points are multiplied by
+    ``worth``, which is 1 unless the attempt is late.
     """
 
     ordinal: int

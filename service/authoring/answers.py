@@ -27,7 +27,7 @@ _SAME_NUMBER: Final = 1e-9
 
 
 def model_answer(exercise: Exercise) -> Iterator[Remark]:
-    """Yield failures of parts whose model answer lacks full marks, in radians or in degrees."""
+    """Yield a failure for each part whose model answer lacks full marks in one angle unit."""
     answers = solve(exercise).answers
     fields = {part.id: f"parts[{i}]" for i, part in enumerate(exercise.parts)}
     too_long = [part for part, answer in answers.items() if _longest(answer) > LIMITS.characters]

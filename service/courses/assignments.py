@@ -77,7 +77,7 @@ def change_assignment(
 def extend(
     connection: Connection, course: str, assignment: str, extension: Extension
 ) -> CourseAssignment:
-    """Give a learner other dates or another limit; if ``extension`` has none, end it.
+    """Give a learner other dates or another limit; without any, end the learner's extension.
 
     Attempts that are no longer late get their points back. Raises CourseError.
     """

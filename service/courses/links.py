@@ -1,4 +1,4 @@
-"""Personal links: each has a key for one learner, which follows from the installation's secret.
+"""Personal links: each contains a key for one learner, computed from the installation's secret.
 
 Only a hash of the key is stored. The service can compute the key again, so a tutor can print the
 links of a class twice.

@@ -148,7 +148,7 @@ def variable_names(structure: str) -> list[str]:
 
 
 def without_clashes(robot: HomeRobot) -> Letters:
-    """Return the letters; a constant length d of a sliding joint gets the letter h."""
+    """Return the letters; a constant length d of a sliding joint gets h, such as h3."""
     sliding = {i for i, kind in enumerate(robot.structure) if kind == "P"}
     return {
         cell: f"h{cell[0] + 1}" if cell[0] in sliding and cell[1] == D else name
@@ -211,7 +211,7 @@ def _table(rows: Sequence[Row[str]]) -> str:
 
 
 def _symbols(robot: HomeRobot) -> str:
-    """Return the section of symbols: variables of sliding joints, and letters, with ranges."""
+    """Return the section ``[symbols]``: variables of sliding joints and letters, with ranges."""
     lines = []
     for i, kind in enumerate(robot.structure, 1):
         if kind == "P":

@@ -53,7 +53,11 @@ def _snapped(table: Table) -> Table:
 
 
 def _base_frame(axis: HomeAxis) -> Matrices:
-    """Return frame {0}, on the axis nearest to the base link, with x0 near the link's x axis."""
+    """Return frame {0}.
+
+    Its origin is the point of the axis that is nearest to the base link. Its x axis is as near as
+    possible to the x axis of the base link.
+    """
     x = np.eye(3)[int(axis.parallel_to(np.eye(3)[0]))]
     x = x - (x @ axis.direction) * axis.direction
     return _frame(axis.nearest(np.zeros(3)), x / np.linalg.norm(x), axis.direction)

@@ -96,7 +96,7 @@ def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple
 
 
 def _values(formula: Expression, names: list[str]) -> tuple[float, float]:
-    """Return two values: with all symbols 0, and with 1 for ``names`` and 0 for all others."""
+    """Return two values of a formula: with all symbols 0, and with 1 only for ``names``."""
     values = {name: np.array([0.0, float(name in names)]) for name in formula.symbols}
     [found] = evaluate_all([formula], values, {})
     at_zero, at_one = np.broadcast_to(np.asarray(found, dtype=np.float64), 2)

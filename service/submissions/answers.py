@@ -107,7 +107,7 @@ def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_C
 def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
     """The index of each exercise that the file name matches, and the part in the name.
 
-    The part is "" if the name has only the exercise.
+    The part is "" if the file name names only the exercise.
     """
     path = PurePosixPath(name.lower())
     is_one = len(assignment.exercises) == 1

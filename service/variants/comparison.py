@@ -78,7 +78,7 @@ def difficulty_of(exercise: Exercise) -> VariantDifficulty:
 
 
 def _home(exercise: Exercise) -> dict[str, Numbers]:
-    """Return a value for each symbol: 0 for a joint variable, other values are all different."""
+    """Return 0 for each joint variable, and different values for all other symbols."""
     return {
         variable.name: np.array([0.0 if variable.joint is not None else 0.31 + 0.0713 * i])
         for i, variable in enumerate(exercise.variables)

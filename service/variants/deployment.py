@@ -27,7 +27,7 @@ _PER_LINE: Final = 8
 
 @dataclass(frozen=True, slots=True)
 class CheckedVariant:
-    """A variant with its form and difficulty, a lazy answer's points, and remarks on answers."""
+    """A variant, its form and difficulty, the points of a lazy answer, and the checks' remarks."""
 
     seed: str
     title: str

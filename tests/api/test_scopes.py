@@ -134,7 +134,7 @@ _number = count()
 
 @dataclass(frozen=True)
 class Guarded:
-    """A service with keys; ``credentials`` are of the callers in each column of the statuses.
+    """A service with keys; ``credentials`` has the callers of each column of the statuses.
 
     ``open_app`` is the same service without keys.
     """

@@ -1,4 +1,4 @@
-"""The backup commands of docs/operations.md run while attempts are recorded; none is missing."""
+"""The backup commands of docs/operations.md lose no attempt, even while others are recorded."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Dates in the time zone of a course; the expected values follow the IANA rules, by hand."""
+"""Dates in the time zone of a course; expected values are written by hand from the IANA rules."""
 
 from datetime import UTC, datetime
 from zoneinfo import ZoneInfo

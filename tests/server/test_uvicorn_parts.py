@@ -83,7 +83,7 @@ def set_on_self(of: type) -> set[str]:
 
 
 def read_from(of: type, *owners: str) -> Iterator[str]:
-    """Yield the names of the attributes that a class uses of ``owners``, such as ``self``."""
+    """Yield the names of the attributes of ``owners``, such as ``self``, that a class uses."""
     for node in ast.walk(tree_of(of)):
         if isinstance(node, ast.Attribute) and ast.unparse(node.value) in owners:
             yield node.attr

@@ -58,7 +58,10 @@ def graded_attempts(
 
 
 def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
-    """By ``rule``: the last attempt or the first with most points; None if no attempt counts."""
+    """The attempt that counts by ``rule``; None if no attempt counts.
+
+    It is the last attempt, or the first one with the most points.
+    """
     counted = [each for each in of_learner if each.ordinal is not None]
     if not counted:
         return None
@@ -98,7 +101,10 @@ _Value = str | float | bool | None
 
 
 def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
-    """The exported values of an attempt, by ``_FIELDS``; a tutor's points have precedence."""
+    """The exported values of an attempt, in the order of ``_FIELDS``.
+
+    If a tutor has given points, they replace the points of the report.
+    """
     each = graded.attempt
     return (
         each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,
@@ -112,7 +118,7 @@ def _as_cell(value: _Value) -> str | float | None:
 
 
 def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
-    """Yield a gradebook for Canvas: the maximum points, then the points of each learner's login.
+    """Yield a gradebook for Canvas: the maximum points, then a line for each learner's login.
 
     Source: Canvas, "How do I import grades in the Gradebook?".
     """

@@ -136,13 +136,13 @@ def _literal(place: TimePlace) -> Tuple:
 
 
 def cursor_of(place: TimePlace) -> str:
-    """The cursor, a text, of a place in time."""
+    """The text of the cursor for a place in time."""
     at, number = place
     return f"{(at - _EPOCH) // _TICK:x}.{number:x}"
 
 
 def place_of(cursor: str) -> TimePlace:
-    """The place in time of a cursor. Raises BadCursorError."""
+    """The place in time for the text of a cursor. Raises BadCursorError."""
     if not _CURSOR.fullmatch(cursor):
         raise BadCursorError(cursor)
     try:

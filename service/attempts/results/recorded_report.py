@@ -55,7 +55,7 @@ def shown_report(recorded: str, language: Language) -> str:
 
 
 def sentence_in(report: Mapping[str, Any], text: str) -> str:
-    """Return the translatable sentence for a text of a recorded report (parsed JSON)."""
+    """Return the translatable sentence for a text of a recorded report."""
     sentences = report.get("sentences")
     return text if sentences is None else _known(sentences)(text)
 

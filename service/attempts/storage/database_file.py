@@ -32,7 +32,7 @@ class DatabaseFile:
         event.listen(engine, "commit", self._check)
 
     def note(self, connection: Connection) -> str:
-        """Remember the file of the connection; return its path, or "" if it is in memory."""
+        """Remember the connection's file; return the path, or "" for a database in memory."""
         path: str = connection.exec_driver_sql("PRAGMA database_list").one()[2]
         if path:
             self._path = Path(path)

@@ -69,7 +69,7 @@ class Overview:
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Return the name of the learner, or of the submission if the learner has several."""
+        """Return the learner's name; for one of several submissions, the submission's name."""
         return line.learner if self._learners[line.learner] == 1 else line.name
 
     @property

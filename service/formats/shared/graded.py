@@ -76,7 +76,7 @@ class GradedFile:
     """A file with its report, or with the problem that prevents a report.
 
     If both exist, only a part of the submission could be used. ``file`` is the path of the file,
-    and ``names`` are the names that the student gave the files, without additions of a platform.
+    and ``names`` are the names that the student gave the files, without what a platform adds.
     ``file`` and ``names`` are empty if there is no file for the exercise.
     """
 

@@ -42,7 +42,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Tutor:
-    """A client of a service in this process; ``at`` is the service's address, by default local."""
+    """A client of a service in this process, by default at a local address."""
 
     def __init__(
         self, exercises: Mapping[str, Exercise], store: AttemptStore | None,

@@ -59,7 +59,7 @@ def _row(row: ElementTree.Element, texts: list[str]) -> list[str | float | None]
 
 
 def as_tutor(class_: Class, course: str | None = "robots") -> Class:
-    """Return the class with the key of a tutor, by default of a tutor of the course robots."""
+    """Return the class with the key of a tutor, by default a tutor of the course robots."""
     text, until = new_key_text(), NOW + timedelta(days=1)
     digest = SECRET.key_digest(text)
     class_.do(lambda it: add_key(it, "", digest, {Scope.TUTOR}, None, NOW, until, course))

@@ -1,4 +1,4 @@
-"""The rounded decimals of a formula: numbers with a point and three or more digits."""
+"""The rounded decimals of a formula: numbers with a point and three or more significant digits."""
 
 import numpy as np
 import pytest

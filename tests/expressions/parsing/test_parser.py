@@ -55,7 +55,7 @@ TERMINALS = sorted(set(re.findall(r"\b[A-Z]+\b", str(GRAMMAR))))
 
 
 class Recogniser:
-    """Finds where in ``terminals`` a part of the grammar may end that begins at ``start``."""
+    """Finds, for the start of a grammar part, the places in ``terminals`` where it may end."""
 
     def __init__(self, terminals: Sequence[str]) -> None:
         self.terminals = terminals

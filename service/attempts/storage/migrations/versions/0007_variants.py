@@ -1,4 +1,4 @@
-"""Add variants to attempts and assignments, and the number of deals to each learner."""
+"""Add variants to attempts and assignments, and count the variants dealt to each learner."""
 
 import sqlalchemy as sa
 from alembic import op
