@@ -1,8 +1,8 @@
-"""Run long work in time slices, so that the event loop can serve others between them.
+"""Run long work in time slices, so that the event loop can serve other requests between them.
 
 A grading is a plain Python function that may take 60 ms. ``in_slices`` runs it in a greenlet, which
 has its own stack and can be suspended and resumed. The work calls ``checkpoint`` where it may be
-suspended; its result does not depend on that.
+suspended; a suspension does not change the result.
 """
 
 import contextvars

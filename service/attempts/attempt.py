@@ -133,5 +133,5 @@ class ListedAttempt:
 
     @property
     def earned(self) -> float:
-        """The points that count: those awarded by a tutor, otherwise those of the report."""
+        """The points that count: points awarded by a tutor, or else the points of the report."""
         return self.points if self.awarded is None else self.awarded

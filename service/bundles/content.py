@@ -45,10 +45,11 @@ def content_of(
     image: str = "",
     secret: str = "",
 ) -> BundleContent:
-    """Return the content for an assignment, from ``file`` if it has one. Raises BundleError.
+    """Return the content for an assignment. Raises BundleError.
 
-    ``catalogue`` has the exercise files of this installation by id. The assigned ones are bundled,
-    so that the platform grades with the same version. Variants follow from the ``secret``.
+    ``file`` is the assignment's file, if any. ``catalogue`` has the exercise files of this
+    installation by id. The files of assigned exercises are bundled, so that the platform grades
+    with the same version. Variants follow from the ``secret``.
     """
     files = [BundledFile("assignment.toml", _assignment_text(assignment, file))]
     exercises = []

@@ -19,8 +19,8 @@ def zone_named(name: str) -> ZoneInfo:
 def moment(written: datetime, zone: ZoneInfo) -> datetime:
     """Return a date in UTC. If it names no zone, it is a time on the clocks of ``zone``.
 
-    If the clocks show a time twice, the second one is meant. Raises CourseError for a time that the
-    clocks never show, because they are put forward.
+    If the clocks show a time twice, the second moment is meant. Raises CourseError for a time that
+    the clocks never show, because they are put forward.
     """
     try:
         if written.tzinfo is not None:

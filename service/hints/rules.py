@@ -21,7 +21,7 @@ class Rule:
     """A rule: what to look at, what it says, and how it applies to a place.
 
     ``look`` and ``apply`` are templates, the other texts are sentences.
-    ``modified`` is the statement in the modified convention if it differs from the standard one.
+    ``modified`` is the statement in the modified convention if it differs from ``statement``.
     ``pictured`` are the parameters that the picture shows; if there are none, there is no picture.
     """
 

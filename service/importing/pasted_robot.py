@@ -77,7 +77,7 @@ def _kind(table: StudentTable, i: int) -> str | None:
 
 
 def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple[float, str | None]:
-    """Return the value of a cell at home, and its letter if it has one."""
+    """Return the value of a cell at home, and the letter in the cell, if any."""
     place = say("row {row}, column {column}", row=i + 1, column=COLUMNS[j])
     entry = table.rows[i].entries[j]
     if entry.expression is None:

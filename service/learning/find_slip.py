@@ -17,8 +17,8 @@ from service.time_slices import checkpoint
 class TableBlame:
     """The grader's judgement of a wrong table.
 
-    ``codes`` are the codes of the grader's messages on errors, ``cells`` the wrong cells. Repairing
-    any one of the cells ``single`` makes the table valid.
+    ``codes`` are the codes of the grader's messages on errors. ``cells`` are the wrong cells.
+    Repairing any one of the cells ``single`` makes the table valid.
     """
 
     codes: frozenset[str]
@@ -30,9 +30,9 @@ class TableBlame:
 class DrawnSlip:
     """A table with one slip.
 
-    ``texts`` is the wrong table, ``model`` the right one. ``misconception`` is the code of the
-    slip. ``places`` are the sets of cells that explain the slip; there are several if parallel axes
-    share an offset.
+    ``texts`` is the wrong table, and ``model`` is the right table. ``misconception`` is the code of
+    the slip. ``places`` are the sets of cells that explain the slip; there are several sets if
+    parallel axes share an offset.
     """
 
     misconception: str
@@ -42,7 +42,7 @@ class DrawnSlip:
 
     @property
     def cells(self) -> frozenset[TableCell]:
-        """The cells in which the wrong table differs from the right one."""
+        """The cells in which the wrong table differs from the right table."""
         return self.places[0]
 
 

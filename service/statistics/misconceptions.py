@@ -32,7 +32,7 @@ class CountedSlip:
     _sentences: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: int, part: tuple[str, str], sentence: str) -> None:
-        """Count the slip in a part. Add all parts of a submission before those of the next."""
+        """Count the slip in a part. Add all parts of a submission before the next submission."""
         if not self.submissions or self.submissions[-1] != submission:
             self.submissions.append(submission)
         self.parts[part] += 1
@@ -46,7 +46,7 @@ class CountedSlip:
 
     @property
     def sentence(self) -> str:
-        """The most frequent message; the first one if several are equally frequent."""
+        """The most frequent message; the first message if several are equally frequent."""
         return self._sentences.most_common(1)[0][0]
 
 
@@ -69,7 +69,7 @@ class SlipCounts:
             slip.add(submission, (exercise, part.part), sentence)
 
     def counted(self, *, unreadable: bool = False) -> Sequence[CountedSlip]:
-        """Return the slips in readable or ``unreadable`` entries, the most common ones first."""
+        """Return the slips in readable or ``unreadable`` entries, the most common slips first."""
         found = (slip for slip in self._found.values() if slip.is_unreadable is unreadable)
         return sorted(found, key=lambda slip: (-slip.count, slip.slip_code, slip.kind))
 

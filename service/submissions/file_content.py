@@ -70,7 +70,8 @@ def _too_large() -> str:
 def read_content(data: bytes, name: str) -> FileContent:
     """Parse the content of a file with this name. Raises UnusableFileError.
 
-    The suffix of the name determines the format; for ``.txt`` and standard input, it is detected.
+    The suffix of the name determines the format. For ``.txt`` and standard input, the content
+    determines the format.
     """
     if len(data) > MAX_BODY_SIZE:
         raise UnusableFileError(_too_large())

@@ -72,7 +72,7 @@ LANGUAGES: Final[Mapping[str, Language]] = {
 
 
 def language_named(tag: str | None) -> Language | None:
-    """Return the language of a tag such as ``de``, ``de-AT`` or ``zh_CN``, if there is one."""
+    """Return the language of a tag such as ``de``, ``de-AT`` or ``zh_CN``, or None."""
     return LANGUAGES.get((tag or "").replace("_", "-").partition("-")[0].strip().lower())
 
 

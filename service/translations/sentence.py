@@ -83,7 +83,7 @@ def listed(words: Sequence[str]) -> str:
 
 
 def paragraph(*sentences: str) -> str:
-    """Return complete sentences one after the other; empty ones are left out."""
+    """Return complete sentences one after the other; empty sentences are left out."""
     said = [each for each in sentences if each]
     if len(said) < 2:
         return said[0] if said else ""

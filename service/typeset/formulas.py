@@ -37,7 +37,7 @@ def formula(text: str) -> str:
 
 
 def _terms(tree: Node) -> Iterator[str]:
-    """Yield the terms of a sum with their signs, the last one first."""
+    """Yield the terms of a sum with their signs, the last term first."""
     while isinstance(tree, Binary) and tree.operator in "+-":
         sign = "−" if tree.operator == "-" else "+"
         last = tree.right

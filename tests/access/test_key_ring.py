@@ -135,7 +135,7 @@ def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
 
 
 def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
-    """Look up these keys among invented ones; return their callers."""
+    """Look up ``keys`` among invented keys; return the callers of ``keys``."""
 
     async def flood() -> list[BaseException | Caller]:
         before, after = ((new_key_text() for _ in range(invented // 2)) for _ in range(2))

@@ -59,7 +59,7 @@ def stop(server: Any, how: str) -> None:
 
 
 def start(server: Any, how: str) -> None:
-    """Start or resume a server that was stopped in this way."""
+    """Start or resume a server that was stopped in the way ``how``."""
     if how != "pause":
         server.start()
         return

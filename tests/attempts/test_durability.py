@@ -133,7 +133,7 @@ def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
 
 
 def _record(url: str, exercise: Exercise, told: Connection) -> None:
-    """Record attempts of several clients forever; send each acknowledged one through the pipe."""
+    """Record attempts of several clients forever; report acknowledged attempts through a pipe."""
     new, outcome = new_attempt(exercise, "ada", RIGHT, None)
     store = AttemptStore.open(url)
     store.start()

@@ -1,4 +1,4 @@
-"""A tutor of a course regrades the attempts in this course, and no others."""
+"""A tutor of a course regrades the attempts in this course, and no other attempts."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -245,8 +245,8 @@ class Row:
 def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
     """Return the first message with each template, and the templates without a message.
 
-    Many sentences may contain a short template. So a short template counts only at the beginning
-    of a sentence, or in a message of its own file.
+    Many sentences may contain a short template. So a short template counts only at the beginning of
+    a sentence, or in a message whose code is in the file of the template.
     """
     unmet = list(known)
     rows: list[Row] = []
@@ -328,7 +328,7 @@ def _cell(text: str) -> str:
 
 
 def code_span(text: str) -> str:
-    """Return a text with any characters as code in Markdown; shorten the middle of a long one."""
+    """Return a text with any characters as code in Markdown; shorten a long text in the middle."""
     text = text.replace("\n", END)
     if len(text) > _LONGEST:
         text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 4 :]}"

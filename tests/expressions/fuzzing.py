@@ -122,7 +122,7 @@ PIECES: Final = (
 
 
 def seeds() -> list[str]:
-    """Return the texts of all cases in corpus/, except the hostile ones."""
+    """Return the texts of all cases in corpus/, except the hostile cases."""
     return [case.text for name in (*names(), "errors") for case in cases(name)]
 
 

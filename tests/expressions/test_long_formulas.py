@@ -86,7 +86,7 @@ def test_a_long_entry_is_read(printer: str) -> None:
 
 
 def _longest_formulas() -> list[str]:
-    """Return formulas at the limits: long sums, long products, and nested ones."""
+    """Return formulas at the limits: long sums, long products, and nested formulas."""
     run = LIMITS.tree_depth - 1
     return [
         "+".join(["L1"] * (run + 1)),

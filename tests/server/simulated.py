@@ -1,7 +1,7 @@
 """Simulate clients of one process on a simulated clock, which advances by work and by waiting.
 
-The event loop and the admission are the real ones. The waiting times are exact, however busy this
-machine is.
+The event loop and the admission are real. The waiting times are exact, however busy this machine
+is.
 """
 
 import asyncio
@@ -24,7 +24,7 @@ ORDINARY = 0.0075
 
 
 def simulate_speed(monkeypatch: pytest.MonkeyPatch, slower: float = 1.0) -> None:
-    """Let the service find the speed of the simulated machine, not that of this one."""
+    """Let the service find the speed of the simulated machine instead of this machine's speed."""
     monkeypatch.setattr(speed, "_measured", lambda: slower * ORDINARY / speed.ORDINARY)
 
 

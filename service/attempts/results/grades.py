@@ -30,7 +30,7 @@ def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Countin
 
 @dataclass(frozen=True, slots=True)
 class GradedAttempt:
-    """An attempt; ``counts`` is True if it is the one that counts for its learner."""
+    """An attempt; ``counts`` is True if it is the attempt that counts for the learner."""
 
     attempt: ListedAttempt
     counts: bool
@@ -42,7 +42,7 @@ def graded_attempts(
     """Yield the wanted attempts, sorted by exercise, learner and time.
 
     ``counting`` returns the rule of an exercise. The attempt that counts is chosen among the wanted
-    ones.
+    attempts.
     """
     ordered = (
         select(*LISTED)

@@ -174,7 +174,7 @@ class _PartCount:
             self.rows[row].add(cells, times)
 
     def figures(self, name: str) -> PartFigures:
-        """Return the figures of the part, and of the rows that most detailed reports have.
+        """Return the figures of the part, and of the rows that are in most reports with rows.
 
         The other rows were added to the table by a few students.
         """

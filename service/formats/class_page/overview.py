@@ -69,7 +69,7 @@ class Overview:
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Return the learner's name; for one of several submissions, the submission's name."""
+        """Return the learner's name, or the submission's name if the learner has several."""
         return line.learner if self._learners[line.learner] == 1 else line.name
 
     @property

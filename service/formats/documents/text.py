@@ -99,7 +99,7 @@ def _write_submission(
 
 
 def _print_indented(line: Text, console: Console) -> None:
-    """Print a line of the summary; a long one continues below, indented."""
+    """Print a line of the summary; a long line continues below, indented."""
     width = min(console.width, _WIDEST)
     if line.cell_len <= width:
         console.print(line)

@@ -42,7 +42,7 @@ class AlignedTable:
     def on(self, console: Console, width: int, indent: int) -> RenderableType:
         """Return the table to print, with ``indent`` blanks before each line.
 
-        If it is wider than ``width``, its columns become narrower.
+        If the table is wider than ``width``, its columns become narrower.
         """
         texts = zip(*((text for text, _ in row) for row in self.rows), strict=True)
         widths = [

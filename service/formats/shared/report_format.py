@@ -53,7 +53,7 @@ class ReportFormat:
       exercise allows.
     - ``shows_entries``: it shows how each cell was read.
     - ``folder`` writes several submissions as files of one folder. Each file must be written before
-      the next one is taken.
+      the next file is taken.
     """
 
     pieces: Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]

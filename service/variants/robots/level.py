@@ -7,7 +7,7 @@ from typing import Final
 
 
 class Relation(StrEnum):
-    """The relation of a joint axis to the next one at home."""
+    """The relation of a joint axis to the next joint axis at home."""
 
     PARALLEL = "parallel"
     """Parallel, at a distance."""

@@ -150,9 +150,9 @@ def _row_back(owed: int, draws: Draws, lengths: "_Lengths", *, sliding: bool) ->
 
 
 def _relations(level: Grammar, kinds: Sequence[bool], draws: Draws) -> list[Relation] | None:
-    """Return the relation of each axis to the next one, or None if the draws do not fit.
+    """Return the relation of each axis to the next axis, or None if the draws do not fit.
 
-    Oblique relations come in pairs: the second one leads back.
+    Oblique relations come in pairs: the second relation leads back.
     """
     relations: list[Relation] = []
     pairs = 0

@@ -47,7 +47,7 @@ class PracticeId:
 
 
 def practice_id(text: str) -> PracticeId | None:
-    """Return the parts of a robot's id; None if the text is no such id.
+    """Return the parts of a robot's id; None if the text is not the id of a robot.
 
     >>> practice_id("practice-2-modified~1a")
     PracticeId(level=2, convention=<Convention.MODIFIED: 'modified'>, number=46)

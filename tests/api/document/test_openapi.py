@@ -62,7 +62,7 @@ def operations(document: Schema) -> list[Schema]:
 
 
 def schemas_in(value: Any) -> Iterator[Schema]:
-    """Yield every schema in a value of the document, without those in examples."""
+    """Yield every schema in a value of the document, except for schemas in examples."""
     if isinstance(value, dict):
         if not value.keys().isdisjoint({"type", "$ref", "anyOf", "oneOf", "const"}):
             yield value

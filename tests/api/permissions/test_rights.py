@@ -40,7 +40,7 @@ def test_a_route_without_an_entry_prevents_startup(catalogue: Mapping[str, Exerc
 def test_the_exercise_of_a_right_is_that_of_the_route(
     client_of: Callable[[FastAPI], httpx.Client],
 ) -> None:
-    """If a query names several exercises, the last one counts, for the right and for the route."""
+    """If a query names several exercises, both the right and the route use the last exercise."""
     app = FastAPI()
 
     @app.get("/{exercise_id}")

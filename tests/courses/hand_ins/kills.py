@@ -54,7 +54,7 @@ class Fleet:
         self.ports[number] = self._running[number].port
 
     def kill_worker(self, number: int, choose: random.Random) -> None:
-        """Kill a worker of a service, which starts another one."""
+        """Kill a worker of a service; the service then starts another worker."""
         running = self._running[number]
         started = running.log.count("startup complete")
         os.kill(choose.choice(self._worker_pids(number)), signal.SIGKILL)
@@ -91,7 +91,7 @@ def fleet(url: str, folder: Path, kind: str) -> Iterator[Fleet]:
 
 
 async def _round(fleet: Fleet, learners: Learners, number: int, choose: random.Random) -> None:
-    """Let a learner hand in 50 times at once, and others once; kill a process meanwhile."""
+    """Let one learner hand in 50 times, and other learners once; kill a process meanwhile."""
     drawn = tables(number, 0.5, (EXERCISE,))
 
     def hand_in(learner: str, assignment: str, i: int) -> HandIn:

@@ -18,7 +18,7 @@ Figure = Callable[[str], None]
 
 @pytest.fixture(params=KINDS)
 def database(request: pytest.FixtureRequest) -> tuple[str, str]:
-    """A kind of database, and the URL of an empty one."""
+    """A kind of database, and the URL of an empty database of this kind."""
     is_sqlite = request.param == "sqlite"
     folder: Path = request.getfixturevalue("tmp_path")
     url = str(folder / "attempts.db") if is_sqlite else request.getfixturevalue("postgresql_url")

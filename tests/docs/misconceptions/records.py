@@ -81,7 +81,7 @@ def _causes(example: Example, code: str, codes: tuple[str, ...]) -> bool:
 
 
 def shown_example(answer: object) -> tuple[str, str]:
-    """Return the changed place of the model answer, if there is one, and the text."""
+    """Return the place in the model answer that an example changes, if only one, and its text."""
     if isinstance(answer, dict) and all("/" in place for place in answer):
         if len(answer) == 1:
             [(place, text)] = answer.items()

@@ -34,7 +34,7 @@ def refuses(running: Service) -> bool:
 
 
 def runs(process: int) -> bool:
-    """True if a process runs; False for one that has ended but still has an entry (zombie)."""
+    """True if a process runs; False for a zombie, which has ended but still has an entry."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:

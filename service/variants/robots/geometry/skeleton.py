@@ -96,7 +96,7 @@ def cross(first: AxisDirection, second: AxisDirection) -> AxisDirection:
 
 
 def turn(start: AxisDirection, end: AxisDirection, about: AxisDirection) -> int:
-    """Return the angle in degrees from one direction to another about a third one.
+    """Return the angle in degrees from one direction to another about a third direction.
 
     Both directions are at a right angle to ``about``.
     """
