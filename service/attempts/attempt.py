@@ -17,7 +17,7 @@ def hint_points(price: float, max_points: float) -> float:
 
 
 class GradesFormat(StrEnum):
-    """The formats of exports: a list of all attempts, or a gradebook of the attempts that count."""
+    """The formats of exported attempts: all attempts, or a gradebook of those that count."""
 
     CSV = "csv"
     JSONL = "jsonl"
