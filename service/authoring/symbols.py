@@ -93,7 +93,7 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
 
 
 def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
-    """Yield warnings about narrow ranges, lengths that may be 0, and unequal lengths."""
+    """Warn of narrow ranges, lengths that may be 0, and lengths of very different size."""
     for variable in exercise.variables:
         yield from _range(variable)
     sizes = {v.name: max(abs(v.low), abs(v.high)) for v in exercise.variables if v.kind == "length"}

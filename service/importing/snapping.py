@@ -40,6 +40,6 @@ def snapped_length(text: str) -> float:
 
 
 def snapped_direction(direction: Numbers) -> Numbers:
-    """Return a unit vector without entries that rounding left near 0."""
+    """Return a unit vector with 0 for entries that rounding left near 0."""
     kept = np.where(np.abs(direction) <= NEAR, 0.0, direction)
     return np.asarray(kept / np.linalg.norm(kept))

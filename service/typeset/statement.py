@@ -1,6 +1,6 @@
 r"""Statements as HTML, from Markdown with LaTeX between dollar signs, which becomes MathML.
 
-Names in the text are typeset (``service/typeset/names.py``), and so is a fenced block ``matrix``.
+Names in the text (``service/typeset/names.py``) and fenced blocks ``matrix`` are typeset.
 
 Authors of exercise files write text, never HTML: tags and scripts in it are shown as text. The
 library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so only the

@@ -35,7 +35,7 @@ class Template:
 
     @property
     def text(self) -> str:
-        """The sentence with a mark for each gap."""
+        """The sentence with a placeholder for each gap."""
         return GAP.join(self.pieces).strip()
 
     @property

@@ -114,7 +114,7 @@ def queue_scores(
 
 
 def forget_scores(connection: Connection, learner: str) -> None:
-    """Queue the clearing of a learner's scores at the platforms; make the queue anonymous.
+    """Queue the clearing of a learner's scores at platforms; a random name replaces the learner.
 
     Rows whose score was never sent are deleted. The platform's id for the learner stays in the row
     until the platform has cleared the score.

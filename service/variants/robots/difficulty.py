@@ -25,8 +25,8 @@ class Difficulty:
     """Counts of what makes a robot difficult.
 
     ``turns`` counts the changes of direction from one axis to the next. ``choices`` counts the rows
-    in which more than a sign is free (parallel axes, sliding joints). ``odd`` counts the twists of
-    30°, 45° or 60°.
+    in which students may choose more than a sign (parallel axes, sliding joints). ``odd`` counts
+    the twists of 30°, 45° or 60°.
     """
 
     joints: int
