@@ -55,7 +55,7 @@ class ExpressionError(TextError):
     """A formula cannot be read.
 
     ``suggestion`` is the whole repaired text, or None. ``tried`` is the number of symbols in all
-    texts that were read to find it.
+    texts that were read to find the suggestion.
     """
 
     def __init__(self, code: str, message: str, span: Span, suggestion: str | None = None) -> None:
@@ -73,7 +73,7 @@ class ExpressionError(TextError):
 class UnreadableError(Exception):
     """The reader stopped at ``span``.
 
-    ``cause`` is the kind of problem. ``details`` are further values for the repairs of this cause.
+    ``cause`` is the kind of problem. ``details`` are values for the repair rules of this kind.
     """
 
     def __init__(self, cause: Cause, span: Span, **details: Any) -> None:

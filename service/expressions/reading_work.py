@@ -1,4 +1,4 @@
-"""Estimate the cost of reading a text before it is read. The result is the same everywhere."""
+"""Estimate the cost of reading a text before it is read. Every machine gets the same result."""
 
 import re
 from collections import Counter
@@ -90,7 +90,7 @@ def _by_words(text: str) -> _Count:
 
 
 def _of_numbers(text: str) -> int:
-    """Return the extra cost of functions of numbers, whose names and numbers are separate words."""
+    """Return the extra cost of functions of numbers such as cos(0.3)."""
     if "n(" in text or "s(" in text:
         return _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
     return 0

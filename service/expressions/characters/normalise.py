@@ -42,7 +42,7 @@ class _Normaliser(CharacterWriter):
         return Characters("".join(self.letters), self.starts, self.ends)
 
     def _range(self, position: int, end: int, depth: int) -> None:
-        """Convert ``source[position:end]``, which is inside ``depth`` arguments of commands."""
+        """Convert ``source[position:end]``, which is inside ``depth`` nested arguments."""
         if depth > LIMITS.depth:
             raise UnreadableError("beyond", (position, end), limit="depth")
         while position < end:
@@ -182,7 +182,7 @@ class _Normaliser(CharacterWriter):
         raise UnreadableError(causes.get(name, "command"), (at, after), name=name)
 
     def _without_meaning(self, name: str, at: int, after: int, end: int) -> int | None:
-        """Return the end of a command that is skipped with its argument; None for others."""
+        """Return the end of a command that is skipped with its argument, else None."""
         if name in latex_commands.IGNORED:
             return self._argument(at, after, end)[2]
         environment = latex_commands.ENVIRONMENT.match(self.source, after, end)
@@ -205,7 +205,7 @@ class _Normaliser(CharacterWriter):
         raise UnreadableError("command", (at, after), name=symbol)
 
     def _function(self, name: str, at: int, after: int) -> int:
-        r"""Emit a function's name, with blanks: a\sin x is not asin x, and \sin d_3 not sind_3."""
+        r"""Emit a function's name between blanks, so that a\sin x is not read as asin x."""
         if self.letters and self.letters[-1].isalpha():
             self._emit(" ", at, at)
         self._emit(name, at, after)
@@ -294,7 +294,7 @@ class _Normaliser(CharacterWriter):
     def _quantity(self, name: str, at: int, after: int, end: int, depth: int) -> int:
         r"""Read \SI{90}{\degree} as 90°, \si{\degree} as °, and \num{0.3} as 0.3.
 
-        Raises UnreadableError for any unit but an angle's.
+        Raises UnreadableError if the unit is not a unit of angles.
         """
         if name == "num":
             return self._braced(at, after, end, depth)
@@ -306,7 +306,7 @@ class _Normaliser(CharacterWriter):
         return self._emit(unit, unit_at if has_number else at, unit_end)
 
     def _angle_unit(self, at: int, after: int, end: int) -> tuple[str, int]:
-        """Return the unit in the argument that begins at ``after``, and the place after it."""
+        """Return the unit in the argument that begins at ``after``, and the argument's end."""
         start, stop, unit_end = self._argument(at, after, end)
         unit = latex_commands.ANGLE_UNITS.get(self.source[start:stop].strip().lstrip("\\"))
         if unit is None:

@@ -127,7 +127,7 @@ class CharacterWriter:
         return at
 
     def _partner(self, at: int, end: int) -> int:
-        """Return the place of the brace that closes the one at ``at``."""
+        """Return the place of the closing brace for the opening brace at ``at``."""
         if self.partners is None:
             self.partners = latex_commands.brace_partners(self.source)
         place = self.partners.get(at, end)

@@ -70,7 +70,7 @@ def _name(i: int) -> str:
 
 
 def _sign(replaced: Node) -> int:
-    """Return 1 or -1 if the tree is one renamed decimal with or without a minus; else 0."""
+    """Return the sign, 1 or -1, of a tree that is only one replaced decimal; else 0."""
     match replaced:
         case SymbolNode(Symbol(name)) if name == _name(0):
             return 1
@@ -81,7 +81,7 @@ def _sign(replaced: Node) -> int:
 
 
 def _with_names(node: Node, found: list[Number]) -> Node:
-    """Return ``node`` with symbols for its rounded decimals, which are appended to ``found``."""
+    """Return ``node`` with symbols for rounded decimals; append the decimals to ``found``."""
     match node:
         case Number():
             if _unit(node.literal) == 0.0:

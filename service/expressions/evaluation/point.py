@@ -33,7 +33,7 @@ _OPERATORS: Final[dict[str, Callable[[float, float], float]]] = {
 
 
 def known_values(tree: Node, at: Mapping[str, float]) -> Known:
-    """Map the id of each node of ``tree`` to its value. Valid as long as the tree exists."""
+    """Map the id of each node of ``tree`` to its value, valid as long as the tree exists."""
     known: Known = {}
     _learn(tree, at, known)
     return known

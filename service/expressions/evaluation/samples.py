@@ -1,8 +1,7 @@
 """Compile a tree to a program that computes its values at all samples at once.
 
-A program is one flat tuple of the tree's parts. Each part begins with its key, which is the part in
-reverse Polish notation, followed by its function and the places of its operands. The program of
-2*cos(theta1) is:
+A program is one flat tuple of the tree's parts. Each part has a key (its formula in reverse Polish
+notation), then its function and the places of its operands. The program of 2*cos(theta1) is:
 
      0  "#2.0", None, 2.0
      3  "theta1", None
@@ -190,7 +189,7 @@ class _Compiler:
         return at
 
     def _apply(self, name: str, left: int, right: int | None = None) -> int:
-        """Append a function of parts, or its value if all are constants; return its place."""
+        """Append a function of parts, or its value if the parts are constants; return its place."""
         constants, steps = self.constants, self.steps
         if constants:
             if name == "^" and right is not None and constants.get(right) == 2.0:

@@ -15,7 +15,7 @@ _OPERATORS: Final[dict[str, Operator]] = {
 
 
 def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
-    """Return the tree of a function of ``BUILT``. The number of arguments must be right."""
+    """Return the tree of a function in ``BUILT``, given the correct number of arguments."""
     if name in RECIPROCALS:
         one = Number(1.0, "1", start, start)
         return Binary("/", one, Call(RECIPROCALS[name], tuple(arguments), start, end), start, end)

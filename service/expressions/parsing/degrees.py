@@ -27,8 +27,8 @@ from service.translations import say
 class _Facts(NamedTuple):
     """Facts about a node of a formula.
 
-    ``constant``: it has no symbol. ``angle``: it is an angle in radians. ``pi``: it is such an
-    angle because it contains π.
+    ``constant``: the node has no symbol. ``angle``: it is an angle in radians. ``pi``: it is an
+    angle in radians because it contains π.
     """
 
     constant: bool

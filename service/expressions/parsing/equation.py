@@ -1,4 +1,4 @@
-r"""Equations whose left side is a name: x = l1 c1, p_x := l1 c1, T(1,4) = l1 c1, = cos(q1).
+r"""Equations whose left side is a name or empty: x = l1 c1, T(1,4) := l1 c1, = cos(q1).
 
 Only the right side is read. The left side is replaced by blanks, so that all places are unchanged.
 """
@@ -70,7 +70,7 @@ def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
 
 
 def _is_name(found: re.Match[str], vocabulary: Vocabulary) -> bool:
-    """True if the left side is a name, and not a function or a product: cos, l1 (c1 + c2)."""
+    """True if the left side is a name, not a function (cos) or a product (l1 (c1 + c2))."""
     words = _WORD.findall(found["name"] or "")
     pieces = split(words[-1], vocabulary) if words else None
     if pieces is None:

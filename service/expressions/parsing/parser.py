@@ -1,6 +1,6 @@
 r"""Tokens -> a syntax tree, by recursive descent.
 
-In the grammar, a word in capitals is a token, and { } repeats any number of times, also none:
+In the grammar, a word in capitals is a token, and { } may be repeated or left out:
 
     sum       = product { (PLUS | MINUS) product }
     product   = signed { (STAR | SLASH) signed | JOIN power }
@@ -17,12 +17,12 @@ In the grammar, a word in capitals is a token, and { } repeats any number of tim
 ``JOIN`` is a product without a sign: ``2q1``, ``l1 c1``, ``a(b)``. ``TIGHT`` is such a product in
 the argument of a function without brackets: ``sin 2q1`` is ``sin(2q1)``. A function without
 brackets takes one operand, so ``sin q1 * l1`` is ``sin(q1)*l1``. ``OPEN`` and ``CLOSE`` enclose a
-fraction that is one unit, ``½`` or ``\frac{a}{b}``. A power of a power has two readings, so
+fraction that is one operand, ``½`` or ``\frac{a}{b}``. A power of a power has two readings, so
 ``2^3^2`` is not in the grammar.
 
 Only brackets are parsed by recursion, and the lexer allows at most ``LIMITS.depth`` open brackets.
-All else that can be repeated (signs, roots, powers, functions without brackets) is kept in a list
-until its operand is parsed, so no text comes near Python's recursion limit.
+Everything else that can be repeated (signs, roots, powers, functions without brackets) is kept in a
+list until its operand is parsed, so no text comes near Python's recursion limit.
 """
 
 from collections.abc import Callable, Sequence

@@ -285,7 +285,7 @@ class Builder:
         self._note("bare_argument", message, start, end)
 
     def _note_bare(self, left: Node) -> None:
-        """Note if ``left`` ends with a function without brackets: sin q1/2 is (sin q1)/2."""
+        """Note a function without brackets at the end of ``left``: sin q1/2 is (sin q1)/2."""
         last = left
         while type(last) is Binary and self._is_open(last) and last.right.end == last.end:
             last = last.right
@@ -308,7 +308,7 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 
 def _names(node: Node) -> set[str]:
-    """Return the functions and the stems of symbols in the first 64 parts of ``node``."""
+    """Return the functions, and the last letters of symbols, in the first 64 parts of ``node``."""
     found: set[str] = set()
     pending = [node]
     # The arguments of atan2 may be long and nested.
@@ -325,7 +325,7 @@ def _names(node: Node) -> set[str]:
 
 
 def _arity(name: str, arguments: Sequence[Node] = ()) -> int:
-    """Return the number of arguments of a function: ``len(arguments)`` if any number is right."""
+    """Return how many arguments a function takes: ``len(arguments)`` if it takes any number."""
     number = BUILT.get(name)
     return ARITY.get(name, 1) if number is None else number or len(arguments)
 

@@ -1,6 +1,6 @@
 """Refuse two values that look like a product: ``90° (π/2)``, ``a2 (0.4318)``, ``θ1 (0)``.
 
-Students write the value of a cell in brackets after its name, or the same angle in another unit.
+Students write a value in brackets after its name, or after the same angle in another unit.
 """
 
 from typing import Final
@@ -35,7 +35,7 @@ def check_product(source: str, left: Node, right: Node) -> None:
 
 
 def _is_name(node: Node) -> bool:
-    """True for a symbol, with or without a sign, that stands for an angle or a length."""
+    """True for the symbol of an angle or a length, with or without a sign."""
     inside = node.operand if type(node) is Negation else node
     return type(inside) is SymbolNode and inside.symbol.kind != "number"
 
@@ -55,7 +55,7 @@ def _is_decimal(value: Node) -> bool:
 
 
 def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
-    """True for two angles or, in brackets, an angle and a number that is not a usual factor."""
+    """True for two angles. With ``is_whole``, also for an angle and a number unlike a factor."""
     of_left, of_right = _parts(left), _parts(right)
     if 180.0 in {part.value for part in (*of_left, *of_right) if type(part) is Number}:
         return False

@@ -25,9 +25,10 @@ _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
 
 
 def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
-    """True if ``node`` needs brackets as an operand in ``place``, in a drawn formula or in text.
+    """True if ``node`` needs brackets as an operand where the precedence ``place`` is required.
 
-    ``signed`` is True if the sign of ``node`` would follow an operator.
+    ``signed`` is True if the sign of ``node`` would follow an operator, ``drawn`` is False for
+    text.
     """
     precedence = ATOM
     # Comparing types takes a third of the time of ``match``.
@@ -48,7 +49,7 @@ def is_power_of_ten(node: Node) -> bool:
 
 
 def needs_dot(left: Node, right: Node) -> bool:
-    """True if a drawn product needs a dot: 2·3, and θ1·(π + 1), which might be two values."""
+    """True if a drawn product needs a dot: 2·3, and θ1·(π + 1), lest it look like two values."""
     if begins_with_digit(right):
         return True
     if type(right) is Pi:

@@ -135,7 +135,8 @@ def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
 def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
     """Return the common spelling of formulas: the most frequent unit, and the first names.
 
-    ``degrees`` is True if the student works in degrees. It decides if no formula shows a unit.
+    ``degrees`` is True if the student works in degrees. If no formula shows a unit, ``degrees``
+    decides.
     """
     names: dict[str, str] = {}
     angles: Counter[str] = Counter()
@@ -224,7 +225,7 @@ def _typed(node: Node, formula: TypedFormula) -> str:
 
 
 def _is_name(typed: str, symbol: Symbol, vocabulary: Vocabulary) -> bool:
-    """True if ``typed`` is a name of the symbol that can be typed again."""
+    """True if the reader accepts ``typed`` as a name of the symbol."""
     if typed == symbol.name:
         return True
     known = _NAME.fullmatch(typed) and vocabulary.by_name.get(normal_form(typed))

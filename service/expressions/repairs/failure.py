@@ -42,12 +42,12 @@ class Failure:
         return self.source[self.span[0] : self.span[1]]
 
     def replaced(self, text: str, span: Span | None = None) -> str:
-        """Return the source with ``span`` (default: that of the error) replaced by ``text``."""
+        """Return the source with ``span`` (default: the error's span) replaced by ``text``."""
         start, end = span or self.span
         return self.source[:start] + text + self.source[end:]
 
     def terminal(self, back: int = 0) -> str:
-        """Return the terminal of the token that is ``back`` tokens before the refused one.
+        """Return the terminal of the token that is ``back`` tokens before the refused token.
 
         Return "" if there is no such token, or if the grammar did not refuse the text.
         """
@@ -101,7 +101,7 @@ def error(
 
 
 def undeclared(failure: Failure) -> str:
-    """Return the sentence that the name at the failure is not declared."""
+    """Return the sentence that says that the name at the failure is not declared."""
     name = quoted(failure.written)
     if failure.vocabulary.of_books:
         return say("There is no {name} here.", name=name)

@@ -23,7 +23,7 @@ _WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise."
 
 @for_causes("name", "quantity")
 def repair(failure: Failure) -> Repair:
-    """Ask for the bare number. Suggest it only for metres, because cm and mm change its value."""
+    """Ask for a bare number. Suggest one only for metres: other units would change its value."""
     if failure.cause == "quantity":
         return _quantity(failure)
     written = unicodedata.normalize("NFKC", failure.written)

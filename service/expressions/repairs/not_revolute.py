@@ -8,7 +8,7 @@ from service.translations import say
 def repair(failure: Failure) -> Repair:
     """Say why the joint has no angle.
 
-    There is no suggestion: leaving out the joint may be what the exercise tests.
+    There is no suggestion: the exercise may test whether students leave out the joint.
     """
     joint = failure.details["joint"]
     if joint in failure.vocabulary.turning:

@@ -1,4 +1,4 @@
-"""A unit on a variable, which is not a number of degrees: (q1 + 90)deg."""
+"""A unit after a variable: (q1 + 90)deg. Only numbers have units."""
 
 import re
 
@@ -26,7 +26,7 @@ def repair(failure: Failure) -> Repair:
 def _repaired(failure: Failure) -> str | None:
     """Return the text without the unit if it follows only the variable (q1° -> q1); else None.
 
-    In 90 + q1°, the unit also applies to the number and is moved there.
+    In 90 + q1°, the unit belongs to the number, so it is moved to the number.
     """
     start, end = failure.span
     inside = failure.details["variable"]

@@ -1,4 +1,4 @@
-"""Functions that no answer needs (log, sinh, max), and other names of known ones (cosine)."""
+"""Functions that no answer needs (log, sinh, max), and other names of known functions (cosine)."""
 
 import re
 

@@ -55,7 +55,7 @@ def _written(piece: Piece, run: str) -> str:
 
 
 def _names(name: str, vocabulary: Vocabulary) -> str:
-    """Return a sentence that lists the names with the same letter, of the same kind, or all."""
+    """Return a sentence that lists names: those with this letter, else of this kind, else all."""
     siblings = _siblings(name, vocabulary)
     if name in _OF_JOINTS:
         siblings = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]

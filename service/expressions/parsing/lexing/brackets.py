@@ -22,7 +22,7 @@ class Brackets:
         self.opened: list[tuple[str, Span, int]] = []
 
     def open(self, bracket: str, span: Span, token: int) -> None:
-        """Push the bracket of token ``token``. Raises UnreadableError if it is nested too deep."""
+        """Push the bracket of the token at index ``token``. Raises UnreadableError if too deep."""
         if len(self.opened) >= LIMITS.depth:
             raise UnreadableError("beyond", span, limit="depth")
         self.opened.append((bracket, span, token))

@@ -18,7 +18,7 @@ _STEM: Final = re.compile(rf"[A-Za-z{greek.CLASS}]+$")
 class Indexed(NamedTuple):
     """A run of letters and its index in brackets, read together.
 
-    ``pieces`` are the pieces of the run followed by the index, None if they have no meaning.
+    ``pieces`` are the pieces of the run with its index, or None if these have no meaning.
     ``digits`` is the index as in declared names, ``end`` the place after the brackets.
     """
 
@@ -31,9 +31,9 @@ class Indexed(NamedTuple):
 def indexed(
     run: str, text: str, end: int, vocabulary: Vocabulary, *, from_one: bool = False
 ) -> Indexed | None:
-    """Return ``run``, which ends at ``text[end]``, with the index in brackets after it, or None.
+    """Return ``run``, which ends at ``text[end]``, with the index in brackets that follows.
 
-    With ``from_one``, square brackets count from 1, too.
+    Return None if no index follows. With ``from_one``, indices in square brackets also start at 1.
     """
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:

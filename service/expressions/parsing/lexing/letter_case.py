@@ -1,4 +1,4 @@
-"""Names whose letter case differs from the declared one: l1 if only L1 is declared.
+"""Names in another letter case than declared: l1 if only L1 is declared.
 
 Such a name is read if it has no other reading and fits only one symbol.
 """
@@ -39,7 +39,7 @@ def split_in_other_case(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] |
 
 @lru_cache(maxsize=256)
 def _with_other_capitals(vocabulary: Vocabulary) -> Vocabulary:
-    """Return the vocabulary in which each symbol has its names in other letter cases, too."""
+    """Return the vocabulary with extra names: those of each symbol in other letter cases."""
     owners: dict[str, dict[str, Symbol]] = {}
     for name, symbol in vocabulary.by_name.items():
         for other in {name.lower(), name.upper(), name[0].swapcase() + name[1:]}:

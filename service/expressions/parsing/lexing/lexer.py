@@ -55,10 +55,10 @@ class Lexer(WordLexer):
         return self.tokens
 
     def _plain_run(self, text: str) -> int:
-        """Read the tokens of an unchanged text from a list of strings: a fast path.
+        """Read an unchanged text quickly, split into strings that usually are one token each.
 
-        Stop where a token is not exactly its string; ``_run_from`` reads the rest. Return the place
-        after the text read.
+        Stop at a string that is not exactly one token; ``_run_from`` reads the rest. Return the
+        place after the text that was read.
         """
         tokens, operands, end = self.tokens, self.vocabulary.operands, 0
         for string in _STRING.findall(text):
@@ -84,7 +84,7 @@ class Lexer(WordLexer):
         return end
 
     def _run_from(self, position: int, text: str) -> int:
-        """Read tokens until one of them takes more than its match; return the place after it."""
+        """Read tokens up to one that is longer than its match; return the end of this token."""
         tokens, in_place = self.tokens, self.starts is None
         # The last alternative takes any character, so no character is skipped.
         for found in _TOKEN.finditer(text, position):
@@ -195,7 +195,7 @@ class Lexer(WordLexer):
             self.brackets.open(bracket, span, len(self.tokens) - 1)
 
     def _bar(self, span: Span) -> None:
-        r"""Read a bar of |x|: after an operand it closes; any other bar, and \left|, opens."""
+        r"""Read a bar of |x|. A bar after an operand closes; any other bar, and \left|, opens."""
         closes = self.last in OPERAND_ENDS and self.brackets.in_bars()
         if closes and not _LEFT_BAR.search(self.source, max(0, span[0] - _LEFT_REACH), span[1]):
             self.brackets.close("|", span)

@@ -23,7 +23,7 @@ _DOTS: Final = ("·", "⋅", "∙", "•")
 
 
 def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
-    """Return the note on θ1 + 90, a bare number of radians added to an angle, or None."""
+    """Return the note on θ1 + 90, whose 90 was read in radians, or None."""
     for one, other in ((left, right), (right, left)):
         number = _number(other)
         if number is not None and not degrees and _is_large(number) and _is_angle(one):

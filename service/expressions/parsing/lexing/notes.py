@@ -82,13 +82,13 @@ class WordNotes:
         self._add("letter_case", message, (a, b))
 
     def pi(self, a: int, b: int) -> None:
-        """Note that Pi or PI was read as the number."""
+        """Note that Pi or PI was read as the number π."""
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 2] == "()"
         if self.source[a:b] in PI_CAPITALS and not of_program:
             self._add("letter_case", say("This was read as the number pi."), (a, b))
 
     def function(self, name: str, a: int, b: int) -> None:
-        """Note a function in capitals, a function of degrees, or acos if a is a symbol."""
+        """Note a function in capitals, a function of degrees, or acos if ``a`` is a symbol."""
         written = self.source[a:b]
         # Mathematica writes Cos[q1], and C# Math.Cos(q1).
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 1] == "["

@@ -19,16 +19,16 @@ _COUNTS_FROM_ONE: Final = re.compile(
 
 
 def degrees_function_end(text: str, at: int) -> int | None:
-    """Return the end of a function that converts degrees, after a module's name, or None.
+    """Return the end of a function that converts degrees to radians, or None.
 
-    These are radians, toRadians, and rad: sympy.rad, and math.rad in Lua.
+    The functions are radians, toRadians and rad, each after the name of a module, as in sympy.rad.
     """
     found = _RADIANS.match(text, at)
     return found and found.end()
 
 
 def is_more_than_a_turn(text: str, at: int) -> bool:
-    """True if a bracket with one number begins at ``at``, and is more than a turn in radians."""
+    """True if ``text`` has a number in brackets at ``at`` that is more than a turn in radians."""
     return _MANY.match(text, at) is not None
 
 

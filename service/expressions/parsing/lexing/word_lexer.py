@@ -76,9 +76,9 @@ class WordLexer(TokenWriter):
             self.notes.product(run[before.start : before.end], angle.symbols[0], a, b)
 
     def _piece(self, piece: Piece, start: int, end: int) -> int:
-        """Emit a constant, a number or a unit of a run that begins at ``start``.
+        """Emit a piece (a constant, number or unit) of the run that begins at ``start``.
 
-        Return the place after the text read: ``end``, or more if brackets after the run were read.
+        Return the place after the text read: ``end``, or later if brackets after the run were read.
         """
         kind, word, stop = piece.kind, piece.word, start + piece.end
         a, b = self._span(start + piece.start, stop)
@@ -98,7 +98,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _after_module(self, at: int) -> int:
-        """Read ``radians`` or ``rad`` after ``np.`` as degrees; return the place after it."""
+        """Read ``radians`` or ``rad`` after ``np.`` as the function ``deg``; return its end."""
         end = degrees_function_end(self.text, at)
         if end is None:
             return at

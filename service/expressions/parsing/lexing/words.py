@@ -45,8 +45,8 @@ _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEG
 class Piece:
     """One part of a run, ``run[start:end]``.
 
-    ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` are the
-    symbol, or the joint angles whose sum a shorthand means. ``ambiguous`` is True for a shorthand
+    ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` has
+    one symbol, or the joint angles that a shorthand adds. ``ambiguous`` is True for a shorthand
     with another reading, such as sin12, or s2 in s2θ1. ``joint`` is the wrong index of an invalid
     shorthand.
     """
@@ -111,7 +111,7 @@ def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
 
 
 def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """Split ``run`` from right to left, so that each position is split once."""
+    """Split ``run`` from right to left, so that the rest after each position is split only once."""
     length = len(run)
     # For each position: the first pieces of the rest of the run, and True if no piece is invalid.
     first: list[tuple[Piece, ...] | None] = [None] * length
@@ -134,7 +134,7 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
-    """Return the pieces of the whole run, given the first pieces from each position on."""
+    """Return the pieces of the whole run, given the pieces that begin at each position."""
     found: list[Piece] = []
     at = 0
     while at < len(first):
