@@ -96,7 +96,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
 def _formulas(
     parts: Sequence[PartSpec], reference: Reference | None, reader: FormulaReader
 ) -> Mapping[str, FormulaGrid]:
-    """The formulas of each part whose answer is in the file, by part id. Raises FieldError."""
+    """Map each part whose answer is in the file to its formulas, by part id. Raises FieldError."""
     found: dict[str, FormulaGrid] = {}
     for i, part in enumerate(parts):
         written = part.formulas()
@@ -145,7 +145,7 @@ def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLeve
 
 
 def _version(spec: ExerciseSpec) -> str:
-    """The digest of all fields that affect grading; comments and layout do not change it.
+    """The digest of all fields that affect grading; comments and layout do not change the digest.
 
     Fields with default values are left out, so that a new field of the schema does not change the
     version of every exercise.
@@ -237,7 +237,7 @@ def _vocabulary(variables: tuple[Variable, ...], *, decimal_comma: bool) -> Voca
 
 
 def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
-    """The usual names of a joint variable that no other symbol of the exercise has."""
+    """The usual names of a joint variable, without those of other symbols of the exercise."""
     if variable.joint is None:
         return ()
     letters = ("q", "d") if variable.kind == "length" else ("q", "theta", "th")
@@ -302,7 +302,7 @@ def _row(i: int, cells: Four, joints: tuple[Joint, ...], reader: FormulaReader) 
 def _check_moves_once(field: str, formula: Expression, joint: Joint) -> None:
     """Raise FieldError unless the cell is the joint variable plus a constant.
 
-    The reference defines the positive direction of each joint.
+    So the cell increases with the joint variable, as the reference defines positive directions.
     """
     at = np.array([0.0, 0.7, -1.3])
     values = {name: np.full(3, 0.4) for name in formula.symbols} | {joint.variable: at}

@@ -26,9 +26,10 @@ def drafts_folder() -> Path:
 
 
 class Drafts:
-    """The drafts in a folder, which several processes may share. Only a draft's author has its id.
+    """The drafts in a folder, which several processes may share.
 
-    Without ``folder``, the drafts are in a new temporary folder, removed when the process ends.
+    Only a draft's author knows the draft's id. Without ``folder``, the drafts are in a new
+    temporary folder, which is removed when the process ends.
     """
 
     def __init__(self, folder: Path | None = None, clock: Callable[[], float] = time.time) -> None:
@@ -40,9 +41,9 @@ class Drafts:
         self._read: dict[str, tuple[int, Exercise]] = {}
 
     def put(self, text: str, draft_id: str = "") -> str:
-        """Keep an exercise and return its id. ``draft_id`` is the draft that it replaces.
+        """Store a draft and return its id. ``draft_id`` is the id of the draft to replace.
 
-        Raises CatalogueError if the text is no exercise, OSError if it cannot be written.
+        Raises CatalogueError if the text is no exercise, OSError if the file cannot be written.
         """
         if self._written(draft_id) is None:
             draft_id = f"draft-{secrets.token_hex(16)}"
@@ -79,7 +80,7 @@ class Drafts:
         return exercise
 
     def _written(self, draft_id: str) -> int | None:
-        """Return when a draft was written (ns), or None if it is unknown or too old."""
+        """Return the time at which a draft was written, in ns; None if it is unknown or too old."""
         if not _ID.fullmatch(draft_id):
             return None
         try:
@@ -105,7 +106,7 @@ def _age(file: Path) -> int:
 
 
 class CatalogueWithDrafts(Mapping[str, Exercise]):
-    """A catalogue in which drafts are found by their ids. They are not listed."""
+    """A catalogue in which drafts are found by their ids. Drafts are not listed."""
 
     def __init__(self, catalogue: Mapping[str, Exercise], drafts: Drafts) -> None:
         self._catalogue = catalogue

@@ -33,12 +33,12 @@ class Exercise:
     catalogue (``level``, ``order``, ``minutes``, ``summary`` and ``keywords``).
 
     ``feedback_by_attempt`` has the highest feedback level of each attempt; the last level is for
-    all later attempts. ``reference`` is the robot, if any; ``formulas`` has the answers in the file
-    by part id. ``length_scale`` is the longest length, to which small differences are compared.
-    ``view`` is the viewpoint of the figure. ``vary`` has the values of the variants, if the
-    exercise has variants. ``seed`` is the seed of a variant; the variant's ``id`` is
-    ``<exercise>~<seed>`` unless the seed is hidden. ``told`` has the exercise in the languages in
-    which it was shown.
+    all later attempts. ``reference`` is the robot, if any; ``formulas`` has, by part id, the
+    answers that the file gives. ``length_scale`` is the longest length, to which small differences
+    are compared. ``view`` is the viewpoint of the figure. ``vary`` has the values of the variants,
+    if the exercise has variants. ``seed`` is the seed of a variant; the variant's ``id`` is
+    ``<exercise>~<seed>`` unless the seed is hidden. ``told`` memoizes translations of the exercise
+    by language code.
     """
 
     id: str
@@ -79,7 +79,7 @@ class Exercise:
 
     @property
     def feedback(self) -> FeedbackLevel:
-        """The highest feedback level of the first attempt, and of gradings without recording."""
+        """The highest feedback level of the first attempt, and of answers that are not recorded."""
         return self.feedback_by_attempt[0]
 
     def feedback_at(self, ordinal: int) -> FeedbackLevel:
@@ -98,7 +98,7 @@ class Exercise:
 
     @property
     def symbols(self) -> frozenset[str]:
-        """The names of its variables and symbols, as it declares them."""
+        """The names of the exercise's variables and symbols, as they are declared."""
         return frozenset(variable.name for variable in self.variables)
 
     @property
@@ -116,7 +116,7 @@ class Exercise:
         return next((part for part in self.parts if part.id == part_id), None)
 
     def fields(self) -> Iterator[FormulaField]:
-        """Yield every formula of the file with its field and quantity."""
+        """Yield every formula of the file, with its field in the file and its quantity."""
         if self.reference is not None:
             yield from self.reference.fields()
         for i, part in enumerate(self.parts):
@@ -127,9 +127,9 @@ class Exercise:
 
 
 def in_language(exercise: Exercise, language: Language) -> Exercise:
-    """Return the exercise with its texts in a language; texts without a translation stay.
+    """Return the exercise with its texts in a language; texts without a translation do not change.
 
-    Translations come from the exercise file, or from the catalogues for texts of type ``Sentence``.
+    Translations come from the exercise file, or from ``service.translations`` for a ``Sentence``.
     """
     if language == ENGLISH:
         return exercise

@@ -88,14 +88,14 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps, self._exercises = stamps, in_order(found.values())
 
     def _complain(self, complaint: str) -> None:
-        """Log a fault of the folders, but not again while it stays the same."""
+        """Log a fault of the folders, unless it is the fault that was logged last."""
         if complaint != self._complaint:
             _log.error("The exercises stay as they were:\n%s", complaint)
         self._complaint = complaint
 
 
 def _stamps(files: Sequence[Path]) -> dict[Path, Stamp]:
-    """For each file a stamp that changes with the content; missing files are left out."""
+    """Map each file to a stamp that changes with its content; missing files are left out."""
     stamps = {}
     for file in files:
         try:

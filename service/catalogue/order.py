@@ -33,7 +33,7 @@ def by_level(exercises: Iterable[Exercise]) -> list[tuple[str, list[Exercise]]]:
 
 
 def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise | None:
-    """Return the exercise after this one in the order of the catalogue, or None after the last."""
+    """Return the next exercise in the catalogue's order, or None if ``exercise_id`` is the last."""
     following = iter(in_order(exercises).values())
     found = any(exercise.id == exercise_id for exercise in following)
     return next(following, None) if found else None

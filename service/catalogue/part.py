@@ -32,9 +32,10 @@ class PartSpec(StrictModel, ABC):
 
     - ``answer_fields``: the fields that may give the answer instead of the robot;
     - ``can_be_followed``: True if the answer is a chain that a later part can follow from;
-    - ``pasted_as``: the content of pasted answers, a table or a matrix of numbers or angles;
+    - ``pasted_as``: the content of pasted answers: a table, numbers or angles;
     - ``holds_links``: True if the answer contains the link transforms;
-    - ``compared_by_formulas``: True if two parts with equal answers may be different tasks.
+    - ``compared_by_formulas``: True if only equal formulas, not equal answers, make two parts the
+      same task.
     """
 
     answer_fields: ClassVar[tuple[str, ...]] = ("expected",)
@@ -65,7 +66,7 @@ class PartSpec(StrictModel, ABC):
         kind: str
 
     def formulas(self) -> WrittenFormulas | None:
-        """The right answer if the file gives it in formulas; None if the robot determines it."""
+        """The right answer if the file gives it in formulas; None if it follows from the robot."""
         return None
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
@@ -96,7 +97,7 @@ class PosePartSpec(PartSpec):
     """True if all joint variables are 0."""
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Raise FieldError unless the robot has both frames."""
+        """Raise FieldError unless the robot has the frames ``from`` and ``to``."""
         super().check_reference(field, reference)
         assert reference is not None
         for name, frame in (("from", self.start), ("to", self.to)):

@@ -56,7 +56,7 @@ def _as_sentence(value: object, checked: ValidatorFunctionWrapHandler) -> object
 
 
 def advice(text: str) -> FieldInfo:
-    """Return field metadata with the advice for a text that does not match the pattern."""
+    """Return field metadata with advice to authors whose text does not match the pattern."""
     field: FieldInfo = Field(json_schema_extra={"advice": text})
     return field
 

@@ -21,12 +21,12 @@ _SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def with_line(field: str, line: int | None) -> str:
-    """Return a field with its line, as messages name it."""
+    """Return the text with which messages name a field and its line."""
     return field if line is None else say("{field} (line {line})", field=field, line=line)
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
-    """The line of a field such as ``parts[1].points``, else of the nearest field around it.
+    """The line of a field such as ``parts[1].points``, or else of the nearest enclosing field.
 
     ``lines`` is the result of ``value_lines``. The result is None if no such field has a line.
     """
@@ -36,7 +36,7 @@ def line_of(field: str, lines: dict[str, int]) -> int | None:
 
 
 def value_lines(text: str) -> dict[str, int]:
-    """The line of each value of a TOML text by its path: ``{"parts[1].points": 31, …}``."""
+    """Map the path of each value of a TOML text to its line: ``{"parts[1].points": 31, …}``."""
     return _LineFinder(text).found()
 
 

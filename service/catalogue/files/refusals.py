@@ -60,7 +60,9 @@ _QUOTED: Final = re.compile(r"'([^']*)'")
 def refusals(
     error: ValidationError | FieldError | ExceptionGroup[FieldError], table_at: TableAt
 ) -> list[tuple[str, str]]:
-    """Return the field and the reason of each fault; findings for several types are one fault.
+    """Return the field and the reason of each fault.
+
+    If a value may have several types, pydantic's findings for each type are one fault.
 
     ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
     """
@@ -104,7 +106,7 @@ def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
 
 
 def _no_choice(value: object, known: Sequence[str]) -> str:
-    """The reason for a value that is not among the known ones; it suggests the nearest."""
+    """The reason why an unknown value is refused, with the nearest known value as suggestion."""
     lowered = {choice.lower(): choice for choice in known}
     near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
     names = alternatives(map(repr, known))
@@ -172,7 +174,7 @@ def _advised(detail: _Detail, table_at: TableAt) -> str:
 
 
 def _message(detail: _Detail) -> str:
-    """The message of a pydantic finding, or of the error of a validator."""
+    """The message of a pydantic finding; for a validator's error, the error's own message."""
     if detail["type"] == "value_error":
         reason: str = detail["ctx"]["error"].args[0]
         return reason
@@ -181,7 +183,7 @@ def _message(detail: _Detail) -> str:
 
 
 def _out_of_range(detail: _Detail, is_share: bool) -> str:
-    """The reason for a number out of range; it suggests 0.5 for a share that is written as 50."""
+    """The reason why a number out of range is refused. For a share of 50, it suggests 0.5."""
     value = detail["input"]
     shown = reprlib.repr(value)
     if not is_share:

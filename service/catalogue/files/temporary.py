@@ -10,7 +10,7 @@ _MEMORY: Final = Path("/dev/shm")
 
 
 def temporary_place() -> Path:
-    """Return the folder in memory, or else the folder for temporary files; none may be writable."""
+    """Return a folder in memory, or else the temporary folder, or else the current folder."""
     if os.access(_MEMORY, os.W_OK):
         return _MEMORY
     try:

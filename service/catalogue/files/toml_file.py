@@ -22,7 +22,7 @@ Built = TypeVar("Built")
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A fault in a tutor's file: its place and the reason."""
+    """A fault in a tutor's file: its place and its reason."""
 
     file: Path
     field: str
@@ -46,7 +46,7 @@ class CatalogueError(Exception):
 def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
     """Return the result of ``build`` on the content of the file. Raises CatalogueError.
 
-    ``build`` may raise a ValidationError of pydantic, or a FieldError or a group of them.
+    ``build`` may raise pydantic's ValidationError, one FieldError, or a group of FieldErrors.
     ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
     """
     try:

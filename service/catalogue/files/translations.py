@@ -1,4 +1,4 @@
-"""Checks of the texts in other languages against those in English."""
+"""Check the texts in other languages against the English texts."""
 
 import re
 from collections import Counter

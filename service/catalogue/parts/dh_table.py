@@ -120,13 +120,13 @@ class DhTableSpec(TablePartSpec):
         )
 
     def asked_table(self, robot: Robot) -> ReferenceTable:
-        """Return the robot's table in the part's convention, or the longer one if both fit."""
+        """Return the table in the part's convention; if the part accepts both, the longer table."""
         if isinstance(self.convention, Convention):
             return robot.tables[self.convention]
         return max(robot.tables.values(), key=lambda table: len(table.rows))
 
     def _given_cells(self, robot: Robot) -> dict[str, list[str]]:
-        """Return the texts of the given rows by their labels."""
+        """Return the texts of the cells of each given row, by row label."""
         table = robot.tables[robot.convention]
         return {
             table.labels[i - 1]: [cell.source for cell in table.rows[i - 1]] for i in self.given

@@ -34,7 +34,7 @@ class EulerAnglesSpec(PosePartSpec):
         return "ZYX" if self.sequence == "RPY" else self.sequence
 
     def formulas(self) -> WrittenFormulas | None:
-        """The angles, if they are given."""
+        """The angles, if the file gives them."""
         if self.expected is None:
             return None
         return list_of("expected[{j}]", self.expected, ["angle"] * 3)

@@ -104,7 +104,7 @@ class FindSlipSpec(TablePartSpec):
         )
 
     def shape(self, reference: Reference | None) -> FindSlipShape:
-        """The shape of the table, without the given cells: these are drawn by the grader."""
+        """The shape of the table. The grader chooses the slip, and adds the given cells."""
         assert isinstance(reference, Robot)
         return FindSlipShape(
             columns=list(COLUMNS),

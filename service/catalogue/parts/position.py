@@ -26,7 +26,7 @@ class PositionSpec(PosePartSpec):
     """The right coordinates, instead of those of the robot."""
 
     def formulas(self) -> WrittenFormulas | None:
-        """The coordinates, if they are given."""
+        """The coordinates, if the file gives them."""
         if self.expected is None:
             return None
         return list_of("expected[{j}]", self.expected, ["length"] * len(self.expected))

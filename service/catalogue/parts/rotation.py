@@ -40,7 +40,7 @@ class RotationSpec(PosePartSpec):
     """The steps of the rotation in order, instead of the robot's rotation or ``expected``."""
 
     def formulas(self) -> WrittenFormulas | None:
-        """The entries or the angles of the steps, if they are given."""
+        """The entries or the angles of the steps, if the file gives them."""
         if self.expected is not None:
             return matrix_of("expected", self.expected, ROTATION, check_rotation)
         if self.steps is not None:

@@ -42,7 +42,7 @@ class ScrewAxesSpec(PartSpec):
     """The right axes, instead of those of the robot."""
 
     def formulas(self) -> WrittenFormulas | None:
-        """The axes, if they are given."""
+        """The axes, if the file gives them."""
         return None if self.expected is None else screws_of("expected", self.expected)
 
     def count(self, joints: Sequence[object]) -> int:

@@ -19,7 +19,7 @@ class TransformSpec(PosePartSpec):
     """The entries of the transform, row by row, instead of the robot's pose."""
 
     def formulas(self) -> WrittenFormulas | None:
-        """The entries, if they are given."""
+        """The entries, if the file gives them."""
         return None if self.expected is None else transform_of("expected", self.expected)
 
     def shape(self, _: Reference | None) -> MatrixShape:

@@ -44,11 +44,11 @@ class FieldError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class WrittenFormulas:
-    """The formulas of an answer in the file, row by row, and the quantity of each.
+    """The formulas of an answer in the file, row by row, and each formula's quantity.
 
     ``path`` is the field of row i and column j, such as ``expected[{i}][{j}]``. ``check`` takes the
-    field of the answer and its numbers ``(rows, columns, TRIALS)``, and raises FieldError if the
-    numbers cannot be right.
+    field of the answer and the formulas' numbers ``(rows, columns, TRIALS)``, and raises FieldError
+    if the numbers cannot be right.
     """
 
     path: str
@@ -85,14 +85,14 @@ def screws_of(field: str, axes: Sequence[Screw]) -> WrittenFormulas:
 def fields_of(
     path: str, grid: FormulaGrid, quantities: Sequence[Sequence[Kind]]
 ) -> Iterator[FormulaField]:
-    """Yield the formulas of a grid with their fields and quantities; ``path`` has {i} and {j}."""
+    """Yield the formulas of a grid, each with its field and quantity; ``path`` has {i} and {j}."""
     for i, (row, kinds) in enumerate(zip(grid, quantities, strict=True)):
         for j, (formula, kind) in enumerate(zip(row, kinds, strict=True)):
             yield path.format(i=i, j=j), formula, kind
 
 
 def grid_values(grid: FormulaGrid, values: SymbolValues, samples: int) -> Numbers:
-    """Return the numbers of formulas at the values, ``(rows, columns, samples)``."""
+    """Return the numbers of formulas at ``values``, ``(rows, columns, samples)``."""
     numbers = np.empty((len(grid), len(grid[0]), samples))
     for i, row in enumerate(grid):
         for j, formula in enumerate(row):
@@ -122,7 +122,7 @@ class FormulaReader:
             raise FieldError(field, reason) from error
 
     def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
-        """Read and check all formulas; prepend ``prefix`` to their fields. Raises FieldError."""
+        """Read and check all formulas, whose fields begin with ``prefix``. Raises FieldError."""
         path = prefix + written.path
         rows = enumerate(zip(written.rows, written.quantities, strict=True))
         grid = tuple(
@@ -138,7 +138,7 @@ class FormulaReader:
         return grid
 
     def trial_numbers(self, grid: FormulaGrid, field: Callable[[int, int], str]) -> Numbers:
-        """Return the trial numbers ``(rows, columns, TRIALS)``.
+        """Return the numbers of formulas at the trial values, ``(rows, columns, TRIALS)``.
 
         Raises FieldError if a number is undefined.
         """

@@ -32,7 +32,7 @@ TOOL_ROW = "e"
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One joint: its index, which is the label of its row, its variable, and its type."""
+    """One joint: its index (the label of its row), its variable and its type."""
 
     index: int
     variable: str
@@ -46,7 +46,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """A table of formulas in one convention; the rows after those of the joints are fixed."""
+    """A table of formulas in one convention; the rows after the joints' rows are fixed."""
 
     convention: Convention
     joints: tuple[Joint, ...]
@@ -169,7 +169,7 @@ class Robot:
 def tables_in_both_conventions(
     joints: tuple[Joint, ...], rows: Sequence[FormulaRow], convention: Convention, zero: Expression
 ) -> dict[Convention, ReferenceTable]:
-    """Return the author's table, and one in the other convention if it can express the robot.
+    """Return the author's table, and a table in the other convention if that can express the robot.
 
     In the other table, a fixed last row of zeros is dropped, because it moves nothing.
     """

@@ -11,7 +11,7 @@ from service.catalogue.varying.vary import Vary
 
 
 def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
-    """Return the exercise of a file's content; with ``[vary]``, the exercise without a seed.
+    """Return the exercise of a file's content; if it has ``[vary]``, the exercise with no seed.
 
     Raises ValidationError or FieldError.
     """

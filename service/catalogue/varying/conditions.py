@@ -21,7 +21,7 @@ _EQUAL: Final = 1e-9
 
 
 def numeric_values(values: Sequence[VaryValue]) -> Sequence[float] | None:
-    """Return a name's choices as numbers ("90deg" is one), or None if one is not a number."""
+    """Return a name's choices as numbers ("90deg" is a number), or None if any is no number."""
     found = []
     for each in values:
         if isinstance(each, Mapping):
@@ -37,7 +37,7 @@ def numeric_values(values: Sequence[VaryValue]) -> Sequence[float] | None:
 
 
 def vocabulary_of(names: Sequence[str]) -> Vocabulary:
-    """Return the vocabulary of the names with numbers. Raises FieldError."""
+    """Return the vocabulary of names whose choices are numbers. Raises FieldError."""
     for name in names:
         try:
             Vocabulary([Symbol(name, "number")])
@@ -50,7 +50,7 @@ def vocabulary_of(names: Sequence[str]) -> Vocabulary:
 
 
 def read_formula(field: str, text: str, vocabulary: Vocabulary) -> Expression:
-    """Return the formula of varied numbers in ``text``. Raises FieldError."""
+    """Read a formula whose names are varied numbers. Raises FieldError."""
     try:
         return read(text, vocabulary)
     except ExpressionError as error:
@@ -78,7 +78,7 @@ class Condition:
     right: Expression
 
     def holds(self, values: Mapping[str, NDArray[np.float64]], count: int) -> NDArray[np.bool_]:
-        """Return where the condition holds, ``(count,)``. Undefined values never meet it."""
+        """Return a mask ``(count,)`` of draws that meet the condition; undefined values do not."""
         difference = np.broadcast_to(
             np.asarray(self.left.evaluate(values)) - np.asarray(self.right.evaluate(values)), count
         )

@@ -1,7 +1,7 @@
 """The values of a seed, and the content of an exercise file with these values.
 
-The same id and seed have the same values in every process and Python version: they come from the
-SHA-256 of the id, the seed and the name, so that a new name in ``[vary]`` changes no other value.
+The same id and seed give the same values in every process and Python version. Each value comes from
+the SHA-256 of the id, the seed and the name, so a new name in ``[vary]`` changes no other value.
 """
 
 import hashlib
@@ -82,7 +82,7 @@ class Vary:
         self.base_version = _digest({**graded, "vary": kept}, 6)
 
     def with_choices(self, table: Mapping[str, Any]) -> "Vary":
-        """Return this content with an earlier table of choices, but with the current version.
+        """Return this content with ``table``, an earlier ``[vary]``, but with the current version.
 
         If the texts need names that the table lacks, these names get the choices of the file.
         Raises FieldError if the texts do not fit even then.
@@ -109,7 +109,7 @@ class Vary:
     def values(self, seed: str) -> Mapping[str, VaryValue]:
         """Return the value of each name for a seed; for "", the values of the exercise itself.
 
-        If no draw meets the conditions, the values of the exercise itself are returned, too.
+        Return the values of the exercise itself also if no draw of the seed meets the conditions.
         """
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}
@@ -147,7 +147,7 @@ class Vary:
         return None
 
     def _meet(self, draws: Sequence[Mapping[str, int]]) -> NDArray[np.bool_]:
-        """Return which draws meet all conditions."""
+        """Return a mask of the draws that meet all conditions."""
         values = {
             name: np.array([numbers[draw[name]] for draw in draws])
             for name, numbers in self._numbers.items()
@@ -215,7 +215,7 @@ def _plain(value: VaryValue) -> object:
 
 
 def _text(value: VaryValue) -> str:
-    """Return a number without exponent and trailing zeros, or the text itself."""
+    """Return a number as text, without exponent and trailing zeros; return a text as it is."""
     if not isinstance(value, Decimal):
         return str(value)
     written = format(value, "f")
