@@ -54,7 +54,7 @@ def read_grid(text: str) -> Grid:
 def read_robot(text: str) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError if the text is such a script but its table is not certain. Takes linear time.
+    Raises GridError for a script whose table is not certain. Takes linear time.
     """
     if describes_print(text) and not describes_robot(text):
         return read_print(_limited(text))

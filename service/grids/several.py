@@ -108,7 +108,7 @@ def _headings_out_of_comments(source: SourceText) -> SourceText:
 
 
 def _masked(source: SourceText) -> str:
-    """Return the text with the contents of all brackets and quotes masked."""
+    """Return the text with a masking character for each character in brackets and quotes."""
     pieces, start, after = [], 0, 0
     text = source.text
     ends = strict_pairs(source)
@@ -139,7 +139,7 @@ def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
 
 
 def _holds_something(content: SourceText) -> bool:
-    """True if the text is more than prose or a product of named matrices."""
+    """True unless the text is only prose or a product of named matrices."""
     text = content.text.strip(TAIL)
     return _PRODUCT.fullmatch(text) is None and _PROSE.fullmatch(text) is None
 

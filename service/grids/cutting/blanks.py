@@ -27,7 +27,7 @@ _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
 @dataclass(frozen=True, slots=True)
 class BlankSeparated:
-    """The elements of one row. ``signs`` are the signs that began an element (no blank follows)."""
+    """The elements of one row. ``signs`` are the words, such as -s1, that begin an element."""
 
     elements: tuple[SourceText, ...]
     signs: tuple[SourceText, ...]
@@ -54,7 +54,7 @@ def split_blanks(row: SourceText) -> BlankSeparated:
 
 
 def continues(left: str, right: str) -> bool:
-    """True if ``right``, which follows ``left`` after a blank, belongs to the same element."""
+    """True if ``left`` and ``right``, with a blank between them, are parts of one element."""
     if left[-1] == "*" and left[-2:-1].strip(" \t\r\n.*"):
         # ``d3* 0`` is a joint variable marked by a star, and a zero; it is not a product.
         return False

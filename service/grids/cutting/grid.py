@@ -1,4 +1,4 @@
-"""The protocol of all formats: parse a text into a Grid or raise one GridError."""
+"""The protocol of all formats: a format parses a text into a Grid or raises one GridError."""
 
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -101,7 +101,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
 
 
 def tidy(cell: GridCell) -> GridCell:
-    """Return the cell without outer blanks and without marks that only style it: $…$, `…`, „…“."""
+    """Return the cell without outer blanks and signs that only style the cell: $…$, `…`, „…“."""
     cell = cell.strip()
     if _QUOTED.fullmatch(cell.text):
         cell = cell.cut(1, len(cell.text) - 1).strip()
@@ -119,7 +119,7 @@ def tidy(cell: GridCell) -> GridCell:
 
 
 def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
-    """Return the rows without empty columns at the right, and at the left of a rectangle."""
+    """Return the rows without empty last columns; if all rows are equally long, also first ones."""
     while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
         widest = max(map(len, rows))
         rows = [row[:-1] if len(row) == widest else row for row in rows]

@@ -15,7 +15,7 @@ _DEGREES: Final = frozenset({"o", "0", "°", "º"})
 
 
 def without_tags(cell: SourceText) -> SourceText:
-    """Return the cell with indices, powers and letters in plain characters."""
+    """Return the cell with its tags and entities replaced by plain characters."""
     if "<" not in cell.text and "&" not in cell.text:
         return cell
     pieces, start = [], 0

@@ -98,7 +98,7 @@ def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
 
 
 def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
-    """Yield the places of characters outside all pairs; ``ends`` maps start to exclusive end."""
+    """Yield the places of characters outside all pairs; ``ends`` maps a pair's start to its end."""
     i = 0
     while i < len(text):
         if i in ends:
@@ -111,7 +111,7 @@ def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
 def split(source: SourceText, separators: str) -> list[SourceText]:
     """Split at each of the characters ``separators`` outside brackets and quotes.
 
-    Raises GridError for the errors of ``strict_pairs``.
+    Raises GridError for a bracket without a partner and for a string that does not end.
     """
     text, ends = source.text, strict_pairs(source)
     places, at = [], 0

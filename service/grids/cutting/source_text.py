@@ -15,7 +15,7 @@ _LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 class SourceText:
     """A piece of text, with the [start, end) of each character in the text as typed.
 
-    ``at`` is the place of the piece if it is empty.
+    ``at`` is the place of an empty piece.
     """
 
     text: str
@@ -71,13 +71,13 @@ class SourceText:
         return [*pieces, self.cut(start, len(self.text))]
 
     def spelled(self, text: str) -> "SourceText":
-        """Return a piece that reads ``text``; each character has the place of the whole piece."""
+        """Return ``text`` as a piece; each character has the place of this whole piece."""
         start, end = self.whole
         return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
-    """Return the pieces joined into one; ``at`` is the place of the result if it is empty."""
+    """Return the pieces joined into one; ``at`` is the place of an empty result."""
     kept = [piece for piece in pieces if piece.text]
     if len(kept) == 1:
         return kept[0]

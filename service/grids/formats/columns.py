@@ -1,4 +1,4 @@
-"""Columns between blanks; each line has the same number of values."""
+"""Columns separated by blanks; each line has the same number of values."""
 
 import itertools
 import re
@@ -71,7 +71,7 @@ def _is_rule(line: str) -> bool:
 
 
 def _at_gaps(line: SourceText) -> list[SourceText]:
-    """Split a line at two or more blanks. Return no pieces if a split falls inside a value."""
+    """Split a line at two or more blanks. Return [] if this would split a value."""
     pieces = line.split(_GAP)
     halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
     return [] if halves else pieces

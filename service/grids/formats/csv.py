@@ -1,4 +1,4 @@
-"""Cells between commas. A comma in brackets, as in atan2(y, x), separates nothing."""
+"""Cells separated by commas. A comma in brackets, as in atan2(y, x), separates nothing."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""Printed data frames of pandas, R, Julia and MATLAB -> columns between blanks."""
+"""Printed data frames of pandas, R, Julia and MATLAB -> columns separated by blanks."""
 
 import re
 from typing import Final
@@ -30,7 +30,7 @@ _ROW_OF_R: Final = re.compile(r"[ \t]*\[\d{1,2},\]")
 
 
 def without_frame(source: SourceText) -> SourceText:
-    """Return a printed data frame as columns between blanks; any other text unchanged."""
+    """Return a printed data frame as columns separated by blanks; any other text unchanged."""
     first, *lines = [line for line in source.lines() if line.text.strip()] or [source]
     if _COLUMNS_OF_R.fullmatch(first.text):
         rows = [line.cut(end.end(), len(line.text)) for line in lines if (end := _row_of_r(line))]
@@ -59,7 +59,7 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
     """Return the rows with a header above the row numbers.
 
     Pandas and R print row numbers without a header. The new header is empty, or the name of the
-    index if the second line has one.
+    index if pandas prints this name in the second line.
     """
     rows = _with_whole_labels(rows)
     head, *body = rows
@@ -80,7 +80,7 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
 
 
 def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Return the rows with each label such as Link 1 in one cell.
+    """Return the rows with each label, such as Link 1, in one cell.
 
     All rows below the headers must have a label, otherwise the rows do not change. The name of the
     index may follow the headers.

@@ -1,7 +1,7 @@
 """HTML: the source of a table on a web page.
 
-The scanner is our own because html.parser does not give each character's place in the pasted text,
-nor linear time for every text.
+This file has its own scanner, because html.parser does not give each character's place in the
+pasted text, and does not take linear time for every text.
 """
 
 import re
@@ -162,7 +162,7 @@ def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, en
 
 
 def _text(source: SourceText, table: _Table, start: int) -> int:
-    """Process one entity, or text up to the next tag or entity; return where the scan continues."""
+    """Process an entity, or the text before the next tag or entity; return the place after it."""
     text = source.text
     if entity := _ENTITY.match(text, start):
         end = entity.end()

@@ -170,7 +170,7 @@ def _check_in_front(front: SourceText) -> None:
 
 
 def check_wrapper(around: SourceText) -> None:
-    """Raise GridError if ``around``, text next to a matrix, is more than layout."""
+    """Raise GridError if ``around``, the text next to a matrix, is more than layout commands."""
     end = after_wrappers(around.text)
     if end < len(around.text):
         raise text_around(around.cut(end, len(around.text)))
@@ -207,7 +207,7 @@ def _after_position(source: SourceText, at: int, options: re.Pattern[str] = _POS
 
 
 def after_brace(source: SourceText, start: int) -> int:
-    """Return the place after the brace that closes the one at ``start``, or raise GridError."""
+    """Return the place after the closing brace for the opening brace at ``start``."""
     depth = 0
     for i in range(start, len(source.text)):
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)

@@ -1,4 +1,4 @@
-"""Cells between semicolons: CSV from a spreadsheet that uses decimal commas.
+"""Cells separated by semicolons: CSV from a spreadsheet that uses decimal commas.
 
 A decimal comma stays in its cell; the reader of expressions reports it.
 """

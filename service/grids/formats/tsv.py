@@ -1,4 +1,4 @@
-"""Cells between tabs, the clipboard format of spreadsheets and web pages."""
+"""Cells separated by tabs, the clipboard format of spreadsheets and web pages."""
 
 import re
 from typing import Final

@@ -20,7 +20,7 @@ _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMat
 
 
 def lines_of(content: SourceText) -> list[SourceText] | None:
-    """Return the contents of each bracket in ``content``, or None if it is not a list of lists.
+    """Return the contents of each bracket; None if ``content`` is not a list of lists.
 
     Raises GridError for unbalanced brackets, and for more brackets than a grid may have rows.
     """
@@ -60,7 +60,7 @@ def rows(lines: list[SourceText]) -> list[list[SourceText]]:
 
 
 def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
-    """Return the rows of a flat list that a function makes a matrix of.
+    """Return the rows of the matrix that a function such as ``Matrix`` makes from a flat list.
 
     Without a shape, SymPy makes a column and NumPy a row. Raises GridError if the number of values
     does not fit the shape.

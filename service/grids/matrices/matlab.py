@@ -9,9 +9,9 @@ from service.translations import say
 
 
 def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
-    """Return the values of each row, and notes if two readings are possible.
+    """Return the values of each row, and notes if another reading is possible.
 
-    Raises GridError if there is a matrix both with and without splitting at blanks.
+    Raises GridError if splitting at commas and splitting at blanks give two different matrices.
     """
     lines = split(content, ";\r\n")
     lines = [line.strip() for line in lines if line.text.strip(" \t,")]

@@ -42,7 +42,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _rows(source: SourceText, start: int) -> tuple[list[list[SourceText]], int]:
-    """Return the cells of the matrix whose bracket opens before ``start``, and the place after it.
+    """Return the cells of the matrix whose bracket opens before ``start``, and the matrix's end.
 
     Raises GridError if the bracket is not closed.
     """
@@ -71,7 +71,7 @@ def _rows(source: SourceText, start: int) -> tuple[list[list[SourceText]], int]:
 
 
 def _check_around(front: SourceText, rest: SourceText) -> None:
-    """Raise GridError for more than a name, brackets and an equation's number around the matrix."""
+    """Raise GridError if more than a name, brackets and an equation number is around the matrix."""
     front, rest = front.strip(), rest.strip()
     closer = CLOSES.get(front.text[-1:], "")
     if closer and rest.text.startswith(closer):

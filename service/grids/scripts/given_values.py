@@ -62,7 +62,7 @@ class GivenValue:
 
 
 def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return the matrix of a script without the statements around it, and a note on their numbers.
+    """Return the matrix of a script without the other statements, and a note on their numbers.
 
     Any other text is returned unchanged. Raises GridError if the script assigns a value other than
     a plain number to a letter of the matrix.
@@ -77,7 +77,7 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
 
 
 def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return a table without lines such as ``d1 = 0.135 m`` around it, and a note on them.
+    """Return a table without lines such as ``d1 = 0.135 m`` around it, and a note on these lines.
 
     Any other text is returned unchanged.
     """
@@ -103,8 +103,8 @@ def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
     """Return the note on numbers that a script assigns to letters.
 
-    ``read`` are the letters in the cells. Raises GridError if such a letter has a value that is not
-    a plain number.
+    ``read`` are the letters in the cells. Raises GridError if one of these letters has a value that
+    is not a plain number.
     """
     for each in given:
         if each.name in read and not each.is_number:

@@ -163,7 +163,7 @@ def _dashed_rows(found: list[SourceText]) -> list[list[_Item]]:
 
 
 def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
-    """Return the table of dictionaries. Raises GridError if their keys differ."""
+    """Return the table with a row for each dictionary. Raises GridError if their keys differ."""
     first = [item.key.text for item in rows[0]]
     cells = [[item.key for item in rows[0]]]
     for row in rows:
@@ -244,9 +244,9 @@ def _by_column(
 def _by_index(
     items: list[_Item], keys: list[tuple[str, int]], source: SourceText
 ) -> RobotTable | None:
-    """Return the table of parameters with indices, or None if they are not a whole table.
+    """Return the table of parameters such as ``alpha0``; None unless they are a whole table.
 
-    A missing d or θ is the joint variable ``d1``, ``q1`` and so on.
+    If d or θ is missing in a row, it is the joint variable ``d1``, ``q1`` and so on.
     """
     cells = dict(zip(keys, (item.value for item in items), strict=True))
     numbers = {index for column, index in keys if column in ("d", "theta")}

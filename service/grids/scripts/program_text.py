@@ -90,7 +90,7 @@ def without_title(source: SourceText) -> SourceText:
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
-    """Return the matrix in a text, in at most ``calls`` nested calls.
+    """Return the matrix in a text; at most ``calls`` nested calls are around the matrix.
 
     Raises GridError if brackets are unbalanced, or if there is other text beside the matrix.
     """
@@ -168,7 +168,7 @@ def _remark_end(text: str, start: int, last: int) -> int:
 
 
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
-    """Return the place where a matrix begins, and the call around it, if any.
+    """Return the place where a matrix begins, and the call around the matrix, if any.
 
     Return None if the text has no matrix.
     """

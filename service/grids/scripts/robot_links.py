@@ -1,4 +1,4 @@
-"""One link of a robotics toolbox -> the four parameters of its row.
+"""One link of a robotics toolbox -> the four DH parameters of the link's row.
 
 The links are ``Link``, ``Revolute`` and ``Prismatic`` (Robotics Toolbox for MATLAB), ``DHLink``,
 ``RevoluteDH`` and similar classes (Robotics Toolbox for Python), and vectors (both of MATLAB's
@@ -30,7 +30,7 @@ class JointType(StrEnum):
 
 @dataclass(slots=True)
 class RobotLink:
-    """A link as the script writes it. ``cells`` has the parameters in the script by their names.
+    """A link as the script writes it. ``cells`` maps names of parameters to their texts.
 
     If ``joint`` is None, one of the cells contains the joint variable.
     """
@@ -123,7 +123,7 @@ def _link(
 
 @dataclass(slots=True)
 class _Given:
-    """The arguments of a link by their names, and words without a value, such as 'modified'.
+    """The arguments of a link: values by name, and words without a value, such as 'modified'.
 
     ``in_python`` is True if arguments are written ``name=value`` or by position.
     """
@@ -294,7 +294,7 @@ def row_of(link: RobotLink, number: int) -> LinkRow:
 
 
 def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
-    """Return the joint variable with the link's offset and sign."""
+    """Return the text of the joint variable with the link's offset and sign."""
     offset = link.cells.get("offset")
     if offset is not None and _is_zero(offset):
         offset = None
@@ -320,7 +320,7 @@ def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
 
 
 def has_variable(text: str) -> bool:
-    """True if a value contains a name other than those of constants."""
+    """True if a value contains a name that is not the name of a constant."""
     return any(name not in _CONSTANTS for name in _NAME.findall(text))
 
 

@@ -199,7 +199,7 @@ class _Script:
         return found is not None and (found["name"] or found["deleted"]) in self.names.links
 
     def _change(self, statement: SourceText, found: re.Match[str] | None) -> None:
-        """Set a parameter of a link: ``L(2).offset = pi/2``."""
+        """Process a statement that sets a parameter of a link: ``L(2).offset = pi/2``."""
         changed = found["property"] if found else None
         if changed in _FRAMES:
             raise _has_frames(statement)

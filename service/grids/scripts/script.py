@@ -87,6 +87,6 @@ def unread_script(message: str, source: SourceText) -> GridError:
 
 
 def excerpt(source: SourceText) -> str:
-    """Return the beginning of a piece of a script, as it is quoted in a message."""
+    """Return the beginning of a piece of a script, to quote it in a message."""
     text = " ".join("".join(c if c.isprintable() else " " for c in source.text).split())
     return text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"

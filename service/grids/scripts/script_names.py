@@ -30,7 +30,7 @@ Links = dict[int, RobotLink]
 
 @dataclass(slots=True)
 class ScriptNames:
-    """The values of names: links by list name and number, and values that are no links."""
+    """The values of names in a script: links, by the list's name and a number, and other values."""
 
     links: dict[str, Links] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
@@ -51,7 +51,7 @@ class ScriptNames:
             self._elements[name, number] = None
 
     def element(self, cell: SourceText) -> SourceText:
-        """Return the value of a cell such as ``d(2)`` that the script defines, else the cell.
+        """Return the value that the script gives to a cell such as ``d(2)``, or the cell itself.
 
         Raises GridError if the script gives the element two values.
         """
@@ -78,7 +78,7 @@ class ScriptNames:
     def name_links(
         self, statement: SourceText, name: str, number: int | None, links: list[RobotLink]
     ) -> None:
-        """Store links as the list ``name``, or one link as its element ``number`` (0: the next)."""
+        """Store links as the list ``name``, or one link as the element ``number`` (0: the next)."""
         known = self.links.setdefault(name, {})
         first = len(known) + 1 if number == 0 else number or 1
         if known if number is None else first in known or len(links) > 1:

@@ -1,6 +1,6 @@
 r"""Read an interpreter session: keep the outputs, and the inputs that have no output.
 
-Prompts and output marks are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
+Prompts and labels of outputs are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
 """
 
 import re
@@ -25,7 +25,7 @@ _ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?!
 def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:
     """Return the outputs of a session, and the matrices in inputs that have no output.
 
-    With ``named``, a name that an input shows becomes a line above its output.
+    With ``named``, a name whose value an input shows becomes a line above the output.
     """
     marks = list(_MARK.finditer(source.text))
     if not marks:

@@ -1,6 +1,6 @@
 """Remove sentences and code fences around a pasted table or matrix.
 
-A line is removed only if it cannot be a row: it has words, but not the separator of the rows. If
+A line is removed only if it cannot be a row: it has words, but no separator of cells. If
 the line names a unit, the text is refused, because the unit may apply to the table.
 """
 
@@ -90,7 +90,7 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
 
 
 def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
-    """Return the function that is true for a line that may be a row, given the whole text."""
+    """Return a function that tells whether a line of ``text`` may be a row."""
     if "\\begin" in text or "\\\\" in text:
         return lambda line: "\\" in line or "$" in line
     if not _PROGRAM.search(text):

@@ -105,7 +105,7 @@ def _table(source: SourceText) -> tuple[list[list[SourceText]], str]:
 
 
 def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]:
-    """Return a, α, d and θ of a row; the offset is added to the joint variable."""
+    """Return a, α, d and θ of a row, with the joint's offset added to the joint variable."""
     named = {name: cell for name, cell in zip(columns, row, strict=True) if name}
     offset = named.get("offset")
     if offset is not None and not _ZERO.fullmatch(offset.text):
