@@ -45,7 +45,7 @@ class Subject:
     """The subject of a figure: a robot, its symbols, and a title for the text alternative.
 
     ``name`` is part of ids inside the SVG. With ``directed``, arrows show the joints' positive
-    directions. Numbers in ``statement`` are shown as lengths.
+    directions. Lengths that ``statement`` gives as numbers have labels.
     """
 
     name: str
@@ -161,7 +161,7 @@ def _at_home(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> Confi
 def _measured(
     subject: Subject, lengths: Sequence[NamedLength], numbers: Mapping[str, float]
 ) -> Iterator[tuple[Numbers, Label]]:
-    """Yield the ends ``(2, 3)`` of each named length, and its label."""
+    """Yield the ends ``(2, 3)`` and the label of each named length."""
     corners = path_of(subject.reference, as_samples(numbers, 1), 1).corners[:, 0]
     for length in lengths:
         yield corners[[length.start, length.end]], sum_label(length.names)
@@ -181,7 +181,7 @@ def _dimensions(
 
 
 def _aside(step: Numbers, directions: Numbers) -> Numbers:
-    """Return unit vectors perpendicular to ``step`` in its planes with the ``directions``."""
+    """Return unit vectors perpendicular to ``step``, each in the plane of it and a direction."""
     along = step / np.linalg.norm(step)
     found: list[Numbers] = []
     for direction in directions:
@@ -222,7 +222,7 @@ def _motions(sheet: Sheet, shown: Configuration, subject: Subject, labelled: set
 
 
 def _description(subject: Subject, lengths: Sequence[NamedLength]) -> str:
-    """Return the text alternative: what the picture shows, without an answer."""
+    """Return the text alternative, which describes the picture without an answer."""
     kinds = [
         f"{name_label(joint.variable).text} {'slides' if joint.prismatic else 'turns'}"
         for joint in subject.joints

@@ -41,7 +41,7 @@ def standard_rows(modified: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell
     """Regroup (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m): ``m`` rows, the last one without X.
 
     X_0 is dropped, because a standard table begins on the axis of joint 1. The caller must ensure
-    that it is the identity.
+    that X_0 is the identity.
     """
     pairs = zip(modified, [*modified[1:], (zero, zero, zero, zero)], strict=True)
     return [(*after[:2], *row[2:]) for row, after in pairs]
@@ -73,7 +73,7 @@ def products(transforms: Matrices) -> Matrices:
 
 
 def joint_frames(frames: Matrices, convention: Convention) -> Matrices:
-    """Return, for each row, the one of ``frames`` whose z axis is the joint axis: ``(rows, ...)``.
+    """Return, for each row, the frame whose z axis is the joint axis: ``(rows, ...)``.
 
     The joint axis of row i is z_{i-1} in a standard table and z_i in a modified one.
     """
@@ -88,8 +88,8 @@ def z_links(rows: Table) -> Matrices:
 def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Matrices:
     """Return the frames on the joint axes and the last frame: ``(rows + 1, ..., 4, 4)``.
 
-    If ``wanted`` is the standard convention, they are the frames before each row's Z; if it is the
-    modified one, the frames after it. The table may be in either convention.
+    If ``wanted`` is the standard convention, these frames are before each row's Z; if it is the
+    modified one, after each row's Z. The table may be in either convention.
     """
     reached = frames(table, convention)
     if wanted is convention is Convention.STANDARD:

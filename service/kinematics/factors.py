@@ -41,7 +41,7 @@ class Factors:
 
     @property
     def table(self) -> Table:
-        """The table that the factors were made from, ``(rows, 4, L)``, with lengths in its unit."""
+        """The table in numbers, ``(rows, 4, L)``, with lengths in the unit of the factors."""
         sizes = self.sizes.reshape(-1, 2, 2, self.sizes.shape[-1])
         if self.convention is Convention.STANDARD:
             sizes = sizes[:, ::-1]
@@ -121,7 +121,7 @@ def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
 
 
 def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]:
-    """Return the SHIFT and TURN of each transform about its axis, and its deviation from a screw.
+    """Return each transform's SHIFT and TURN about its axis, and its deviation from a screw.
 
     For transforms ``(K, L, 4, 4)`` and axes ``(K,)``, the results are the sizes ``(K, 2, L)`` and
     the deviations ``(K, L)``: the tilt of the axis plus the distance of the origin from the axis.

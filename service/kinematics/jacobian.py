@@ -38,9 +38,10 @@ def space_jacobian(
 
 
 def coincident(jacobian: Screws) -> NDArray[np.bool_]:
-    """True for pairs of joints of ``(L, 6, n)`` with the same motion at every sample: ``(n, n)``.
+    """Return a mask ``(n, n)`` of the pairs of joints that move alike at every sample.
 
-    Both turn about the same line, or both slide in the same direction, possibly in opposite senses.
+    The joints turn about the same line, or slide along the same direction, possibly in opposite
+    senses. ``jacobian`` is ``(L, 6, n)``.
     """
     one, other = jacobian[..., :, None], jacobian[..., None, :]
     error = np.minimum(np.abs(one - other).max(axis=(0, 1)), np.abs(one + other).max(axis=(0, 1)))
@@ -51,8 +52,8 @@ def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
     """Return the rank of ``(L, m, n)`` at a generic configuration: the median of all samples.
 
     The median ignores single singular or badly rounded configurations. A singular value counts as 0
-    up to ``zero`` times the largest one of all samples, or times 1 if all are smaller (a joint's
-    screw has an entry of size 1).
+    up to ``zero`` times the largest singular value of all samples (or times 1 if that is larger,
+    because a joint's screw has an entry of size 1).
     """
     singular = np.linalg.svd(jacobian, compute_uv=False)
     ranks = np.sort((singular > zero * singular.max(initial=1.0)).sum(axis=-1))
@@ -60,9 +61,9 @@ def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
 
 
 def dependent(jacobian: Screws) -> NDArray[np.bool_]:
-    """True for columns of ``(L, 6, n)`` that depend on the others at every sample: ``(n,)``.
+    """Return a mask ``(n,)`` of columns of ``(L, 6, n)`` that depend on others at every sample.
 
-    A column is independent of the others if and only if its entry of every null vector is zero.
+    A column is independent of the others if and only if its entry in every null vector is zero.
     """
     _, singular, rows = np.linalg.svd(jacobian)
     n = jacobian.shape[-1]

@@ -1,9 +1,9 @@
 """Rotations about coordinate axes: Euler angle sequences, and sequences of any steps. Batched.
 
-A sequence names three axes, such as "ZYZ". With moving axes, each turn is about the axes of the
-frame after the turns before, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, all turns are about
-the axes of the original frame, R = R_3(a_3) R_2(a_2) R_1(a_1). Rotations are ``(..., 3, 3)``,
-triples of angles ``(..., 3)`` in the order of the sequence, in radians.
+A sequence names three axes, such as "ZYZ". With moving axes, each turn is about an axis of the
+frame that the earlier turns have reached, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, all
+turns are about axes of the original frame, R = R_3(a_3) R_2(a_2) R_1(a_1). Rotations are
+``(..., 3, 3)``, triples of angles ``(..., 3)`` in the order of the sequence, in radians.
 """
 
 from collections.abc import Sequence
@@ -115,7 +115,7 @@ def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> ND
 
 
 def last_angle(sequence: str, first_two: Numbers, rotation: Matrices) -> Numbers:
-    """Return the third angle ``(...)`` for given first two ``(..., 2)`` of a moving sequence.
+    """Return the third angle ``(...)``, given the first two ``(..., 2)``, for moving axes.
 
     The first angle may be chosen freely only if the outer axes coincide.
     """

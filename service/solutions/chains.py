@@ -71,7 +71,7 @@ def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
 
 
 def joint_axes(exercise: Exercise) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
-    """Return the direction (3×1) of each joint axis and a point (3×1) on it, at home, in the base.
+    """Return a direction and a point, each 3×1 in the base frame, of each joint axis at home.
 
     Raises LookupError if the robot has no table.
     """

@@ -53,7 +53,7 @@ def table(
 
 @dataclass(frozen=True, slots=True)
 class PrintedFrame:
-    """A placed frame; z and x are the name of a base direction, or a vector."""
+    """A placed frame. ``z`` and ``x`` are vectors, or names of base directions such as +y."""
 
     label: str
     joint: str
@@ -97,7 +97,7 @@ def row(nodes: Sequence[Node], convention: Convention) -> PrintedAnswer:
 
 
 def marked(marks: Sequence[str], printed: PrintedAnswer) -> PrintedAnswer:
-    """Return the cells that are marked in one table, together with another table."""
+    """Return an answer that consists of cells to mark and a printed table."""
     line = f"marked: {', '.join(marks)}"
     latex = rf"\text{{{line}}}" + "\n" + printed.latex
     answer = {"marked": list(marks), "table": printed.answer}
@@ -116,7 +116,7 @@ def too_long() -> PrintedAnswer:
 
 
 def product(labels: Sequence[str]) -> Shown:
-    """Return a pose as a product of link transforms, for a matrix that would be too long."""
+    """Return a pose as a product of link transforms, because its matrix would be too long."""
     latex = " ".join(f"A_{{{label}}}" for label in labels)
     return Shown(" ".join(f"A{label}" for label in labels), latex)
 

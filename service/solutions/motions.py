@@ -4,7 +4,7 @@ A general simplifier takes seconds for six joints, and its result does not look 
 Here the form results from the order of the steps:
 
 - Quarter turns about a coordinate axis are constant, and C Rot(u, φ) = Rot(C u, φ) C for a constant
-  rotation C. So they are moved to the right end; a 90° twist only changes later axes.
+  rotation C. So these turns are moved to the right end; a 90° twist only changes later axes.
 - Consecutive turns about the same axis, with only shifts between them, are combined: their angles
   are added, which gives c12 and c123 without expanding and collecting sines and cosines.
 - Factors are applied from the right, and products of brackets are not expanded, which gives
@@ -133,7 +133,7 @@ def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Mat
 
 
 def _upright(turn: Turn) -> Turn:
-    """Return an equal turn; the first nonzero number of its axis has no minus sign."""
+    """Return an equal turn whose axis has no minus sign in its first nonzero number."""
     first = next(number for number in turn.axis if number != 0)
     return Turn(-turn.axis, -turn.angle) if first.could_extract_minus_sign() else turn
 

@@ -1,6 +1,6 @@
 """Euler angles as formulas.
 
-If a rotation already is a product of turns in the requested sequence, its own angles are returned:
+If a rotation already is a product of turns in the requested sequence, their angles are returned:
 the ZYZ angles of a spherical wrist are its joint angles. Otherwise the angles are atan2 of entries.
 """
 
@@ -27,7 +27,7 @@ _QUARTERS = (0, sympy.pi / 2, sympy.pi, -sympy.pi / 2)
 
 
 def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
-    """Return the angles of the rotation of ``motions`` in a sequence such as "ZYZ".
+    """Return the Euler angles, in a sequence such as "ZYZ", of the product of ``motions``.
 
     ``axes`` is "moving" or "fixed". Turns about fixed axes equal turns about moving axes in reverse
     order.
@@ -41,7 +41,7 @@ def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
 
 
 def _own_angles(normal: Normal, sequence: str) -> Angles | None:
-    """Return the total angle about each axis of the sequence; None if the turns do not fit it."""
+    """Return the total angle about each axis of ``sequence``; None if the turns do not fit."""
     angles = [sympy.S.Zero] * 3
     at = 0
     for turn, _ in normal.turns:

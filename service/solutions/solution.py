@@ -47,7 +47,7 @@ def _part_answer(part: PartSpec, work: Work) -> PartAnswer:
 
 
 def _pose(work: Work, labels: Sequence[str]) -> Shown:
-    """Return the tool's pose in the base frame; a product of link transforms if it is too long."""
+    """Return the tool's pose in the base frame; if it is too long, a product of link transforms."""
     pose = multiplied(between(work.exercise, "base", "tool", work.algebra))
     try:
         shown: Shown = work.matrix(pose.matrix())

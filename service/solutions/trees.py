@@ -135,13 +135,13 @@ class Writer:
         return function[0] + "".join(map(str, sorted(joints)))
 
     def _term_order(self, term: sympy.Expr) -> tuple[bool, list[FactorOrder], list[int], str]:
-        """Return a term's sort key: plus before minus, then lengths alone first, then by joints."""
+        """Return a term's sort key: plus before minus, then lengths before sines, then joints."""
         factors = sorted(map(self._factor_order, sympy.Mul.make_args(term)))
         joints = sorted(self._order[symbol.name] for symbol in term.free_symbols)
         return _negative(term), [each for each in factors if each[0] > 1], joints, str(term)
 
     def _factor_order(self, factor: sympy.Expr) -> FactorOrder:
-        """Return a factor's sort key: numbers, symbols, sines and cosines by joints, brackets."""
+        """Return a factor's sort key: numbers, symbols, sines and cosines (by joints), brackets."""
         base = factor.base if isinstance(factor, sympy.Pow) else factor
         is_symbol, is_turn = isinstance(base, sympy.Symbol), isinstance(base, _TRIGONOMETRIC)
         rank = (bool(base.is_number), is_symbol, is_turn, True).index(True)

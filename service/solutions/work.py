@@ -28,7 +28,7 @@ class Work:
     writer: Writer
 
     def as_written(self, part: PartSpec) -> list[list[Node]] | None:
-        """Return the part's formulas from the exercise file; None if they follow from the robot."""
+        """Return the part's formulas from the exercise file; None if the robot gives the answer."""
         grid, written = self.exercise.formulas.get(part.id), part.formulas()
         if grid is None or written is None:
             return None
@@ -42,7 +42,7 @@ class Work:
         return [self._with_units(*each) for each in zip(formulas, quantities, strict=True)]
 
     def _with_units(self, formula: Expression, quantity: Kind) -> Node:
-        """Return the author's formula, with units that a student who works in degrees needs."""
+        """Return the author's formula, with units so that it also holds for students in degrees."""
         text = to_text(formula.tree)
         in_degrees = read(text, self.exercise.vocabulary, quantity=quantity, angle_unit="degrees")
         if in_degrees.tree == formula.tree:
@@ -51,7 +51,7 @@ class Work:
         return self.writer.angle(exact) if quantity == "angle" else self.writer.number(exact)
 
     def pose_motions(self, part: PosePartSpec) -> list[Motion]:
-        """Return the motions to the pose that the part asks for."""
+        """Return the motions whose product is the pose that the part asks for."""
         return between(self.exercise, part.start, part.to, self.algebra, home=part.home)
 
     def matrix(self, entries: sympy.Matrix) -> PrintedAnswer:

@@ -30,7 +30,7 @@ class DrawnFrames:
 
 @dataclass(slots=True)
 class _Axis:
-    """An axis in the picture: its origin and tip, its letter, and the names of all axes there."""
+    """An axis in the picture: its origin and tip, its letter, and the names of coincident axes."""
 
     line: Numbers
     letter: str
@@ -88,7 +88,7 @@ def frame_names(camera: Camera, drawn: DrawnFrames, room: TakenRoom) -> list[str
 def named(
     label: Label, wanted: Sequence[Numbers], points: Numbers, kind: str, room: TakenRoom
 ) -> Iterator[str]:
-    """Yield the SVG of a label, and of a line to ``points`` if the label is far from them."""
+    """Yield the SVG of a label, and of a line to ``points`` if the label is far from ``points``."""
     place = room.place(label, wanted, points)
     leader = place.leader(points)
     if leader is not None:

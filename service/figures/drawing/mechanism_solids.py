@@ -110,7 +110,7 @@ def _clear_of_joints(
 def _surface(
     start: Numbers, towards: Numbers, shown: Configuration, joint: int, mechanism: MovableMechanism
 ) -> Numbers:
-    """Return where a line from the middle of a joint leaves the joint (slightly inside)."""
+    """Return the point, slightly inside a joint, where a line from the joint's middle leaves it."""
     step = towards - start
     length = float(np.linalg.norm(step))
     if length == 0:  # two joints in one place, where a short wrist has no room for both

@@ -28,7 +28,7 @@ _UPRIGHT: Final = re.compile(r"[ +,]*|[0-9.]+|\{.*")
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A text of pairs (stem, index); a sign has no index: ``(("θ", "1"), ("+", ""))``."""
+    """A text of pairs (stem, index). The index of a sign is empty: ``(("θ", "1"), ("+", ""))``."""
 
     runs: tuple[tuple[str, str], ...]
 
@@ -80,7 +80,7 @@ def sum_label(names: Sequence[str]) -> Label:
 
 
 def list_label(names: Sequence[str]) -> Label:
-    """Return the label of several names for the same thing."""
+    """Return the label of several names for one thing, separated by commas."""
     return _joined(map(_run, names), ", ")
 
 

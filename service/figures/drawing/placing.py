@@ -69,7 +69,7 @@ class Rectangle:
 
 
 class _Strokes(NamedTuple):
-    """Strokes as arrays: their ends, and the corners of the rectangle around each."""
+    """Strokes as arrays: their ends, and the corners of the rectangle around each stroke."""
 
     starts: Numbers
     ends: Numbers
@@ -175,8 +175,8 @@ class TakenRoom:
 
         Earlier points in ``wanted`` are better. The place never overlaps another label: if all
         wanted places overlap labels, the label is placed farther away. ``named`` are the points
-        that the label names. Places far from these points need a leader, so they are worse,
-        especially if the leader covers other labels.
+        that the label names. Places far from these points are worse, because they need a line to
+        the points, especially if this line covers other labels.
         """
         best: tuple[float, Rectangle] | None = None
         size = Rectangle.of(label, 0.0, 0.0)

@@ -66,7 +66,7 @@ class Sheet:
 
     @property
     def excess(self) -> float:
-        """The factor by which the drawn mechanism is too large for a phone; 1 if the figure fits.
+        """The factor by which the mechanism must shrink to fit on a phone; 1 if the figure fits.
 
         Labels do not shrink with the mechanism.
         """

@@ -1,4 +1,4 @@
-"""The frames that an exercise gives: base and tool, and all between them if no frame is free."""
+"""The frames that an exercise gives: base, tool, and all frames between if no frame is free."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ from service.kinematics.transforms import Matrices
 
 @dataclass(frozen=True, slots=True)
 class GivenFrames:
-    """Frames of a robot. ``numbers`` counts the frames from the base; -1 is the tool.
+    """Frames of a robot. ``numbers`` are their positions from the base (0) on; -1 is the tool.
 
     ``labels`` are their indices: "0" for {0}, or "s" and "b" for a robot with screw axes.
     """

@@ -62,13 +62,13 @@ def _decimals(statement: str) -> dict[str, float]:
 
 
 def _stated(step: Numbers, numbers: Mapping[str, float]) -> str | None:
-    """Return the number that is the constant length of a piece ``(samples, 3)``, or None."""
+    """Return the spelling of the number that is a piece's constant length, or None."""
     length = np.linalg.norm(step, axis=1)
     return next((text for text, n in numbers.items() if np.abs(length - n).max() < _EXACT), None)
 
 
 def _sum_of(step: Numbers, terms: Numbers) -> Numbers | None:
-    """Return which terms (as 0 or 1) add up to the length of a piece ``(samples, 3)``, or None."""
+    """Return a 0 or 1 for each term, so that the sum is a piece's length; None if impossible."""
     length = np.linalg.norm(step, axis=1)
     solved = np.linalg.lstsq(terms, length, rcond=None)[0]
     share = np.asarray(np.round(solved), dtype=np.float64)

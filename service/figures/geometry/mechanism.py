@@ -52,8 +52,8 @@ class MovableMechanism:
     """The mechanism with all joint variables 0, which can be moved.
 
     ``corners`` has the points ``(corners, 3)`` of each body, the base first. ``centres`` has the
-    middle of each joint, which the body before it carries. ``extent`` is the size of the whole,
-    ``size`` the size of its parts.
+    middle of each joint, which moves with the body before the joint. ``extent`` is the size of the
+    whole mechanism, ``size`` the size of its parts.
     """
 
     reference: Reference
@@ -151,9 +151,9 @@ def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableM
 
 
 def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
-    """Return the track with the largest size of parts for which there is enough room.
+    """Return the track with the largest parts for which there is enough room.
 
-    If it can, the first joint stands on the ground at the origin, so that no column below the
+    If possible, the first joint stands on the ground at the origin, so that no column below the
     origin suggests a length.
     """
     tracks = [
@@ -253,7 +253,7 @@ class _Track:
 
     @property
     def bent(self) -> NDArray[np.bool_]:
-        """True for corners where the path begins or bends; of coincident corners, for one."""
+        """True for corners where the path begins or bends; if corners coincide, only for one."""
         kept = np.flatnonzero(np.concatenate([[True], np.diff(self.reached) > _SAME]))
         steps = np.diff(self.corners[kept], axis=0)
         steps /= np.linalg.norm(steps, axis=1, keepdims=True)
@@ -274,7 +274,7 @@ class _Track:
     def _across(self) -> NDArray[np.bool_]:
         """True for joints that a link reaches from the side, where their own piece begins.
 
-        False if the joint before can only be at the same place.
+        False if the previous joint can only be at the same place.
         """
         only = np.where(np.ptp([self.first, self.last], axis=0) > _SAME, -np.inf, self.last)
         before = np.concatenate([[-np.inf], only[:-1]])
@@ -321,9 +321,9 @@ class _Track:
     def _wanted(self, lowest: float) -> Iterator[float]:
         """Yield the preferred place of each joint, regardless of its neighbours.
 
-        A first revolute joint is on the ground. A prismatic joint is where its displacement begins.
-        A revolute joint is where its own piece begins if a link arrives from the side, else in the
-        middle of its piece.
+        If the first joint is revolute, it is on the ground. A prismatic joint is where its
+        displacement begins. Any other revolute joint is where its own piece begins if a link
+        arrives from the side, else in the middle of its piece.
         """
         for i, (start, end) in enumerate(self.own):
             if i == 0 and not self.slides[0]:

@@ -26,8 +26,8 @@ PARALLEL = 1e-9
 class ChainPath:
     """The corners ``(k + 1, samples, 3)`` of a path with ``k`` pieces.
 
-    ``joints`` has, for each piece, the position of the joint whose axis it is along, or None for a
-    piece across.
+    ``joints`` has, for each piece along the axis of a joint, the joint's position; None for a piece
+    across.
     """
 
     corners: Numbers
@@ -37,7 +37,7 @@ class ChainPath:
 def motions(reference: Reference, values: SymbolValues, samples: int) -> Matrices:
     """Return each body's motion from its home position, ``(joints + 1, samples, 4, 4)``.
 
-    Body 0 is the base; joint i moves body i by e^{[S_1]q_1} … e^{[S_i]q_i}.
+    Body 0 is the base; joints 1 to i move body i by e^{[S_1]q_1} … e^{[S_i]q_i}.
     """
     screws = reference.screws(values, samples)
     moved_by = [np.broadcast_to(np.eye(4), (samples, 4, 4))]

@@ -1,4 +1,4 @@
-"""Numbers for symbols, with which a figure is drawn."""
+"""The numbers for symbols that a figure is drawn with."""
 
 from collections.abc import Iterable
 

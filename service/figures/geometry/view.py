@@ -31,7 +31,7 @@ class View:
 
 
 def best_view(shown: Configuration, extent: float) -> View:
-    """Return the view in which the mechanism is clearest (the first one of equals).
+    """Return the clearest view of the mechanism; of equally clear views, the first.
 
     In a clear view, no joint axis points at the viewer, no link is much foreshortened, different
     directions look different, distinct points are apart, and the arm extends to the right.
@@ -77,7 +77,7 @@ def _parallel(directions: Numbers, direction: Numbers) -> NDArray[np.bool_]:
 
 
 def _different(rows: Numbers, alike: Callable[[Numbers, Numbers], NDArray[np.bool_]]) -> Numbers:
-    """Return the rows without those that are like an earlier row."""
+    """Return the rows that are not like an earlier row."""
     kept = rows[:1]
     for row in rows[1:]:
         if not alike(kept, row).any():

@@ -68,7 +68,7 @@ def _sum_text(parts: Sequence[tuple[str, int]]) -> str:
 
 
 def _angle(cell: Expression) -> _Angle:
-    """Return the angle in a cell as a sum of symbols and quarter turns; else as one text."""
+    """Return the angle in a cell as a sum of symbols and quarter turns, or else as one text."""
     names = sorted(cell.symbols)
     # Evaluate with all symbols 0, with each symbol 1, and at a point that shows if it is not a sum.
     points = np.vstack([np.zeros(len(names)), np.eye(len(names)), 0.37 + np.arange(len(names))])

@@ -35,10 +35,10 @@ class DrawingScope:
 
 @lru_cache(maxsize=256)
 def free_scope(structure: str) -> DrawingScope:
-    """Return the textbook symbols for a robot with the joints ``structure``, such as "RRP".
+    """Return a scope of textbook symbols for a robot with the joints ``structure``, such as "RRP".
 
     The variable of joint i is theta_i (or q_i) if it is revolute, and d_i (or q_i) if it is
-    prismatic. All other symbols a1, alpha1, d1, theta1, l1 up to index 12 are lengths or angles.
+    prismatic. The other symbols a1, alpha1, d1, theta1, l1 up to index 12 are constants.
     """
     joints = tuple(
         Joint(i, f"d{i}" if letter == "P" else f"theta{i}", prismatic=letter == "P")

@@ -47,7 +47,7 @@ class FreedomLoss:
 class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
-    The frames end before the first row that has a cell without a number; ``unread`` lists these
+    The frames end before the first row that has a cell without a number; ``unread`` lists such
     cells. For the rows before that row, ``values`` has the numbers ``(configurations, rows, 4)``,
     and ``row_joints`` has the joint whose variable is in the row. ``symbols`` are the symbols in
     the table. ``freedoms`` is the number of degrees of freedom of a complete table, else None.
@@ -66,7 +66,7 @@ class TableFrames:
 def table_to_draw(
     answer: object, scope: DrawingScope, budget: WorkBudget, angle_unit: AngleUnit = "radians"
 ) -> StudentTable:
-    """Read a table as grading does.
+    """Read a student's table by the same rules as grading.
 
     Raises UnreadableAnswerError if the answer has no rows.
     """

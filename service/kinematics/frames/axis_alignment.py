@@ -32,7 +32,7 @@ def align_first_axes(source: Matrices, target: Matrices, sliding: NDArray[np.boo
 def _aligned(
     source: Matrices, target: Matrices, sliding: NDArray[np.bool_], numbers: slice
 ) -> Matrices:
-    """Apply ``align_axes`` to the first 1 to n axes, or to a slice of these: ``(m, L, 4, 4)``."""
+    """Apply ``align_axes`` to the first 1, 2 … n axes, or to a slice of these: ``(m, L, 4, 4)``."""
     known = _known_to_first(len(source))[numbers]
     rotation = _bases(target, sliding, known) @ np.swapaxes(_bases(source, sliding, known), -1, -2)
     transform = identity(rotation.shape[:2])
@@ -44,8 +44,8 @@ def _aligned(
 def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_]) -> Matrices:
     """Return right-handed bases ``(m, L, 3, 3)`` that are fixed to the ``known`` axes.
 
-    z is along the first axis. x points to the direction of the first axis that is not parallel to
-    it, or else to the first parallel axis at another place.
+    z is along the first axis. x points in the direction of the first axis that is not parallel
+    to z, or else to the first parallel axis at another place.
     """
     z = axes[0, :, :3, 2]
     directions = axes[:, :, :3, 2]
@@ -67,9 +67,9 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
 
 
 def _known_to_first(joints: int) -> NDArray[np.bool_]:
-    """Return a mask ``(n, 2 n + 1)`` of what is known if the first 1 to n axes are known.
+    """Return a mask ``(n, 2 n + 1)``, whose row k shows what is known if k + 1 axes are known.
 
-    Its columns are the n directions, the n points, and the arbitrary x.
+    The columns are the n directions, the n points, and an arbitrary x, which is always known.
     """
     first = np.tri(joints, dtype=np.bool_)
     return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)

@@ -69,7 +69,7 @@ class BaseFreedom:
 
         ``rows_beyond`` is ``rows`` for a frame one unit further along ``slide``; lengths depend
         linearly on the distance. The distance is chosen so that one length equals the ``written``
-        one.
+        length.
         """
         unmoved = np.zeros(rows.shape[::2])
         if self.anywhere:
@@ -88,7 +88,7 @@ class BaseFreedom:
         return options or [(rows, unmoved)]
 
     def with_written_angle(self, rows: Numbers, written: Numbers) -> Numbers:
-        """Return the rows with the written θ if any angle is possible; else unchanged."""
+        """Return the rows with the written θ if the freedom allows every angle; else unchanged."""
         if not self.turn:
             return rows
         turned = rows.copy()

@@ -3,7 +3,7 @@
 A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
 the frame before the row. Its kind decides what the row must match: the line of a revolute axis, the
 direction of a prismatic axis, or the whole frame of the tool. If the geometry leaves a value open,
-the written value is as good as the reference's, so both are tried.
+the written value is as good as the reference's value, so both are tried.
 
 Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``; rows are
 ``(..., 4, L)`` in the column order a, α, d, θ. The written row is ``(4, L)``, with NaN for cells
@@ -168,8 +168,8 @@ def _signs(
 
     x is along a normal at the angle ``theta`` ``(H, L)``, where the link length is ``a``, or points
     the opposite way. If ``a`` is a difference of lengths, its sign may change between samples, but
-    the direction of x does not. So x first points the same way as the reference's x. If the axis
-    was moved, the directions of the written θ and a are tried, too.
+    the direction of x does not. So the first x that is tried points the same way as the
+    reference's x. If the axis was moved, the directions of the written θ and a are tried, too.
     """
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     along = np.cos(theta - x_angle)

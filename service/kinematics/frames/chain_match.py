@@ -26,8 +26,8 @@ from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 class Target:
     """The target of a row.
 
-    ``reference`` is the reference's transform ``(L, 4, 4)`` from the last joint's frame to the
-    target's; None for a fixed frame that the reference does not have.
+    ``reference`` is the reference's transform ``(L, 4, 4)`` from the previous joint's frame to the
+    target's frame; None for a fixed frame that the reference does not have.
     """
 
     kind: TargetKind
@@ -43,12 +43,12 @@ class Target:
 class RowConstants:
     """The constants of a row as written.
 
-    ``written`` is ``(4, L)``, NaN without a usable number. The next four are ``(4,)``.
-    ``is_gradable`` marks the cells that can be right or wrong, ``wrong_regardless`` the cells that
-    are wrong in any frames, and ``absent`` the cells that the table does not have (they are 0).
-    ``slack`` is the rounding error of each cell. ``variable`` is the column of the joint variable
-    that the row starts from, or None. ``joint_sign`` is the sign of that variable: +1, −1, or 0 if
-    unknown.
+    ``written`` has the numbers ``(4, L)``, NaN in a cell without a usable number. The next four
+    fields have a value for each cell, ``(4,)``. ``is_gradable`` is True for cells that can be right
+    or wrong, ``wrong_regardless`` for cells that are wrong whatever frames are chosen, and
+    ``absent`` for cells that the table does not have (they are 0). ``slack`` is the rounding error.
+    ``variable`` is the column of the row's joint variable, or None. ``joint_sign`` is the sign of
+    that variable: +1, −1, or 0 if unknown.
     """
 
     written: Numbers
@@ -65,8 +65,8 @@ class ChainMatch:
     """A valid table, and its frames relative to the reference's.
 
     ``rows`` ``(rows, 4, L)`` are the right rows. ``relative_poses`` ``(rows, L, 4, 4)`` are the
-    relative poses at each target. ``cost`` is the distance of the written table from this one,
-    ``lost`` the units of marks that the written table loses (``frame_choice``).
+    relative poses at each target. ``cost`` is the distance of the written table from the valid
+    table, ``lost`` the units of marks that the written table loses (``frame_choice``).
     """
 
     rows: Numbers
@@ -89,9 +89,10 @@ def match_as_written(
     directions_given: bool = True,
     start: Matrices | None = None,
 ) -> ChainMatch | None:
-    """Return the written table if nothing in it is wrong, else None; see ``match_tables``.
+    """Return the written table if nothing in it is wrong, else None.
 
-    ``directions_given`` is true if each joint's positive direction is given.
+    ``directions_given`` is true if each joint's positive direction is given. ``start`` is the
+    relative pose of frame 0, None for the identity.
     """
     if any(row.wrong_regardless.any() for row in rows):
         return None
@@ -136,7 +137,7 @@ def match_tables(
 
 
 def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
-    """Return the errors of relative poses at the targets, ``(tables, n, L)``: 0 for valid ones.
+    """Return all errors of relative poses at the targets, ``(tables, n, L)``; 0 for a valid table.
 
     ``poses`` ``(rows, tables, L, 4, 4)`` are the relative poses that ``match_tables`` returns. The
     directions of the axes are ignored.
@@ -168,7 +169,7 @@ def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
 
 
 def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
-    """Return +1 if the writer's z has the direction of the reference's, −1 if it is reversed.
+    """Return +1 if the writer's z has the direction of the reference's z, −1 if it is reversed.
 
     The result is ``(N,)`` for relative poses ``(N, L, 4, 4)``.
     """

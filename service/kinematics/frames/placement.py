@@ -1,9 +1,9 @@
 """The rules by which frames are placed on joint axes, and the DH rows that follow.
 
 A frame has its z axis along its joint's axis. Its x axis crosses the neighbouring axis at a right
-angle. This is the z axis of the previous frame in the standard convention, and of the next frame in
-the modified convention. So the origin is at the foot of the common normal; parallel axes leave the
-origin free.
+angle. The neighbouring axis is the z axis of the previous frame in the standard convention, and of
+the next frame in the modified convention. So the origin is at the foot of the common normal;
+parallel axes leave the origin free.
 Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §3.2.2; Craig, *Introduction to
 Robotics*, §3.4. All arrays are batched: directions and points are ``(L, 3)``.
 """
@@ -22,7 +22,7 @@ from service.kinematics.transforms import Matrices, Numbers, cross, identity, in
 
 
 class AxisPosition(StrEnum):
-    """How two axes lie. Skew or crossing axes have one common normal, other axes have many."""
+    """The position of two axes. Skew or crossing axes have one common normal, others many."""
 
     SKEW = "skew"
     CROSSING = "crossing"
@@ -67,7 +67,7 @@ def x_line(frame: Matrices) -> AxisLine:
 
 
 def axis_relation(neighbour: AxisLine, own: AxisLine, length_scale: float) -> AxisPosition:
-    """Return how two axes lie. Lengths are compared in ``length_scale``."""
+    """Return the relative position of two axes. Distances are compared with ``length_scale``."""
     normal = cross(neighbour.direction, own.direction)
     if largest(normal) > PARALLEL:
         gap = _dot(own.point - neighbour.point, _unit(normal))
@@ -155,10 +155,10 @@ def asked_frames(
 
 @dataclass(frozen=True, slots=True)
 class RightPlace:
-    """The right places of a frame, relative to the neighbour's axis as it was chosen.
+    """The correct places of a frame, given where the neighbouring axis was chosen.
 
-    ``origin`` is the right origin nearest to the chosen one. ``x`` is a right x direction, whose
-    opposite is right too; None if every direction at a right angle to z is right.
+    ``origin`` is the correct origin nearest to the chosen origin. ``x`` is a correct x direction;
+    its opposite is correct, too. If every direction perpendicular to z is correct, ``x`` is None.
     """
 
     own: AxisLine
@@ -177,7 +177,7 @@ def right_places(
     may_move: Sequence[bool] | None = None,
     axes: Mapping[int, AxisLine] | None = None,
 ) -> list[RightPlace]:
-    """Return the right place of each frame, given the chosen ``origins`` ``(L, 3)`` or None.
+    """Return the correct places of each frame, given its chosen origin ``(L, 3)`` or None.
 
     ``may_move`` is false for sliding joints whose axis must be taken as drawn; ``axes`` has the
     axes that are known, by frame. The axis of a sliding joint moves to the chosen origin if the
@@ -216,7 +216,7 @@ def right_places(
 def axis_across(axis: AxisLine, lines: Sequence[AxisLine], near: Numbers) -> AxisLine:
     """Return the parallel of ``axis`` that meets all ``lines``, as near to ``near`` as possible.
 
-    If no parallel meets all lines, return the one with the least distances from them.
+    If no parallel meets all lines, return the parallel with the least distances from the lines.
     """
     across = np.stack([_unit(cross(axis.direction, line.direction)) for line in lines], axis=1)
     apart = np.stack([line.point - near for line in lines], axis=1)
@@ -232,7 +232,7 @@ def _may_lie(
     tolerance: float,
     length_scale: float,
 ) -> bool:
-    """True if ``moved`` may be a sliding joint's axis, with the frame's origin at its point."""
+    """True if ``moved`` may be a sliding joint's axis with the origin at ``moved.point``."""
     relation = axis_relation(neighbour, moved, length_scale)
     if relation.has_one_normal and largest(normal_foot(neighbour, moved) - moved.point) > tolerance:
         return False
@@ -246,7 +246,7 @@ def _may_lie(
 def frame_of(z: Numbers, origin: Numbers, x: Numbers) -> Matrices:
     """Return the frame ``(L, 4, 4)`` with these axes and this origin. z and x need no unit length.
 
-    A rounded x is made perpendicular to z.
+    If x is rounded, the frame's x is made perpendicular to z.
     """
     frame = identity((len(z),))
     z = _unit(z)

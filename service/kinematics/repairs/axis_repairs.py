@@ -1,10 +1,11 @@
 """Repair the joint axes of a table by one cell, if base or tool is free.
 
-If one cell is wrong, the factors before and after its factor are two rigid bodies with fixed joint
-axes. The pose of the first body is known from a given frame 0, or from its own axes, which lie on
-the reference's axes. Then each axis of the second body must lie on the reference's axis, as seen
-from the frame before the wrong factor. So one axis that the cell moves determines the value of the
-cell. Other axes may contradict this value, so the caller must test it on the whole table.
+If one cell is wrong, the factors before and after that cell's factor form two rigid bodies with
+fixed joint axes. The pose of the first body is known from a given frame 0, or from its own axes,
+which lie on the reference's axes. Then each axis of the second body must lie on the reference's
+axis, as seen from the frame before the wrong factor. So one axis that the cell moves determines the
+value of the cell. Other axes may contradict this value, so the caller must test it on the whole
+table.
 
 A turn t about the axis e takes a direction u to v if t = atan2(e·(u × v), u·v − (e·u)(e·v)). A
 shift along e brings a point p as near as possible to a line through r with the direction v if it is
@@ -42,11 +43,11 @@ def repairs_by_axes(
     axes: Matrices,
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield values of single cells that bring one later joint axis onto the reference's.
+    """Yield values of single cells that bring one later joint axis onto the reference's axis.
 
     ``starts`` ``(K, L, 4, 4)`` are the poses of the frames before each factor, ``joints`` ``(n,)``
-    the factors along whose z the joints act, ``axes`` ``(n, L, 4, 4)`` the right poses of the axes.
-    For a ``sliding`` axis only the direction counts. Axes may be reversed.
+    the indices of the joints' factors, ``axes`` ``(n, L, 4, 4)`` the right poses of the axes.
+    For a ``sliding`` axis, only the direction counts. Axes may be reversed.
     """
     behind = joints > np.arange(len(factors.axes))[:, None]
     wanted = inverse(starts)[:, None] @ axes
@@ -65,9 +66,9 @@ def _shifts(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield the shift of each factor that brings the next axis onto the wanted one.
+    """Yield the shift of each factor that brings one later axis onto the wanted axis.
 
-    An axis that is parallel to the factor's axis is passed over.
+    This is the next revolute axis that is not parallel to the factor's axis.
     """
     k = np.arange(len(axes))
     v = wanted[..., :3, 2]
@@ -88,7 +89,11 @@ def _turns(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield the turns of each factor that bring the next axis that it turns to the wanted one."""
+    """Yield the turns of each factor that bring one later axis onto the wanted axis.
+
+    This is the next axis that is not parallel to the factor's axis. If all are parallel, it is the
+    next revolute axis that the turn moves.
+    """
     by_direction, turned = _turn(seen[..., :3, 2], wanted[..., :3, 2], axes)
     by_point, carried = _turn(seen[..., :3, 3], wanted[..., :3, 3], axes)
     turned &= behind
@@ -103,7 +108,7 @@ def _turns(
 
 
 def _turn(u: Numbers, v: Numbers, axes: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
-    """Return the turns ``(K, n, L)`` from ``u`` to ``v`` ``(K, n, L, 3)``, and if they exist."""
+    """Return the turns ``(K, n, L)`` from ``u`` to ``v`` ``(K, n, L, 3)``, and which exist."""
     k = np.arange(len(axes))
     one, two = (axes + 1) % 3, (axes + 2) % 3
     u1, u2, v1, v2 = (w[k, :, :, across] for w in (u, v) for across in (one, two))

@@ -7,10 +7,10 @@ values of the two cells. If one of these values is as written, the other cell al
 table.
 
 If one cell is wrong in each of two factors, A(x) M B(y) = N, where N = P⁻¹ T S⁻¹ as before and M is
-the product between the wrong cells, the right cells of the two factors included; A and B are a turn
-or a shift. A turn leaves the points and the direction of its axis unchanged, a shift leaves all
-directions unchanged. So A(x) takes the points or directions that B leaves unchanged from M to N,
-which determines x. The remaining motion must then be a B(y).
+the product between the wrong cells, including the right cells of the two factors. A is a turn or
+a shift, and B is a turn or a shift. A turn leaves the points and the direction of its axis
+unchanged, a shift leaves all directions unchanged. So A(x) takes the points or directions that B
+leaves unchanged from M to N, which determines x. The remaining motion must then be a B(y).
 
 Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``; angles in radians. Lengths should be
 measured in a unit that suits the robot, so that one tolerance serves them and angles.
@@ -47,7 +47,7 @@ class CellRepair:
 
 
 def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
-    """Return the repairs of one factor: first those by one of its cells, then those by both."""
+    """Return the repairs of one factor: first repairs of one cell, then of both its cells."""
     needed = factors.inverse_before[:-1] @ pose @ factors.inverse_after[1:]
     sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
@@ -106,9 +106,10 @@ def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
 def _solved(
     factors: Factors, pose: Matrices, pairs: Integers, samples: slice = slice(None)
 ) -> tuple[Numbers, NDArray[np.bool_]]:
-    """Return x and y of each pair, ``(2, C, L)``, and a mask of the pairs solved at all L samples.
+    """Solve A(x) M B(y) = N for C pairs of wrong cells: return x and y, ``(2, C, L)``, and a mask.
 
-    Pairs ``(4, C)`` are the factors A and B, and for each its wrong cell, SHIFT or TURN.
+    The mask ``(C,)`` is True for pairs that are solved at all L samples. ``pairs`` ``(4, C)`` has
+    the factors A and B, then the wrong cell of A and the wrong cell of B, each SHIFT or TURN.
     """
     a, b, kind_a, kind_b = pairs
     a_turns, b_turns = (kind_a == TURN)[:, None], (kind_b == TURN)[:, None]
@@ -133,7 +134,7 @@ def _solved(
 def _right_part(
     factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_], samples: slice
 ) -> Matrices:
-    """Return the factors with their right cell as written and the wrong one 0: ``(C, L, 4, 4)``."""
+    """Return factors with the wrong cell 0 and the other cell as written: ``(C, L, 4, 4)``."""
     sizes = factors.sizes[which, :, samples]
     shifts, turns = sizes[:, SHIFT], sizes[:, TURN]
     return screws(
@@ -149,7 +150,7 @@ def _turn_of_a(
     """Return the turn ``(C, L)`` about A's axis, from directions and points that B does not change.
 
     The turn about a from u (in M) to v (in N) is atan2(a·(u×v), u·v − (a·u)(a·v)); the arguments of
-    several pairs are summed.
+    several pairs (u, v) are summed.
     """
     c = np.arange(len(axis_a))
     unchanged = np.where(b_turns, 0.0, [[1.0, 1.0, 1.0, 0.0]])

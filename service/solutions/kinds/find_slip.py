@@ -11,7 +11,7 @@ from service.solutions.work import Work
 
 
 def answer(part: FindSlipSpec, work: Work) -> PrintedAnswer:
-    """Return the mark and the mended table."""
+    """Return the cells to mark, and the mended table."""
     robot = work.exercise.robot
     table = robot.tables[part.convention]
     drawn = slip_of(part, work.exercise)
@@ -22,5 +22,5 @@ def answer(part: FindSlipSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: FindSlipSpec, exercise: Exercise) -> list[object]:
-    """Return the given table, handed back without a mark."""
+    """Return the given table unchanged, with no cell marked."""
     return [{"table": {"rows": as_rows(slip_of(part, exercise).texts)}}]

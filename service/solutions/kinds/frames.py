@@ -45,7 +45,7 @@ def _direction(vector: sympy.Matrix, work: Work) -> str | list[Node]:
 
 
 def lazy(part: FramesSpec, exercise: Exercise) -> list[object]:
-    """Return frames equal to the base frame, with the joint numbers of the convention."""
+    """Return frames on the correct joints that are all equal to the base frame."""
     standard = part.convention is Convention.STANDARD
     joints = [joint.index for joint in exercise.joints][int(standard) :]
     labels = frame_labels(exercise.robot, part.convention)
