@@ -302,7 +302,7 @@ def _row(i: int, cells: Four, joints: tuple[Joint, ...], reader: FormulaReader) 
 def _check_moves_once(field: str, formula: Expression, joint: Joint) -> None:
     """Raise FieldError unless the cell is the joint variable plus a constant.
 
-    So the cell increases with the joint variable, as the reference defines positive directions.
+    The variable must have the factor +1, because the reference defines the positive directions.
     """
     at = np.array([0.0, 0.7, -1.3])
     values = {name: np.full(3, 0.4) for name in formula.symbols} | {joint.variable: at}

@@ -73,7 +73,7 @@ class Exercise:
 
     @property
     def conventions(self) -> tuple[Convention, ...]:
-        """The conventions that the parts ask for, each once."""
+        """The conventions that the parts ask for, without duplicates."""
         asked = {getattr(part, "convention", None) for part in self.parts}
         return tuple(each for each in Convention if not asked.isdisjoint({each, "either"}))
 
@@ -88,9 +88,9 @@ class Exercise:
 
     @property
     def robot(self) -> Robot:
-        """The robot given by a table. Raises LookupError if the exercise has none.
+        """The robot given by a table. Raises LookupError if the exercise has no such robot.
 
-        An exercise with a part that asks for a table always has one.
+        An exercise with a part that asks for a table always has such a robot.
         """
         if not isinstance(self.reference, Robot):
             raise LookupError(f"exercise {self.id!r} has no robot with a table")

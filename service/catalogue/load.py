@@ -25,7 +25,7 @@ _LONGEST_ID = 60
 def shipped_folder() -> Path:
     """The folder of the shipped exercises.
 
-    A wheel has it inside the package; a checkout has it at the top.
+    In a wheel, it is inside the package; in a checkout, at the top.
     """
     package = Path(__file__).parents[1]
     packaged = package / "_exercises"
@@ -77,7 +77,7 @@ def load_catalogue(*folders: Path) -> dict[str, Exercise]:
 
 
 def is_exercise_id(name: str) -> bool:
-    """True if ``name`` can be an exercise's id, its file name without .toml."""
+    """True if ``name`` can be an exercise's id (its file name without .toml)."""
     return re.fullmatch(IDENTIFIER, name) is not None and len(name) <= _LONGEST_ID
 
 

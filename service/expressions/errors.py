@@ -84,7 +84,7 @@ class UnreadableError(Exception):
 
 
 def shortened(text: str) -> str:
-    """Return ``text``, or the beginning of a long one."""
+    """Return ``text``, or only the beginning if it is long."""
     return text if len(text) <= _LONGEST_QUOTATION else f"{text[:_LONGEST_QUOTATION]}…"
 
 

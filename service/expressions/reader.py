@@ -338,7 +338,7 @@ def _is_beyond_depth(tree: Node) -> bool:
 
 
 def _broken_limit(tree: Node) -> str:
-    """Return the limit that is exceeded first, from right to left: "depth" or "nodes"."""
+    """Return "depth" or "nodes", the limit that a walk from right to left exceeds first."""
     count = 0
     pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:
@@ -355,5 +355,5 @@ def _broken_limit(tree: Node) -> str:
 
 
 def _is_run(node: Binary) -> bool:
-    """True if the left operand extends the run of sums or products of ``node``."""
+    """True if ``node`` and its left operand belong to one run of sums or one run of products."""
     return type(node.left) is Binary and node.left.operator in _RUNS[node.operator]

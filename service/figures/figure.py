@@ -181,7 +181,7 @@ def _dimensions(
 
 
 def _aside(step: Numbers, directions: Numbers) -> Numbers:
-    """Return unit vectors perpendicular to ``step``, each in the plane of it and a direction."""
+    """Return unit vectors perpendicular to ``step``, in the plane of ``step`` and a direction."""
     along = step / np.linalg.norm(step)
     found: list[Numbers] = []
     for direction in directions:

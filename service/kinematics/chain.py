@@ -81,15 +81,15 @@ def joint_frames(frames: Matrices, convention: Convention) -> Matrices:
 
 
 def z_links(rows: Table) -> Matrices:
-    """Return the factor Z of each row: ``(rows, ..., 4, 4)`` from ``(rows, 4, ...)``."""
+    """Return Rot_z(θ) Trans_z(d) of each row: ``(rows, ..., 4, 4)`` from ``(rows, 4, ...)``."""
     return standard_link(0.0, 0.0, rows[:, D], rows[:, THETA])
 
 
 def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Matrices:
     """Return the frames on the joint axes and the last frame: ``(rows + 1, ..., 4, 4)``.
 
-    If ``wanted`` is the standard convention, these frames are before each row's Z; if it is the
-    modified one, after each row's Z. The table may be in either convention.
+    If ``wanted`` is the standard convention, these frames are before each row's Z, that is Rot_z(θ)
+    Trans_z(d); if it is the modified one, after Z. The table may be in either convention.
     """
     reached = frames(table, convention)
     if wanted is convention is Convention.STANDARD:

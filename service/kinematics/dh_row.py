@@ -19,12 +19,18 @@ def _as_standard(transform: Matrices, convention: Convention) -> Matrices:
 
 
 def dh1_residual(transform: Matrices, convention: Convention) -> Numbers:
-    """Return the cosine of the angle between the axes of DH1, ``(...)``; 0 if DH1 holds."""
+    """Return the cosine of the angle between the two axes of condition DH1, ``(...)``.
+
+    The axes are x_1 and z_0 (standard) or x_0 and z_1 (modified). DH1 holds if the result is 0.
+    """
     return np.asarray(_as_standard(transform, convention)[..., 2, 0])
 
 
 def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
-    """Return the signed distance between the axes of DH2, ``(...)``; 0 if DH2 holds."""
+    """Return the signed distance between the two axes of condition DH2, ``(...)``.
+
+    The axes are x_1 and z_0 (standard) or x_0 and z_1 (modified). DH2 holds if the result is 0.
+    """
     standard = _as_standard(transform, convention)
     x, y = standard[..., 0, 0], standard[..., 1, 0]
     px, py = standard[..., 0, 3], standard[..., 1, 3]
@@ -50,7 +56,7 @@ def row(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def is_unreachable(transform: Matrices, length_scale: float) -> NDArray[np.bool_]:
-    """True for transforms ``(H, L, 4, 4)`` that no standard row describes: ``(H,)``."""
+    """Return a mask ``(H,)`` of the transforms ``(H, L, 4, 4)`` that no standard row describes."""
     tilt = np.abs(dh1_residual(transform, Convention.STANDARD)).max(axis=-1)
     distance = np.abs(dh2_residual(transform, Convention.STANDARD)).max(axis=-1)
     return np.asarray((tilt > PARALLEL) | (distance > PARALLEL * length_scale))

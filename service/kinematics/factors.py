@@ -86,7 +86,7 @@ class Factors:
         return factor // 2, (A if self.axes[factor] == X else D) + kind
 
     def position(self, cell: CellIndex) -> tuple[int, int]:
-        """Return the factor of a table cell, and SHIFT or TURN."""
+        """Return the factor to which a table cell belongs, and SHIFT or TURN."""
         row, column = cell
         in_z = column >= D
         z_first = self.convention is Convention.STANDARD

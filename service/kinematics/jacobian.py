@@ -49,7 +49,7 @@ def coincident(jacobian: Screws) -> NDArray[np.bool_]:
 
 
 def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
-    """Return the rank of ``(L, m, n)`` at a generic configuration: the median of all samples.
+    """Return the rank of ``(L, m, n)`` at a generic configuration: the median rank of all samples.
 
     The median ignores single singular or badly rounded configurations. A singular value counts as 0
     up to ``zero`` times the largest singular value of all samples (or times 1 if that is larger,

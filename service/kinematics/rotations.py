@@ -33,7 +33,7 @@ def about(axis: str, angle: ArrayLike) -> Matrices:
 def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
     """Return the composite of rotations ``(..., 3, 3)``; each flag is True for a fixed axis.
 
-    A turn about an axis of the fixed frame is multiplied from the left, one about an axis of the
+    A turn about an axis of the fixed frame is multiplied from the left, a turn about an axis of the
     moving frame from the right. Source: *Direct Kinematics (Part 2)*, §1.5.
 
     >>> quarter = np.pi / 2
@@ -50,7 +50,8 @@ def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
 def from_angles(sequence: str, angles: Numbers, *, fixed: bool = False) -> Matrices:
     """Return the rotation ``(..., 3, 3)`` that a triple of angles ``(..., 3)`` describes.
 
-    Source: Craig, *Introduction to Robotics*, §2.8 and appendix B (all twelve of either kind).
+    Source: Craig, *Introduction to Robotics*, §2.8 and appendix B (twelve sequences for
+    moving axes, twelve for fixed axes).
 
     >>> np.round(from_angles("ZYX", np.array([np.pi / 2, 0.0, np.pi / 2]))) + 0.0
     array([[0., 0., 1.],
@@ -68,7 +69,7 @@ def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numb
 
     The middle angle is in [−π/2, π/2] for three different axes, and in [0, π] if the first axis
     occurs twice. If only the sum or difference of the outer angles is determined, the last angle is
-    0 (for fixed axes the first).
+    0 (for fixed axes, the first angle is 0).
 
     Source: Shoemake, *Euler Angle Conversion*, Graphics Gems IV; for "ZYX" this is Craig, eq. 2.66.
 

@@ -81,7 +81,9 @@ def sliding_axis(displacement: Matrices, distance: float) -> Numbers:
 
 
 def adjoint(transform: Matrices) -> Matrices:
-    """Return the matrix ``(..., 6, 6)`` that takes a screw axis from the second frame to the first.
+    """Return the matrix ``(..., 6, 6)`` that converts screw axes between two frames.
+
+    It takes a screw axis from the second frame of ``transform`` to the first frame.
 
     Source: *Modern Robotics*, definition 3.20: [R, 0; [p] R, R].
     """

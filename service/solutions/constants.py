@@ -1,7 +1,7 @@
 """Replace products and sums of constants without a closed form, such as cos 0.3, by one number.
 
-A robot given in numbers has such a constant in each twist, and products of six would fill a page.
-They are computed with more digits than are printed, so that terms cancel to exactly 0.
+A robot given in numbers has such a constant in each twist. Products of six of them would fill a
+page. They are computed with more digits than are printed, so that terms cancel to exactly 0.
 """
 
 from decimal import ROUND_HALF_EVEN, Context, Decimal

@@ -32,7 +32,7 @@ def matrix(nodes: Sequence[Sequence[Node]]) -> PrintedAnswer:
 
 
 def listed(nodes: Sequence[Node]) -> PrintedAnswer:
-    """Return a list of values; in LaTeX it is a column."""
+    """Return a list of values; in LaTeX, the list is a column."""
     cells = list(map(to_text, nodes))
     return PrintedAnswer(f"[{', '.join(cells)}]", _latex_matrix([[node] for node in nodes]), cells)
 
@@ -110,7 +110,7 @@ def no_row() -> PrintedAnswer:
 
 
 def too_long() -> PrintedAnswer:
-    """Return the placeholder for an answer that is too long to be handed in."""
+    """Return the placeholder for an answer that is too long to be submitted."""
     text = say("longer than an answer may be")
     return PrintedAnswer(text, Sentence(r"\text{{{text}}}", {"text": text}), None)
 

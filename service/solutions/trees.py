@@ -170,7 +170,7 @@ def _size(expression: sympy.Expr, known: dict[sympy.Expr, int]) -> int:
 
 
 def _negated(node: Node) -> Node:
-    """Return the node with a minus before its first factor, as typed: −c1 s2, not −(c1 s2)."""
+    """Return the node with a minus before its first factor: −c1 s2, not −(c1 s2)."""
     if isinstance(node, Binary) and node.operator in ("*", "/"):
         return Binary(node.operator, _negated(node.left), node.right)
     return Negation(node)

@@ -55,13 +55,13 @@ class Work:
         return between(self.exercise, part.start, part.to, self.algebra, home=part.home)
 
     def matrix(self, entries: sympy.Matrix) -> PrintedAnswer:
-        """Return a matrix of numbers and lengths, laid out."""
+        """Lay out a matrix of numbers and lengths."""
         return layout.matrix(
             [[self.writer.number(each) for each in row] for row in entries.tolist()]
         )
 
     def link_matrices(self, convention: Convention) -> dict[str, PrintedAnswer]:
-        """Map the label of each row of the robot's table in this convention to its transform."""
+        """Map row labels of the robot's table in this convention to the rows' transforms."""
         reference = self.exercise.robot.tables[convention]
         return {
             label: self.matrix(multiplied(link(row, convention, self.algebra)).matrix())

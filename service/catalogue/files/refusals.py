@@ -62,7 +62,8 @@ def refusals(
 ) -> list[tuple[str, str]]:
     """Return the field and the reason of each fault.
 
-    If a value may have several types, pydantic's findings for each type are one fault.
+    If a value may have several types, pydantic has a finding for each type; together, they are
+    one fault.
 
     ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
     """
@@ -230,7 +231,7 @@ def _advice(key: str, model: type[BaseModel]) -> str:
 
 
 def exercise_table(location: _Location) -> type[BaseModel]:
-    """The model of the table of an exercise file that contains a location of pydantic."""
+    """The pydantic model of the TOML table in which ``location`` is."""
     match list(location):
         case ["robot", tag, *_]:
             return ScrewRobotSpec if tag == "screws" else RobotSpec

@@ -67,5 +67,5 @@ def _require_same_formulas(field: str, original: str, text: str) -> None:
 
 
 def _formulas(text: str) -> Counter[str]:
-    """Return the formulas between dollars, without blanks at their ends."""
+    """Return the formulas between dollar signs, without blanks at their ends."""
     return Counter(found[2].strip() for found in _FORMULA.finditer(text))

@@ -54,7 +54,7 @@ class DhRowSpec(PartSpec):
     """The entries of the transform, row by row."""
 
     def formulas(self) -> WrittenFormulas:
-        """The entries of the transform."""
+        """The formulas of the transform's entries."""
         return replace(transform_of("transform", self.transform), check=self._check)
 
     def _check(self, field: str, numbers: Numbers) -> None:

@@ -28,13 +28,13 @@ class MatrixSpec(PartSpec):
 
     @property
     def quantities(self) -> tuple[tuple[Kind, ...], ...]:
-        """The quantity of each entry."""
+        """The quantity of each entry: a length, an angle or a number."""
         columns = len(self.expected[0])
         row = (self.quantity,) * columns if isinstance(self.quantity, str) else self.quantity
         return (tuple(row),) * len(self.expected)
 
     def formulas(self) -> WrittenFormulas:
-        """The entries."""
+        """The formulas of the matrix's entries."""
         return matrix_of("expected", self.expected, self.quantities)
 
     def shape(self, _: Reference | None) -> MatrixShape:

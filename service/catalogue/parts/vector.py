@@ -33,7 +33,7 @@ class VectorSpec(PartSpec):
     """The values in order."""
 
     def formulas(self) -> WrittenFormulas:
-        """The right value of each component."""
+        """The formula of each component's right value."""
         return list_of(
             "components[{j}].expected",
             [component.expected for component in self.components],

@@ -85,7 +85,10 @@ def screws_of(field: str, axes: Sequence[Screw]) -> WrittenFormulas:
 def fields_of(
     path: str, grid: FormulaGrid, quantities: Sequence[Sequence[Kind]]
 ) -> Iterator[FormulaField]:
-    """Yield the formulas of a grid, each with its field and quantity; ``path`` has {i} and {j}."""
+    """Yield the formulas of a grid, each with its field and quantity.
+
+    ``path`` is the field with {i} for the row and {j} for the column.
+    """
     for i, (row, kinds) in enumerate(zip(grid, quantities, strict=True)):
         for j, (formula, kind) in enumerate(zip(row, kinds, strict=True)):
             yield path.format(i=i, j=j), formula, kind

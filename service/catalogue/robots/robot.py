@@ -95,7 +95,7 @@ class ReferenceTable:
 
 
 def at_home(joints: tuple[Joint, ...], values: SymbolValues, samples: int) -> SymbolValues:
-    """Return the values with all joint variables replaced by 0."""
+    """Return the values, with 0 for each joint variable."""
     return {**values, **{joint.variable: np.zeros(samples) for joint in joints}}
 
 
@@ -106,7 +106,7 @@ ALONG_Z = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """The reference robot. ``tables`` has its table in each convention that can express it."""
+    """The reference robot. ``tables`` are its tables in the conventions that can express it."""
 
     structure: str
     convention: Convention

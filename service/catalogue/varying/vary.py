@@ -176,7 +176,7 @@ class Vary:
                 return node
 
     def _written(self, place: str, values: Mapping[str, VaryValue], field: str) -> str:
-        """Return the text of ``{{place}}``: a value, a field of a group, or a formula."""
+        """Return the text to replace ``{{place}}``: a name, a field of a group, or a formula."""
         place = place.strip()
         name, dot, key = place.partition(".")
         found = values.get(name)
@@ -224,7 +224,7 @@ def _text(value: VaryValue) -> str:
 
 
 def _whole(text: str, count: int) -> int:
-    """Return a whole number from 0 to ``count`` − 1, the same for the same text."""
+    """Return a whole number from 0 to ``count`` − 1 that depends only on ``text``."""
     return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") % count
 
 

@@ -13,7 +13,7 @@ _BETWEEN_ARGUMENTS: Final = re.compile(r";(?=[^();]*(?:\([^()]*\)[^();]*)*\))")
 
 
 def with_points(text: str) -> str:
-    """Return the text with decimal points. Every character keeps its place."""
+    """Return the text with points for decimal commas. Every character keeps its place."""
     return _NUMBER.sub(r"\1.\2", text) if "," in text else text
 
 

@@ -25,7 +25,7 @@ _PARTS: Final = re.compile(rf"(?<![^\W\d_])(?:{_SPELLED})|.", re.DOTALL)
 def spellings(name: str) -> set[str]:
     """Return all ways to write ``name``: each Greek letter as a letter or as its name.
 
-    Student texts are not converted this way, because ``bη`` would become ``beta``.
+    Student texts are not converted this way, because ``bη`` (b times η) would become ``beta``.
     """
     both = NAMES | LETTERS
     parts = [{part, both.get(part, part)} for part in _PARTS.findall(name)]

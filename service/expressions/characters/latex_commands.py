@@ -71,7 +71,7 @@ RAISED_STAR: Final = re.compile(rf"\^\s*(?:{_STAR}(?!\*)|\{{\s*{_STAR}\s*\}})|â‹
 
 
 def known_prefix(name: str) -> str | None:
-    """Return the longest known command that ``name`` begins with, or None: cosq -> cos."""
+    """Return the longest known command at the beginning of ``name`` (cos in cosq), or None."""
     for end in range(len(name) - 1, 1, -1):
         if name[:end] in FUNCTIONS or name[:end] in PLAIN:
             return name[:end]

@@ -1,7 +1,7 @@
 r"""Characters as typed -> plain characters, each with its place in the text as typed.
 
-Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted. For a
-look-alike or invisible character, the error names it; nothing is guessed.
+Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted. A
+look-alike or invisible character is an error that names the character; nothing is guessed.
 \frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are private brackets that no student can type.
 """
 

@@ -28,8 +28,8 @@ LEAST_FIGURES: Final = 3
 class Decimals:
     """The ``m`` rounded decimals of one formula, from left to right. Immutable.
 
-    ``units`` ``(m,)`` are their units. If the whole formula is one decimal, ``sign`` is its sign, 1
-    or -1; else it is 0.
+    ``units`` ``(m,)`` has the unit of each decimal, such as 0.01 for 1.57. If the whole formula is
+    one decimal, ``sign`` is the decimal's sign, 1 or -1; else ``sign`` is 0.
     """
 
     __slots__ = ("_names", "_numbers", "_program", "sign", "units")
@@ -44,7 +44,9 @@ class Decimals:
         self.sign: Final = _sign(replaced)
 
     def shifted(self, shifts: NDArray[np.float64], values: SymbolValues) -> SampleArray:
-        """Return the values ``(K, samples)`` of the formula for each row of ``shifts`` ``(K, m)``.
+        """Return the values ``(K, samples)`` of the formula, with its decimals shifted in K ways.
+
+        ``shifts`` ``(K, m)`` are numbers of units that are added to the decimals.
 
         The shape is ``(K, 1)`` if the formula has no symbols. Undefined values are NaN or infinite,
         without warnings.
@@ -101,7 +103,7 @@ def _with_names(node: Node, found: list[Number]) -> Node:
 
 
 def _unit(literal: str) -> float:
-    """Return the unit of a decimal with at least three figures; 0 for any other number.
+    """Return 1 in the last place of a decimal of three or more figures (0.01 for 1.57), else 0.
 
     Leading zeros are not figures.
     """

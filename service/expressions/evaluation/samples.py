@@ -87,7 +87,7 @@ class Program:
         """Return the value for each sample, given the ``values`` of each symbol, ``(samples,)``.
 
         ``memo`` must be empty or used before with the same values. An undefined part makes the
-        whole undefined; numpy warns of it unless warnings are off.
+        whole result undefined; numpy warns of it unless warnings are off.
         """
         if not memo:
             memo.update(values)

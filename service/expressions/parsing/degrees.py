@@ -37,7 +37,7 @@ class _Facts(NamedTuple):
 
 
 def in_degrees(tree: Node, *, is_angle: bool, notes: list[Note]) -> Node:
-    """Return ``tree`` with the unit of degrees on bare constants in angle contexts.
+    """Return ``tree`` with the unit of degrees on bare constants that are angles.
 
     ``is_angle`` is True if the whole entry is an angle. A constant written with π stays in radians,
     with a note in ``notes``.
@@ -47,12 +47,12 @@ def in_degrees(tree: Node, *, is_angle: bool, notes: list[Note]) -> Node:
 
 
 def without_degree_functions(tree: Node, *, notes: list[Note]) -> Node:
-    """Return ``tree`` with cos(60deg) for cosd(60), for a student who works in radians."""
+    """Return ``tree`` with cosd(60) replaced by cos(60deg), for a student who works in radians."""
     return _Conversion(tree, notes, frozenset()).plain(tree)
 
 
 class _Conversion:
-    """One conversion of a tree. The facts about each node are computed once."""
+    """The conversion of one tree, which adds degrees to bare constants. Facts are computed once."""
 
     def __init__(self, tree: Node, notes: list[Note], functions: frozenset[str]) -> None:
         self.notes = notes
@@ -66,7 +66,7 @@ class _Conversion:
         return facts
 
     def plain(self, node: Node) -> Node:
-        """Convert the angle contexts inside ``node``, which is not an angle context itself."""
+        """Add degrees to the angles inside ``node``, which is not an angle itself."""
         match node:
             case Binary(operator, left, right):
                 return Binary(operator, self.plain(left), self.plain(right), node.start, node.end)
@@ -83,7 +83,7 @@ class _Conversion:
                 return node
 
     def angle(self, node: Node) -> Node:
-        """Convert ``node``, which is an angle."""
+        """Add degrees to the bare constants in ``node``, which is an angle."""
         match node:
             case Negation(operand):
                 return Negation(self.angle(operand), node.start, node.end)
@@ -115,7 +115,7 @@ class _Conversion:
         return Unit(self.plain(node), "deg", node.start, node.end)
 
     def _product(self, node: Node, left: Node, right: Node) -> Node:
-        """Convert the one factor that is an angle: 2*(q1 + 45), k*90."""
+        """Add degrees in the factor that is an angle: q1 + 45 in 2*(q1 + 45), 90 in k*90."""
         one, other = self.facts[id(left)], self.facts[id(right)]
         angles = one.angle, other.angle
         if angles == (False, False):

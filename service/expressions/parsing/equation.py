@@ -39,7 +39,10 @@ _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):
-    """The name before an equals sign, with single blanks. ``span`` includes the equals sign."""
+    """The name before an equals sign, with single blanks between words.
+
+    ``span`` includes the equals sign.
+    """
 
     name: str
     span: Span

@@ -49,7 +49,7 @@ def is_power_of_ten(node: Node) -> bool:
 
 
 def needs_dot(left: Node, right: Node) -> bool:
-    """True if a drawn product needs a dot: 2·3, and θ1·(π + 1), lest it look like two values."""
+    """True if a drawn product needs a dot, as 2·3 and θ1·(π + 1) do."""
     if begins_with_digit(right):
         return True
     if type(right) is Pi:

@@ -117,8 +117,8 @@ def _added_joints(node: Node) -> list[int]:
 class Habits(NamedTuple):
     """The spelling that one formula shows.
 
-    ``unit`` is the unit of constant angles (see ``_unit``), or None if there are none. ``names``
-    maps canonical names of symbols to typed names.
+    ``unit`` is how constant angles are written ("pi", "π", "deg", "°", ""), or None without such
+    angles. ``names`` maps canonical names of symbols to typed names.
     """
 
     unit: str | None
@@ -155,7 +155,7 @@ def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: 
 
 
 def spelling_for(formula: TypedFormula, common: Spelling, vocabulary: Vocabulary) -> Spelling:
-    """Return the common spelling with the names and the unit of angles of one formula."""
+    """Return the common spelling, but with the names and the angle unit that ``formula`` uses."""
     unit = _unit(formula)
     common = replace(common, names={**common.names, **_names(formula, vocabulary)})
     if unit is None:
@@ -233,7 +233,7 @@ def _is_name(typed: str, symbol: Symbol, vocabulary: Vocabulary) -> bool:
 
 
 def _names_by_analogy(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[str, str]:
-    """Return names for the other joint variables, formed like the typed ones.
+    """Return names for the other joint variables, formed like the typed names.
 
     A student who writes q1 also writes q2; a student who writes θ_1 also writes θ_2.
     """

@@ -55,7 +55,7 @@ class Failure:
         return "" if at < 0 else self.details["tokens"][at][0]
 
     def place(self, back: int = 0) -> Span:
-        """Return the place of the token whose terminal is ``self.terminal(back)``."""
+        """Return the place of the token that is ``back`` tokens before the refused token."""
         token = self.details["tokens"][self.details["index"] - back]
         return token[2], token[3]
 

@@ -1,4 +1,4 @@
-"""Find the known name that is most similar to an unknown one."""
+"""Find the known name that is most similar to an unknown name."""
 
 import difflib
 import re

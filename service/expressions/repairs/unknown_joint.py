@@ -44,14 +44,14 @@ def repair(failure: Failure) -> Repair:
 
 
 def _place(failure: Failure, goes_on: bool) -> Span:
-    r"""Return the place of the name only; in \theta_{12}\cos the run is longer."""
+    r"""Return the place of the name alone: \theta_{12} in \theta_{12}\cos."""
     start, end = failure.span
     found = _AS_TYPED.match(failure.source, start, end) if goes_on else None
     return (start, found.end()) if found else (start, end)
 
 
 def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
-    """Return the sum of the angles of the joints in ``index``, or None if it means no such sum.
+    """Return the sum of the angles of the joints in ``index``, or None if there is no such sum.
 
     Joints that slide are left out, because they have no angle.
     """

@@ -28,7 +28,10 @@ class Drawing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A dimension line in the picture: its ends, the ends of the measured piece, and a penalty."""
+    """A dimension line in the picture: its ends, the ends of the measured piece, and its penalty.
+
+    The line with the lowest penalty is drawn.
+    """
 
     ends: Numbers
     measured: Numbers

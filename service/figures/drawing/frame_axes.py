@@ -98,7 +98,7 @@ def named(
 
 
 def _axes(camera: Camera, drawn: DrawnFrames, length: float) -> list[_Axis]:
-    """Return the axes to draw. Of coincident axes, x and z come before y."""
+    """Return the axes to draw. Coincident axes are drawn as z or x rather than as y."""
     found: list[tuple[Numbers, _Axis]] = []
     for letter in "zxy":
         for pose, label, letters in zip(drawn.poses, drawn.labels, drawn.axes, strict=True):

@@ -81,7 +81,7 @@ def _entries(frame: StudentFrame) -> Iterator[tuple[str, Entry]]:
 
 
 def _frame(label: str, frame: StudentFrame, home: Samples) -> Matrices | CellWithoutNumber:
-    """Return a frame ``(4, 4)``, or the cell without which it cannot be drawn.
+    """Return a frame ``(4, 4)``, or the cell that prevents drawing it.
 
     x is drawn as it is written, even if it is not perpendicular to z.
     """

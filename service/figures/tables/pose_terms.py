@@ -157,7 +157,7 @@ class _Pose:
         self.turn = _Angle()
 
     def x_axis(self) -> list[Terms]:
-        """Return the direction of x after the pending turn."""
+        """Return the direction of x after the pending turn about z."""
         cosine, sine = self.turn.cosine_and_sine()
         return [
             _plus(_product(u, cosine), _product(v, sine))

@@ -28,9 +28,8 @@ class TableFormulas:
     """The formulas of a table.
 
     A cell that is unreadable or too long to print is None in ``cells``; then the other fields are
-    empty.
-    ``converted`` is an equivalent table in the other convention. ``pose`` has the entries
-    ``(4, 4)`` of the pose of the last frame in the base frame; it is empty if it is too long.
+    empty. ``converted`` is an equivalent table in the other convention. ``pose`` has the entries
+    ``(4, 4)`` of the last frame's pose in the base frame; if these are too long, it is empty.
     """
 
     cells: tuple[tuple[Expression | None, ...], ...]

@@ -82,8 +82,8 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
 def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
     """Return the rows with each label, such as Link 1, in one cell.
 
-    All rows below the headers must have a label, otherwise the rows do not change. The name of the
-    index may follow the headers.
+    All rows below the headers must have a label, otherwise the rows do not change. A line with the
+    name of the index may follow the headers.
     """
     for start in range(min(3, len(rows))):
         body = rows[start:]

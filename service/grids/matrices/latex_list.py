@@ -42,7 +42,7 @@ _BLANKS: Final = " \t\r\n&,.:"
 def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     """Return the matrices of a text as pairs (name, matrix); the name may be empty.
 
-    Raises GridError if an environment does not end, or if text next to a matrix may change it.
+    Raises GridError if an environment does not end, or if there is text that may change a matrix.
     """
     source = without_comments(source)
     found: list[tuple[SourceText, SourceText]] = []

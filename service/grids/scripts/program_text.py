@@ -265,7 +265,7 @@ def _is_small(text: str) -> bool:
 
 
 def text_around(piece: SourceText) -> GridError:
-    """Return the error for text next to a matrix that may change its meaning."""
+    """Return the error for text next to a matrix that may change the matrix's meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
     shown = "".join(filter(str.isprintable, first)).strip()

@@ -1,7 +1,7 @@
 """Remove sentences and code fences around a pasted table or matrix.
 
-A line is removed only if it cannot be a row: it has words, but no separator of cells. If
-the line names a unit, the text is refused, because the unit may apply to the table.
+A line is removed only if it cannot be a row: it has words, but no separator of cells. If the
+line names a unit, the text is refused, because the unit may apply to the table.
 """
 
 import re

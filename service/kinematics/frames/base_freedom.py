@@ -47,7 +47,7 @@ class BaseFreedom:
         return not (self.turn or self.anywhere) and self.slide is None
 
     def at_next(self, reference: Matrices, kind: TargetKind, length_scale: float) -> Self:
-        """Return the freedom left at the next target, the pose ``reference`` ``(L, 4, 4)``."""
+        """Return the freedom left at the next target, whose pose ``(L, 4, 4)`` is ``reference``."""
         relation = axis_relations(reference[None], length_scale)[0]
         parallel = relation != AxisRelation.SKEW
         sliding = kind is TargetKind.PRISMATIC

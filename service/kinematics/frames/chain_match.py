@@ -62,7 +62,7 @@ class RowConstants:
 
 @dataclass(frozen=True, slots=True)
 class ChainMatch:
-    """A valid table, and its frames relative to the reference's.
+    """A valid table, and its frames relative to the reference's frames.
 
     ``rows`` ``(rows, 4, L)`` are the right rows. ``relative_poses`` ``(rows, L, 4, 4)`` are the
     relative poses at each target. ``cost`` is the distance of the written table from the valid

@@ -2,10 +2,10 @@
 
 Denavit-Hartenberg tables are not unique (``chain_match`` explains when two describe one mechanism).
 So the search proceeds from the base to the tool. It compares each written row with all rows that
-are valid for the frames chosen so far. A wrong cell costs 1. Each further wrong cell in the
-same row costs less, so that one wrong row is cheaper than errors in several rows. A frame other
-than the reference's frame has a small cost, so that an uncompensated shift is found in the row
-where it was made. Only the cheapest hypotheses are kept (a beam search).
+are valid for the frames chosen so far. A wrong cell costs 1. Each further wrong cell in the same
+row costs less, so that one wrong row is cheaper than errors in several rows. A frame other than
+the reference's frame has a small cost, so that an uncompensated shift is found in the row where it
+was made. Only the cheapest hypotheses are kept (a beam search).
 
 Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
 a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame in the reference's.
@@ -63,7 +63,7 @@ class _Beam:
     """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them.
 
     ``lost`` ``(H,)`` are the units of marks that the hypotheses lose. ``begun`` has the counts of
-    the table row whose X, but not yet its Z, has been compared.
+    the table row whose a and α, but not yet d and θ, have been compared.
     """
 
     pose: Matrices
@@ -116,7 +116,7 @@ def nearest_table(
 ) -> ChainMatch:
     """Return the valid table nearest to ``rows``. Row i leads to target i.
 
-    ``z_ends_rows`` is true if each row of the table has its X before its Z.
+    ``z_ends_rows`` is true if a and α come before d and θ in each row of the table.
 
     ``base_given`` is true if frame 0 is known. Its pose in the reference's frame 0 is ``start``
     ``(L, 4, 4)``, or the identity if ``start`` is None. ``directions_given`` is true if each
@@ -217,7 +217,7 @@ def _counts(
     *,
     free_angle: bool,
 ) -> tuple[_RowCounts, _RowCounts]:
-    """Return the counts for the cells a, α (in X) and for the cells d, θ (in Z) of N rows."""
+    """Return the counts for the cells a and α, and for the cells d and θ, of N rows."""
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
     of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
     # A constant beside a wrong joint variable does not count.

@@ -123,8 +123,8 @@ def asked_frames(
 ) -> tuple[AskedFrame, ...]:
     """Return the frames between the base frame and the tool frame, which both are given.
 
-    ``axes`` are those of the joints. ``has_tool_row`` is true if a fixed row leads to the tool, so
-    that the last joint's frame of a modified table is not the tool's.
+    ``axes`` are the joint axes. ``has_tool_row`` is true if a fixed row leads to the tool, so that
+    the last joint's frame of a modified table is not the tool frame.
     """
     n = len(axes)
     if convention is Convention.STANDARD:
@@ -179,10 +179,10 @@ def right_places(
 ) -> list[RightPlace]:
     """Return the correct places of each frame, given its chosen origin ``(L, 3)`` or None.
 
-    ``may_move`` is false for sliding joints whose axis must be taken as drawn; ``axes`` has the
-    axes that are known, by frame. The axis of a sliding joint moves to the chosen origin if the
-    origin is farther from the axis than the frame's tolerance, and if the rules hold for the moved
-    axis.
+    ``may_move`` is false for sliding joints whose axis must be taken as drawn; ``axes`` maps
+    indices of frames to axes that are known. The axis of a sliding joint moves to the chosen origin
+    if the origin is farther from the axis than the frame's tolerance, and if the rules hold for the
+    moved axis.
     """
     found: list[RightPlace | None] = [None] * len(frames)
     # The neighbour's axis must be known first.
@@ -244,7 +244,7 @@ def _may_lie(
 
 
 def frame_of(z: Numbers, origin: Numbers, x: Numbers) -> Matrices:
-    """Return the frame ``(L, 4, 4)`` with these axes and this origin. z and x need no unit length.
+    """Return the frame ``(L, 4, 4)`` with these axes and origin. z and x need no unit length.
 
     If x is rounded, the frame's x is made perpendicular to z.
     """

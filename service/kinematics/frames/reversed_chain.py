@@ -50,7 +50,8 @@ def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
 def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Target]:
     """Return the targets of the inverse product, from a given tool to a base that is free.
 
-    ``offsets`` ``(n, L, 4, 4)`` has the factor Z of the reference's constants on each joint axis.
+    ``offsets`` ``(n, L, 4, 4)`` has, for each joint axis, Rot_z(θ) Trans_z(d) of the reference's
+    constants.
     """
     here = identity((offsets.shape[1],))
     each_offset = iter(offsets)

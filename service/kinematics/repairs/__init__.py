@@ -1,1 +1,1 @@
-"""Repair a table by other values of a few cells."""
+"""Repair a table by changing a few cells."""

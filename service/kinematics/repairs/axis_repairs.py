@@ -1,4 +1,4 @@
-"""Repair the joint axes of a table by one cell, if base or tool is free.
+"""Repair the joint axes of a table by changing one cell, if base or tool is free.
 
 If one cell is wrong, the factors before and after that cell's factor form two rigid bodies with
 fixed joint axes. The pose of the first body is known from a given frame 0, or from its own axes,

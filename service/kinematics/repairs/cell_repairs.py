@@ -1,4 +1,4 @@
-"""Repair the pose of a table by one or two cells.
+"""Repair the pose of a table by changing one or two cells.
 
 The pose is a product of factors, screws about x and z in turn (``factors``). If one factor alone is
 wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S the product after it and T
@@ -47,7 +47,7 @@ class CellRepair:
 
 
 def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
-    """Return the repairs of one factor: first repairs of one cell, then of both its cells."""
+    """Return the repairs of one factor: first those that change one cell, then both cells."""
     needed = factors.inverse_before[:-1] @ pose @ factors.inverse_after[1:]
     sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
@@ -59,7 +59,7 @@ def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
 
 
 def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]:
-    """Yield the repairs of one cell in each of two factors.
+    """Yield the repairs that change one cell in each of two factors.
 
     Most pairs of cells fail at the first sample; only the others are solved at all samples.
     """
@@ -168,7 +168,7 @@ def _turn_of_a(
 def _shift_of_a(
     m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """Return the shift along A's axis that takes the origin of M to that of N: ``(C, L)``.
+    """Return the shift along A's axis that takes M's origin to N's origin: ``(C, L)``.
 
     If B also shifts, least squares separate the two shifts; along parallel axes this is impossible.
     """

@@ -1,4 +1,4 @@
-"""Repair the pose of a table by one row.
+"""Repair the pose of a table by changing one row.
 
 The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
 where P is the product before it, S the product after it and T the true pose. If A is a link
@@ -56,7 +56,7 @@ def _misfit(needed: Matrices, factors: Factors) -> Numbers:
 
 
 def _changed(values: Numbers, written: Numbers) -> NDArray[np.bool_]:
-    """Return the cells ``(rows, 4)`` in which two tables ``(rows, 4, L)`` differ."""
+    """Return a mask ``(rows, 4)`` of the cells in which two tables ``(rows, 4, L)`` differ."""
     error = values - written
     angles = error[:, [ALPHA, THETA]]
     error[:, [ALPHA, THETA]] = angles - 2 * np.pi * np.round(angles / (2 * np.pi))

@@ -1,4 +1,4 @@
-"""The model answer of kind ``dh_row``: the DH row of a transform, or that it has none."""
+"""The model answer of kind ``dh_row``: the DH row of a transform, or "no row"."""
 
 import numpy as np
 import sympy
@@ -19,7 +19,7 @@ _MOST_STEPS = 60
 
 
 def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
-    """Return the row (a, α, d, θ) of the part's transform, or that it has none.
+    """Return the row (a, α, d, θ) of the part's transform, or the answer that it has no row.
 
     The row follows from the entries of a link transform (Spong, Hutchinson, Vidyasagar, *Robot
     Modeling and Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).

@@ -40,7 +40,7 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
 
 
 def lazy(part: ScrewAxesSpec, exercise: Exercise) -> list[object]:
-    """Return axes that are all the z axis of the base frame, and axes of zeros."""
+    """Return two answers: every axis is the z axis of the base frame, and every axis is zero."""
     kinds = [joint.prismatic for joint in exercise.joints]
     prismatic = kinds if part.expected is None else [False] * len(part.expected)
     axes = [["0"] * 5 + ["1"] if slides else [*"001000"] for slides in prismatic]

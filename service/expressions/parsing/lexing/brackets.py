@@ -30,7 +30,7 @@ class Brackets:
     def close(self, bracket: str, span: Span) -> int | None:
         """Close the innermost bracket; return its token's index, or None if no bracket is open.
 
-        Raises UnreadableError if that bracket is of another kind.
+        Raises UnreadableError if ``bracket`` does not fit the innermost bracket.
         """
         if not self.opened:
             return None
@@ -45,7 +45,7 @@ class Brackets:
 
 
 def partners(text: str) -> dict[int, int]:
-    """Map the place of each opening round bracket to that of its closing bracket, if it has one."""
+    """Map the place of each opening round bracket to the place of its closing bracket, if any."""
     found: dict[int, int] = {}
     opened: list[int] = []
     for match in _ROUND.finditer(text):

@@ -19,7 +19,7 @@ class Indexed(NamedTuple):
     """A run of letters and its index in brackets, read together.
 
     ``pieces`` are the pieces of the run with its index, or None if these have no meaning.
-    ``digits`` is the index as in declared names, ``end`` the place after the brackets.
+    ``digits`` is the index, counted as in declared names; ``end`` is the place after the brackets.
     """
 
     pieces: tuple[Piece, ...] | None

@@ -35,7 +35,7 @@ _DOTS: Final = frozenset({"·", "⋅", "×", r"\cdot", r"\times"})
 def read_star(text: str, start: int, end: int, typed: str, *, first: bool) -> Star:
     """Return how to read the * at text[start:end], which follows a joint variable.
 
-    ``typed`` is the star as typed: a dot always multiplies. ``first`` is True if the joint variable
+    ``typed`` is the sign as typed; a dot always multiplies. ``first`` is True if the joint variable
     is the first factor of its term.
     """
     if typed in _DOTS:

@@ -68,7 +68,7 @@ class TokenWriter:
         self.last = terminal
 
     def _operand(self, terminal: str, value: Any, start: int, end: int) -> None:
-        """Emit the first token of an operand; after another operand, emit a product first."""
+        """Emit the first token of an operand; after another operand, emit a product token first."""
         if self.last in OPERAND_ENDS:
             tokens = self.tokens
             before = tokens[-1]

@@ -172,7 +172,7 @@ class WordLexer(TokenWriter):
         self._sole_operand((piece.word, piece.symbols), a, b)
 
     def _sole_operand(self, operand: Operand, a: int, b: int) -> None:
-        """Emit a symbol or a shorthand."""
+        """Emit a symbol or a shorthand as one token."""
         function, symbols = operand
         first = symbols[0]
         node: Node = SymbolNode(first, a, b)
