@@ -338,7 +338,7 @@ def _is_beyond_depth(tree: Node) -> bool:
 
 
 def _broken_limit(tree: Node) -> str:
-    """Return "depth" or "nodes", the limit that a walk from right to left exceeds first."""
+    """Return the limit, "depth" or "nodes", that the tree exceeds first, from right to left."""
     count = 0
     pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:

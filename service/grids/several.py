@@ -108,7 +108,7 @@ def _headings_out_of_comments(source: SourceText) -> SourceText:
 
 
 def _masked(source: SourceText) -> str:
-    """Return the text with a masking character for each character in brackets and quotes."""
+    """Return the text with each character inside brackets or quotes replaced by a mask."""
     pieces, start, after = [], 0, 0
     text = source.text
     ends = strict_pairs(source)

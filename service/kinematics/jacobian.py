@@ -61,7 +61,7 @@ def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
 
 
 def dependent(jacobian: Screws) -> NDArray[np.bool_]:
-    """Return a mask ``(n,)`` of columns of ``(L, 6, n)`` that depend on others at every sample.
+    """Return a mask ``(n,)`` of columns of ``(L, 6, n)`` that depend on the others at each sample.
 
     A column is independent of the others if and only if its entry in every null vector is zero.
     """

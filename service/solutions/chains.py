@@ -71,7 +71,7 @@ def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
 
 
 def joint_axes(exercise: Exercise) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
-    """Return a direction and a point, each 3×1 in the base frame, of each joint axis at home.
+    """Return the direction of each joint axis at home and a point on it, 3×1 in the base frame.
 
     Raises LookupError if the robot has no table.
     """

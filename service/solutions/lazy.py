@@ -1,4 +1,4 @@
-"""Answers that need no knowledge; their points show whether points are distributed fairly.
+"""Answers that need no knowledge. The points that they earn show whether the marking is fair.
 
 In these answers, every joint turns about the z axis or slides along it by its variable; all other
 entries are 0.

@@ -42,7 +42,7 @@ class Work:
         return [self._with_units(*each) for each in zip(formulas, quantities, strict=True)]
 
     def _with_units(self, formula: Expression, quantity: Kind) -> Node:
-        """Return the author's formula, with units so that it also holds for students in degrees."""
+        """Return the author's formula, with units that students who work in degrees need."""
         text = to_text(formula.tree)
         in_degrees = read(text, self.exercise.vocabulary, quantity=quantity, angle_unit="degrees")
         if in_degrees.tree == formula.tree:

@@ -106,7 +106,7 @@ ALONG_Z = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """The reference robot. ``tables`` are its tables in the conventions that can express it."""
+    """The reference robot. ``tables`` has a table in each convention that can express it."""
 
     structure: str
     convention: Convention

@@ -21,7 +21,7 @@ _EQUAL: Final = 1e-9
 
 
 def numeric_values(values: Sequence[VaryValue]) -> Sequence[float] | None:
-    """Return a name's choices as numbers ("90deg" is a number), or None if any is no number."""
+    """Return a name's choices as numbers (90deg is a number); None if a choice is not a number."""
     found = []
     for each in values:
         if isinstance(each, Mapping):
@@ -78,7 +78,10 @@ class Condition:
     right: Expression
 
     def holds(self, values: Mapping[str, NDArray[np.float64]], count: int) -> NDArray[np.bool_]:
-        """Return a mask ``(count,)`` of draws that meet the condition; undefined values do not."""
+        """Return a mask ``(count,)`` of the draws that meet the condition.
+
+        A draw with an undefined value does not meet the condition.
+        """
         difference = np.broadcast_to(
             np.asarray(self.left.evaluate(values)) - np.asarray(self.right.evaluate(values)), count
         )

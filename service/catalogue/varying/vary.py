@@ -107,7 +107,7 @@ class Vary:
         return count
 
     def values(self, seed: str) -> Mapping[str, VaryValue]:
-        """Return the value of each name for a seed; for "", the values of the exercise itself.
+        """Return the value of each name for a seed. The seed "" gives the exercise's own values.
 
         Return the values of the exercise itself also if no draw of the seed meets the conditions.
         """

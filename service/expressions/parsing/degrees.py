@@ -52,7 +52,10 @@ def without_degree_functions(tree: Node, *, notes: list[Note]) -> Node:
 
 
 class _Conversion:
-    """The conversion of one tree, which adds degrees to bare constants. Facts are computed once."""
+    """The conversion of one tree, which adds degrees to bare constants.
+
+    The facts about each node are computed once.
+    """
 
     def __init__(self, tree: Node, notes: list[Note], functions: frozenset[str]) -> None:
         self.notes = notes

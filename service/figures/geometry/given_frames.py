@@ -15,7 +15,7 @@ from service.kinematics.transforms import Matrices
 
 @dataclass(frozen=True, slots=True)
 class GivenFrames:
-    """Frames of a robot. ``numbers`` are their positions from the base (0) on; -1 is the tool.
+    """Frames of a robot. ``numbers`` count them from the base frame, which is 0; -1 is the tool.
 
     ``labels`` are their indices: "0" for {0}, or "s" and "b" for a robot with screw axes.
     """

@@ -26,8 +26,8 @@ PARALLEL = 1e-9
 class ChainPath:
     """The corners ``(k + 1, samples, 3)`` of a path with ``k`` pieces.
 
-    ``joints`` has, for each piece along the axis of a joint, the joint's position; None for a piece
-    across.
+    ``joints`` has, for each piece along the axis of a joint, the joint's index, counted from 0;
+    None for a piece across.
     """
 
     corners: Numbers

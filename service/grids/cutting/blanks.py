@@ -27,7 +27,7 @@ _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
 @dataclass(frozen=True, slots=True)
 class BlankSeparated:
-    """The elements of one row. ``signs`` are the words, such as -s1, that begin an element."""
+    """The elements of one row. ``signs`` are the words with a sign, such as -s1, that begin one."""
 
     elements: tuple[SourceText, ...]
     signs: tuple[SourceText, ...]

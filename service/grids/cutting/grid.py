@@ -119,7 +119,7 @@ def tidy(cell: GridCell) -> GridCell:
 
 
 def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
-    """Return the rows without empty last columns; if all rows are equally long, also first ones."""
+    """Return the rows without empty last columns and, if equally long, without empty first ones."""
     while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
         widest = max(map(len, rows))
         rows = [row[:-1] if len(row) == widest else row for row in rows]

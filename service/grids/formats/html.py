@@ -162,7 +162,7 @@ def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, en
 
 
 def _text(source: SourceText, table: _Table, start: int) -> int:
-    """Process an entity, or the text before the next tag or entity; return the place after it."""
+    """Process an entity, or the text before the next tag or entity; return the place reached."""
     text = source.text
     if entity := _ENTITY.match(text, start):
         end = entity.end()

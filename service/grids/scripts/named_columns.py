@@ -246,7 +246,7 @@ def _by_index(
 ) -> RobotTable | None:
     """Return the table of parameters such as ``alpha0``; None unless they are a whole table.
 
-    If d or θ is missing in a row, it is the joint variable ``d1``, ``q1`` and so on.
+    If d or θ is missing in a row, the cell is the joint variable ``d1``, ``q1`` and so on.
     """
     cells = dict(zip(keys, (item.value for item in items), strict=True))
     numbers = {index for column, index in keys if column in ("d", "theta")}

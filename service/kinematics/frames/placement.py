@@ -155,7 +155,7 @@ def asked_frames(
 
 @dataclass(frozen=True, slots=True)
 class RightPlace:
-    """The correct places of a frame, given where the neighbouring axis was chosen.
+    """The correct places of a frame, for the chosen position of the neighbouring axis.
 
     ``origin`` is the correct origin nearest to the chosen origin. ``x`` is a correct x direction;
     its opposite is correct, too. If every direction perpendicular to z is correct, ``x`` is None.
