@@ -3,7 +3,7 @@
 A transform has a DH row only if two conditions hold (Spong, Hutchinson, Vidyasagar, *Robot Modeling
 and Control*, §3.2.1; *Direct Kinematics (Part 2)*, §2.3). Standard: DH1, x_1 is perpendicular to
 z_0; DH2, x_1 meets z_0. Modified: the same conditions for z_1 and x_0. The inverse of a modified
-link transform is a standard one with all four numbers negated, so both use the same formulas.
+link transform is a standard one with all four numbers negated, so one formula serves both.
 """
 
 import numpy as np

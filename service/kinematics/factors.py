@@ -32,7 +32,7 @@ CellIndex = tuple[int, int]
 class Factors:
     """The factors of a table, in the order of the product.
 
-    ``sizes`` ``(K, 2, L)`` are the SHIFT and the TURN of each factor, ``axes`` ``(K,)`` its axis.
+    ``sizes`` ``(K, 2, L)`` are the SHIFT and the TURN of each factor, ``axes`` ``(K,)`` the axes.
     """
 
     convention: Convention

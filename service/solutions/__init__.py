@@ -10,7 +10,7 @@ __all__ = ["LinkSolution", "ModelSolution", "PartAnswer", "Shown", "solve"]
 
 
 def solve(exercise: Exercise) -> ModelSolution:
-    """Return the model solution, always the same for an exercise. It takes about 50 ms."""
+    """Return the model solution, always the same for an exercise. Solving takes about 50 ms."""
     from service.solutions.solution import solved
 
     return solved(exercise)

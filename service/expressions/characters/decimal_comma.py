@@ -18,6 +18,6 @@ def with_points(text: str) -> str:
 
 
 def with_points_and_commas(text: str) -> str:
-    """Return a formula with decimal points, and with commas between arguments."""
+    """Return a formula with points for decimal commas, and with commas for semicolons."""
     text = with_points(text)
     return _BETWEEN_ARGUMENTS.sub(",", text) if ";" in text else text

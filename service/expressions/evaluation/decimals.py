@@ -72,7 +72,7 @@ def _name(i: int) -> str:
 
 
 def _sign(replaced: Node) -> int:
-    """Return the sign, 1 or -1, of a tree that is only one replaced decimal; else 0."""
+    """Return the sign, 1 or -1, of a tree that is only the symbol of a decimal; else 0."""
     match replaced:
         case SymbolNode(Symbol(name)) if name == _name(0):
             return 1

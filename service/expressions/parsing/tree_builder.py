@@ -123,7 +123,7 @@ class Builder:
         return Negation(operand, sign, operand.end)
 
     def keep(self, sign: int, operand: Node) -> Node:
-        """Return the operand for +operand; its span includes the sign."""
+        """Return the operand of +operand. The operand's span includes the sign."""
         operand.start = sign
         return operand
 

@@ -55,7 +55,10 @@ def _is_decimal(value: Node) -> bool:
 
 
 def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
-    """True for two angles. With ``is_whole``, also for an angle and a number unlike a factor."""
+    """True for two angles.
+
+    If ``is_whole``, also True for an angle and a number that is rarely a factor, such as 90.
+    """
     of_left, of_right = _parts(left), _parts(right)
     if 180.0 in {part.value for part in (*of_left, *of_right) if type(part) is Number}:
         return False

@@ -1,4 +1,4 @@
-"""Indices in brackets that do not name a symbol (q[6] with six joints), or in mixed styles."""
+"""Indices in brackets that name no symbol (q[6] with six joints) or have mixed styles."""
 
 import re
 

@@ -28,7 +28,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _raised_letter(failure: Failure) -> Span | None:
-    """Return the place of a raised o at the failure, with ^ and brackets, or None."""
+    """Return the place of a raised o at the failure, including ^ and brackets, or None."""
     if failure.written not in {"o", "O"}:
         return None
     start, end = failure.span

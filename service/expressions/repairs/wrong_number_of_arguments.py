@@ -44,7 +44,7 @@ def _counted(name: str, wanted: int, found: int) -> str:
 
 
 def _with_points(failure: Failure) -> str | None:
-    """Return the source with decimal points for all argument commas, or None if impossible."""
+    """Return the source with a point for each comma between arguments, or None if impossible."""
     places = failure.details["places"]
     source = failure.source
     for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):

@@ -57,7 +57,7 @@ def named_lengths(
 
 
 def _decimals(statement: str) -> dict[str, float]:
-    """Return the decimals that a text contains: their spelling, and their value."""
+    """Map the spelling of each decimal in a text to its value."""
     return {found: float(found) for found in re.findall(r"(?<![\w.])\d+\.\d+", statement)}
 
 

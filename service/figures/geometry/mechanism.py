@@ -302,7 +302,7 @@ class _Track:
         return bool((np.diff(at) > self._apart - _SAME).all() and to_tool > -_SAME)
 
     def placed(self) -> list[float]:
-        """Return each joint's place on the path, near the preferred one, clear of other joints."""
+        """Return each joint's place on the path, near the preferred place, clear of the others."""
         apart = self._apart
         low, high = self.first.copy(), self.last.copy()
         low[0] = max(low[0], min(JOINT_LENGTH / 2 * self.size, high[0]))

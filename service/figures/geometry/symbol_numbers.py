@@ -1,4 +1,4 @@
-"""The numbers for symbols that a figure is drawn with."""
+"""The numbers that a figure uses for symbols."""
 
 from collections.abc import Iterable
 

@@ -73,7 +73,7 @@ def _is_begun(frame: StudentFrame) -> bool:
 
 
 def _entries(frame: StudentFrame) -> Iterator[tuple[str, Entry]]:
-    """Yield the entries of a frame with their cells; a direction such as +y has no entries."""
+    """Yield the entries of a frame, each with its cell; a direction such as +y has no entries."""
     yield FRAME_CELLS[0], frame.axis.entry
     yield from (("z", entry) for entry in frame.z.entries)
     yield from zip(FRAME_CELLS[2:5], frame.origin, strict=True)

@@ -2,7 +2,7 @@
 
 The chain is X_0 Z_1 X_1 Z_2 …. Angles about the same axis, or about parallel axes, are added before
 their sine is taken, so an arm with parallel axes has the formulas of a textbook. Each entry is a
-sum of terms. Their number is bounded, and they are not simplified afterwards.
+sum of terms. The number of terms is bounded, and the terms are not simplified afterwards.
 """
 
 import re

@@ -28,7 +28,7 @@ class DrawingScope:
         return cls(exercise.joints, exercise.variables, exercise.vocabulary)
 
     def numbers(self, given: Mapping[str, float]) -> dict[str, float]:
-        """Return a number for each symbol: the given one, or a default for drawing."""
+        """Return a number for each symbol: the given number, or a default for drawing."""
         numbers = drawing_numbers(self.variables)
         return numbers | {name: given[name] for name in numbers.keys() & given.keys()}
 

@@ -12,7 +12,7 @@ _AXES = {"x": X, "y": Y, "z": Z}
 
 
 def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
-    """Return the entries in the exercise file, the product of its steps, or a robot's rotation."""
+    """Return the entries in the exercise file, the product of the steps, or a robot's rotation."""
     given = work.as_written(part) if part.steps is None else None
     return layout.matrix(given) if given else work.matrix(multiplied(_turns(part, work)).rotation)
 

@@ -22,7 +22,10 @@ class Brackets:
         self.opened: list[tuple[str, Span, int]] = []
 
     def open(self, bracket: str, span: Span, token: int) -> None:
-        """Push the bracket of the token at index ``token``. Raises UnreadableError if too deep."""
+        """Push the bracket of the token at index ``token``.
+
+        Raises UnreadableError if the bracket is nested too deep.
+        """
         if len(self.opened) >= LIMITS.depth:
             raise UnreadableError("beyond", span, limit="depth")
         self.opened.append((bracket, span, token))

@@ -84,7 +84,7 @@ class Lexer(WordLexer):
         return end
 
     def _run_from(self, position: int, text: str) -> int:
-        """Read tokens up to one that is longer than its match; return the end of this token."""
+        """Read tokens until one is longer than its regex match; return the end of this token."""
         tokens, in_place = self.tokens, self.starts is None
         # The last alternative takes any character, so no character is skipped.
         for found in _TOKEN.finditer(text, position):

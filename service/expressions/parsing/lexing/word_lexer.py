@@ -98,7 +98,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _after_module(self, at: int) -> int:
-        """Read ``radians`` or ``rad`` after ``np.`` as the function ``deg``; return its end."""
+        """Read the function ``radians`` or ``rad``, which takes degrees; return its end."""
         end = degrees_function_end(self.text, at)
         if end is None:
             return at

@@ -45,7 +45,7 @@ _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEG
 class Piece:
     """One part of a run, ``run[start:end]``.
 
-    ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` has
+    ``word`` is the canonical name of a function or unit, or the digits of a number. ``symbols`` has
     one symbol, or the joint angles that a shorthand adds. ``ambiguous`` is True for a shorthand
     with another reading, such as sin12, or s2 in s2θ1. ``joint`` is the wrong index of an invalid
     shorthand.
