@@ -61,7 +61,7 @@ def read_toml(
 ) -> Built:
     """Return the result of ``build`` on a text, as if it were the content of ``file``.
 
-    Raises CatalogueError like ``load_toml``.
+    Raises CatalogueError for the faults that ``build`` or the TOML reader finds.
     """
     # Normalize line ends as in a file that is opened in text mode.
     text = text.replace("\r\n", "\n")

@@ -109,7 +109,7 @@ class Vary:
     def values(self, seed: str) -> Mapping[str, VaryValue]:
         """Return the value of each name for a seed. The seed "" gives the exercise's own values.
 
-        Return the values of the exercise itself also if no draw of the seed meets the conditions.
+        If no draw of the seed meets the conditions, the result is the exercise's own values, too.
         """
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}

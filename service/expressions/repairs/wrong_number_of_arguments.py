@@ -22,7 +22,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _counted(name: str, wanted: int, found: int) -> str:
-    """Return the sentence on the number of arguments that a function takes and the number found."""
+    """Return the sentence that says how many arguments a function takes and how many it has."""
     if wanted == 1:
         return say(
             "The function {name} takes one value, and {found} values stand here.",

@@ -62,7 +62,7 @@ def path_of(reference: Reference, values: SymbolValues, samples: int) -> ChainPa
 
 
 def table_path(table: ReferenceTable, values: SymbolValues, samples: int) -> ChainPath:
-    """Return the path of a table. All pieces of a fixed row count as across."""
+    """Return the path of a table. Pieces of a fixed row do not count as along a joint axis."""
     return path_of_rows(table.values(values, samples), table.convention, len(table.joints))
 
 

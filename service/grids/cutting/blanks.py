@@ -27,7 +27,7 @@ _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
 @dataclass(frozen=True, slots=True)
 class BlankSeparated:
-    """The elements of one row. ``signs`` are the words with a sign, such as -s1, that begin one."""
+    """The elements of a row. ``signs`` are the words with a sign (-s1) that begin an element."""
 
     elements: tuple[SourceText, ...]
     signs: tuple[SourceText, ...]

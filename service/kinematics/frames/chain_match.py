@@ -112,10 +112,10 @@ def match_tables(
 ) -> tuple[NDArray[np.bool_], Matrices]:
     """Test which of many tables are valid as written, without any search.
 
-    ``written`` is ``(tables, rows, 4, L)``, ``joint_signs`` ``(tables, rows)`` as in RowConstants,
-    0 where the direction is free. ``start`` ``(L, 4, 4)``, or one for each table, is the relative
-    pose of frame 0, None for the identity. Return a mask ``(tables,)`` and the relative poses at
-    the targets, ``(rows, tables, L, 4, 4)``. A table with NaN is invalid.
+    ``written`` is ``(tables, rows, 4, L)``. ``joint_signs`` ``(tables, rows)`` are +1 or −1, or 0
+    where the sign is unknown or the direction is free. ``start`` ``(L, 4, 4)``, or one for each
+    table, is the relative pose of frame 0, None for the identity. Return a mask ``(tables,)`` and
+    the relative poses at the targets, ``(rows, tables, L, 4, 4)``. A table with NaN is invalid.
     """
     count = written.shape[-1]
     links = standard_link(*np.moveaxis(written, 2, 0))
