@@ -15,6 +15,7 @@ from service.kinematics.transforms import Matrices
 from service.translations import Sentence, paragraph, say
 
 OWN_FRAME_CHOICE: Final = "own_frame_choice"
+_IDENTITY: Final = np.eye(4)
 
 
 def remarks_on(
@@ -30,9 +31,9 @@ def remarks_on(
     the rows before and after it are correct. Neighbouring frames that differ count as one choice.
     There are no findings on a choice that a wrong row implies.
     """
-    error = np.abs(relative_poses - np.eye(4)).max(axis=1)
-    error[:, :3, 3] /= exercise.length_scale
-    departs = error.max(axis=(1, 2)) > SAME_POSE
+    error = np.abs(relative_poses - _IDENTITY)
+    error[..., :3, 3] /= exercise.length_scale
+    departs = error.reshape(len(error), -1).max(axis=1) > SAME_POSE
     if rows_right is not None:
         departs = _chosen(departs, rows_right)
     findings = []

@@ -63,15 +63,20 @@ def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
 
 
 def joint_variables(joints: Sequence[Joint | None], samples: Samples) -> Table:
-    """Return the joint variable, or 0, of each cell in the rows of ``joints``.
+    """Return the joint variable, or 0, of each cell in the rows of ``joints``. Do not modify it.
 
     A fixed row has the joint None.
     """
-    variables = np.zeros((len(joints), len(COLUMNS), samples.count))
-    for row, joint in zip(variables, joints, strict=True):
-        if joint is not None:
-            row[variable_column(joint)] = samples.values[joint.variable]
-    return variables
+
+    def compute() -> Table:
+        variables = np.zeros((len(joints), len(COLUMNS), samples.count))
+        for row, joint in zip(variables, joints, strict=True):
+            if joint is not None:
+                row[variable_column(joint)] = samples.values[joint.variable]
+        return variables
+
+    names = tuple(joint and joint.variable for joint in joints)
+    return samples.cached(("variables", names), compute)
 
 
 def roles_of(
