@@ -106,14 +106,18 @@ STANDS_STILL = Finding(
 )
 
 
-def follows_from(earlier: PartSpec) -> Finding:
-    """Return the message that the points were earned by following from an earlier answer."""
-    return Finding(
-        "follow_through",
-        say(
-            "This earns its points, for it follows from your answer to {part}. That answer is "
-            "wrong: check it first.",
-            part=repr(earlier.title),
-        ),
-        severity=Severity.INFO,
+def follows_from(earlier: PartSpec, *, is_right: bool) -> Finding:
+    """Return the message that the points were earned by following from an earlier answer.
+
+    The earlier answer ``is_right`` if it differs from the reference only by its choice of frames.
+    """
+    hint = say(
+        "This earns its points, for it follows from your answer to {part}. That answer is "
+        "wrong: check it first.",
+        part=repr(earlier.title),
     )
+    if is_right:
+        hint = say(
+            "This is right with the frames that you chose in {part}.", part=repr(earlier.title)
+        )
+    return Finding("follow_through", hint, severity=Severity.INFO)

@@ -180,7 +180,8 @@ def _graded(
         by_student = kind.judge(part, read, replace(grading, following=True))
         following = part_report(part, by_student)
         if following.points > report.points:
-            messages = grading.messages((follows_from(followed.part),))
+            is_right = followed.report.verdict is Verdict.CORRECT
+            messages = grading.messages((follows_from(followed.part, is_right=is_right),))
             report = replace(
                 following, follow_through=True, feedback=(*messages, *following.feedback)
             )

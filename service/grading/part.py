@@ -30,14 +30,19 @@ class StudentChain:
     """An answer as a chain of links, which a later part may follow from.
 
     ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are the frames of the chain in the base frame, from the
-    base to the tool. ``tool_at`` returns the tool's frame at other samples, NaN where the frame is
+    base to the tool. ``frames_at`` returns the frames at other samples, NaN where a frame is
     undefined. ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the valid table
     nearest to the answer, or None if the answer consists of matrices.
     """
 
     frames: Matrices
-    tool_at: Callable[[Samples], Matrices]
+    frames_at: Callable[[Samples], Matrices]
     nearest_links: Matrices | None = None
+
+    def tool_at(self, samples: Samples) -> Matrices:
+        """Return the tool's frame at other samples, ``(samples, 4, 4)``."""
+        tool: Matrices = self.frames_at(samples)[-1]
+        return tool
 
     @property
     def links(self) -> Matrices:

@@ -9,6 +9,7 @@ import pytest
 import sympy
 
 from service.catalogue import Exercise
+from service.grading import Verdict
 from tests.grading.support.scara import (
     A1,
     A3,
@@ -150,3 +151,141 @@ def test_no_part_follows_from_links_that_only_slide(scara: Exercise) -> None:
     assert not any(part.follow_through for part in parts.values())
     assert parts["pose"].points <= 2
     assert parts["position"].points == 0
+
+
+# An elbow whose joints have the numbers 4 and 5, with the home pose and the pose of frame {4}.
+ELBOW = """
+title = "t"
+source = "s"
+statement = "s"
+[robot]
+structure = "RR"
+convention = "standard"
+joints = ["theta4", "theta5"]
+table = [["L1", "90deg", "h", "theta4"], ["L2", "0", "0", "theta5"]]
+[symbols]
+L1 = { kind = "length", range = [0.3, 0.9], description = "l" }
+L2 = { kind = "length", range = [0.3, 0.9], description = "l" }
+h = { kind = "length", range = [0.3, 0.9], description = "l" }
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "t"
+points = 6
+convention = "standard"
+frames = "free"
+[[parts]]
+id = "home"
+kind = "transform"
+title = "t"
+points = 4
+home = true
+follows = "table"
+[[parts]]
+id = "inner"
+kind = "transform"
+title = "t"
+points = 4
+to = 4
+follows = "table"
+[[parts]]
+id = "home-position"
+kind = "position"
+title = "t"
+points = 3
+home = true
+follows = "table"
+"""
+
+
+def test_a_home_pose_and_an_inner_frame_follow(make_exercise: Callable[[str], Exercise]) -> None:
+    elbow = make_exercise(ELBOW)
+    # Both lengths are wrong. At home, both links lie along x0, and z2 points along −y0.
+    wrong = table([("L2", "90deg", "h", "theta4"), ("L1", "0", "0", "theta5")])
+    home = [["1", "0", "0", "L1 + L2"], ["0", "0", "-1", "0"], ["0", "1", "0", "2*h"], [*"0001"]]
+    inner = [
+        ["c4", "0", "s4", "L2*c4"],
+        ["s4", "0", "-c4", "L2*s4"],
+        ["0", "1", "0", "h"],
+        [*"0001"],
+    ]
+    assert not graded(elbow, table=wrong, home=home)["home"].follow_through
+    home[2][3] = "h"
+    parts = graded(elbow, table=wrong, home=home, inner=inner)
+    assert parts["home"].verdict is Verdict.CORRECT
+    assert (parts["inner"].points, parts["inner"].follow_through) == (4, True)
+    doubled = table([("L1", "90deg", "2*h", "theta4"), ("L2", "0", "0", "theta5")])
+    home[2][3] = "2*h"
+    position = ["L1 + L2", "0", "2*h"]
+    parts = graded(elbow, table=doubled, home=home, **{"home-position": position})
+    for name in ("home", "home-position"):
+        assert parts[name].points == parts[name].max_points, name
+        assert parts[name].follow_through, name
+
+
+def test_no_message_on_a_home_position_asks_for_joints(
+    make_exercise: Callable[[str], Exercise],
+) -> None:
+    parts = graded(make_exercise(ELBOW), **{"home-position": ["L1", "0", "0"]})
+    cells = [cell for row in parts["home-position"].rows for cell in row.cells]
+    told = [message.message for cell in cells for message in cell.feedback]
+    assert len(told) == 2
+    assert not any("joint" in text or "depends" in text for text in told)
+
+
+# A generated arm that is near a lost freedom if d of joint 3 is halved: its smallest singular value
+# is about 1 % of the largest one.
+NEARLY_LOST = """
+title = "t"
+source = "s"
+statement = "s"
+[robot]
+structure = "PRRRR"
+convention = "modified"
+joints = ["d1", "theta2", "theta3", "theta4", "theta5"]
+table = [
+    ["0", "0", "d1", "0"], ["1.1", "0", "0.25", "theta2"], ["0", "90deg", "0.25", "theta3"],
+    ["0", "30deg", "-0.15", "theta4"], ["0", "-90deg", "0.62", "theta5"],
+    ["-0.15", "30deg", "0.62", "0"],
+]
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "t"
+points = 18
+convention = "modified"
+frames = "free"
+[[parts]]
+id = "links"
+kind = "link_transforms"
+title = "t"
+points = 6
+convention = "modified"
+follows = "table"
+"""
+
+
+def modified_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
+    """Return the link transform of a row, from the textbook (Craig, eq. 3.6)."""
+    c, s, ca, sa = f"cos({theta})", f"sin({theta})", f"cos({alpha})", f"sin({alpha})"
+    return [
+        [c, f"-{s}", "0", a],
+        [f"{s}*{ca}", f"{c}*{ca}", f"-{sa}", f"-{sa}*({d})"],
+        [f"{s}*{sa}", f"{c}*{sa}", ca, f"{ca}*({d})"],
+        [*"0001"],
+    ]
+
+
+def test_blanks_do_not_decide_if_a_part_follows(make_exercise: Callable[[str], Exercise]) -> None:
+    """Blanks draw other samples, and some samples are nearer to a lost freedom."""
+    exercise = make_exercise(NEARLY_LOST)
+    rows = [
+        ("0", "0", "d1", "0"), ("1.1", "0", "0.25", "theta2"), ("0", "90deg", "0.125", "theta3"),
+        ("0", "30deg", "-0.15", "theta4"), ("0", "-90deg", "0.62", "theta5"),
+        ("-0.15", "30deg", "0.62", "0"),
+    ]  # fmt: skip
+    links = [modified_link(*row) for row in rows]
+    for blanks in range(12):
+        spaced = [("0" + " " * blanks, *rows[0][1:]), *rows[1:]]
+        parts = graded(exercise, table=table(spaced), links=links)
+        assert parts["links"].follow_through, blanks

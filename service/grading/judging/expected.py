@@ -47,17 +47,27 @@ def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matr
 def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
     """Return the expected pose ``(SAMPLES, 4, 4)``, from the student's chain or from the robot.
 
-    The student's chain is used if the part is judged by the student's earlier answer, if the chain
-    has both frames that the part asks for, and if the part does not ask for the home pose.
+    The student's chain is used if the part is judged by the student's earlier answer, and if the
+    chain has both frames that the part asks for.
     """
-    chain = grading.student_chain
-    if chain is None or not grading.following or part.home:
-        return robot_pose(part, grading.exercise, grading.samples)
-    places = {"base": 0, "tool": len(chain.frames) - 1}
-    start, to = (places.get(str(frame), frame) for frame in (part.start, part.to))
-    if not (isinstance(start, int) and isinstance(to, int) and max(start, to) < len(chain.frames)):
-        return robot_pose(part, grading.exercise, grading.samples)
-    return np.asarray(inverse(chain.frames[start]) @ chain.frames[to])
+    chain, exercise, samples = grading.student_chain, grading.exercise, grading.samples
+    if chain is None or not grading.following:
+        return robot_pose(part, exercise, samples)
+    tool = len(chain.frames) - 1
+
+    def place(frame: int | str) -> int:
+        """Return the number of links from the base to the frame."""
+        if isinstance(frame, str):
+            return {"base": 0, "tool": tool}[frame]
+        return frame - exercise.joints[0].index + 1
+
+    start, to = place(part.start), place(part.to)
+    if max(start, to) > tool:
+        return robot_pose(part, exercise, samples)
+    frames = chain.frames
+    if part.home:
+        frames = chain.frames_at(Samples(at_home(exercise.joints, samples.values, SAMPLES)))
+    return np.asarray(inverse(frames[start]) @ frames[to])
 
 
 def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:

@@ -188,13 +188,12 @@ def _chain(
     if np.isnan(answer.values).any():
         return None
 
-    def tool_at(samples: Samples) -> Matrices:
-        table = np.array([row.values_at(samples) for row in answer.rows])
-        return np.asarray(frames(table, convention)[-1])
+    def frames_at(samples: Samples) -> Matrices:
+        return frames(np.array([row.values_at(samples) for row in answer.rows]), convention)
 
     return StudentChain(
         frames(answer.values, convention),
-        tool_at,
+        frames_at,
         nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
     )
 

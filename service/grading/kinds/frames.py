@@ -272,10 +272,10 @@ def _chain(part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading) -
     """Return correct frames as a chain."""
     table = _table_at(part, answer, grading, grading.samples)
 
-    def tool_at(samples: Samples) -> Matrices:
-        return np.asarray(frames(_table_at(part, answer, grading, samples), part.convention)[-1])
+    def frames_at(samples: Samples) -> Matrices:
+        return frames(_table_at(part, answer, grading, samples), part.convention)
 
-    return StudentChain(frames(table, part.convention), tool_at, links(table, part.convention))
+    return StudentChain(frames(table, part.convention), frames_at, links(table, part.convention))
 
 
 def _table_told(

@@ -44,11 +44,10 @@ class StudentLinks:
         """Return the product of the links; None unless all entries have a value."""
         if np.isnan(self.values).any():
             return None
-        return StudentChain(products(self.values), self._tool_at)
+        return StudentChain(products(self.values), self._frames_at)
 
-    def _tool_at(self, samples: Samples) -> Matrices:
-        values = [matrix.values_at(samples) for matrix in self.matrices]
-        return np.asarray(products(_links_of(values))[-1])
+    def _frames_at(self, samples: Samples) -> Matrices:
+        return products(_links_of([matrix.values_at(samples) for matrix in self.matrices]))
 
 
 def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentLinks:

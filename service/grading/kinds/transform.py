@@ -67,7 +67,7 @@ def _chain(answer: StudentMatrix) -> StudentChain | None:
     if np.isnan(answer.values).any():
         return None
 
-    def tool_at(samples: Samples) -> Matrices:
-        return np.moveaxis(answer.values_at(samples), -1, 0)
+    def frames_at(samples: Samples) -> Matrices:
+        return products(np.moveaxis(answer.values_at(samples), -1, 0)[None])
 
-    return StudentChain(products(np.moveaxis(answer.values, -1, 0)[None]), tool_at)
+    return StudentChain(products(np.moveaxis(answer.values, -1, 0)[None]), frames_at)

@@ -68,5 +68,6 @@ LINK_TRANSFORM: Final = 1e-6
 # of its frames from rigid ones, and between the axes of one joint at two joint values.
 NOT_RIGID: Final = 5e-3
 SAME_AXIS: Final = 2e-2
-# The singular value that counts as 0 for such an arm, relative to the largest one.
-NO_MOTION: Final = 1e-2
+# The singular value that counts as 0 for such an arm, relative to the largest one. Real arms have
+# singular values of 1 %: a larger limit would refuse them at some samples and not at others.
+NO_MOTION: Final = 1e-3

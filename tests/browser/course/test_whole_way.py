@@ -143,3 +143,5 @@ def test_the_whole_way(visit: Callable[..., Visit], tmp_path: Path) -> None:
             page.locator(".assignment").get_by_role("link").click()
             page.locator(".handed-in li").get_by_role("link").click()
             expect(page.locator(".recorded td[data-verdict=correct]")).to_have_count(16)
+            # The page may still load a style sheet, which would fail when the server has ended.
+            page.close()

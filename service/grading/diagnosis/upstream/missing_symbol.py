@@ -57,15 +57,16 @@ class Requirements:
         """Return the required symbols of one entry, or None if they are unknown."""
         if not self.answers.by_symbols:
             return None
-        names = self.samples.values.keys()
         depends, grows = self._dependences
+        symbols = {name for k, name in enumerate(self.samples.values) if depends[(k, *place)]}
+        joints = tuple(joint.variable for joint in self.exercise.joints)
         alike = [k for k in (0, 1) if grows[(k, *place)]]
         return Required(
-            frozenset(name for k, name in enumerate(names) if depends[(k, *place)]),
+            frozenset(symbols.difference(joints) if self.answers.at_home else symbols),
             # Zero passes both tests, so it is not known to be a length or a number.
             alike[0] if len(alike) == 1 else None,
             self._lengths,
-            tuple(joint.variable for joint in self.exercise.joints),
+            joints,
         )
 
     @cached_property

@@ -1,7 +1,7 @@
 """The answers that slips lead to, computed from a changed table or changed symbols."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,18 +31,18 @@ class SlippedAnswers:
     """The wrong answers that ``slips`` lead to.
 
     ``at`` returns the answers ``(K, ..., samples)`` that K changes lead to. ``by_symbols`` is True
-    if every symbol can be changed, False if only joint variables can be changed.
+    if every symbol can be changed, False if only joint variables can be changed. ``at_home`` is
+    True if all joint variables are 0 in the answers.
     """
 
     slips: tuple[Slip, ...]
     at: AnswersAt
     by_symbols: bool = True
+    at_home: bool = False
 
     def of(self, entries: Callable[[Numbers], Numbers]) -> "SlippedAnswers":
         """Return these answers reduced to some entries, for example poses to positions."""
-        return SlippedAnswers(
-            self.slips, lambda changes, samples: entries(self.at(changes, samples))
-        )
+        return replace(self, at=lambda changes, samples: entries(self.at(changes, samples)))
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
@@ -83,7 +83,7 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
     constants = table.values(at_home(robot.joints, few.values, few.count), few.count)
     axis, whole = axis_direction(exercise, few), (start, to) == (0, last)
     slips = table_slips(table, constants, axis, home=part.home, whole=whole)
-    return SlippedAnswers(tuple(slips), at)
+    return SlippedAnswers(tuple(slips), at, at_home=part.home)
 
 
 def slipped_tables(
@@ -118,7 +118,8 @@ def _of_screws(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slip
         start, to = (robot.frame(name, values, count) for name in (part.start, part.to))
         return as_entries(inverse(start) @ to)
 
-    return SlippedAnswers(_general_slips(exercise, samples), _stacked(pose))
+    slips = _general_slips(exercise, samples)
+    return SlippedAnswers(slips, _stacked(pose), at_home=part.home)
 
 
 def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
