@@ -120,7 +120,10 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 @pytest.fixture(scope="session")
 def given_frames(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
-    """The shipped exercises with only table and pose, and given frames: one table is correct."""
+    """The shipped exercises, reduced to their table and their pose.
+
+    All frames are given, so exactly one table is correct.
+    """
     given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
     return {
         name: replace(

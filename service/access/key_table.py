@@ -77,7 +77,11 @@ def link_keys(connection: Connection, course: str) -> list[Key]:
 def keys_at(
     connection: Connection, places: Collection[tuple[str, str]]
 ) -> dict[tuple[str, str], Key]:
-    """Return the keys at these places. A place is a column (``id``, ``digest``) and a value."""
+    """Return the keys with these ids or digests.
+
+    Each of ``places`` is a column (``id`` or ``digest``) and a value in this column. The result
+    maps such pairs to their keys; pairs without a key are left out.
+    """
     columns: dict[str, list[str]] = {column: [] for column, _ in places}
     for column, value in places:
         columns[column].append(value)

@@ -30,8 +30,8 @@ def value_formula(
 ) -> Correction | None:
     """Return ``values`` ``(SAMPLES,)`` as the sum of a constant and multiples of letters.
 
-    Table cells have this form: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Return None if the values
-    have another form.
+    Table cells are such sums: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Return None if the values
+    are not such a sum.
     """
     (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
     return sum_formula(values, counts, angle, exercise, samples, spelling)
@@ -45,9 +45,10 @@ def sum_formula(
     samples: Samples,
     spelling: Spelling,
 ) -> Correction | None:
-    """Return ``values`` as a formula with ``counts``, the known multiples of joint variables.
+    """Return ``values`` as a formula: the sum of a constant and multiples of letters.
 
-    Return None if ``counts`` is None, or if the values have another form (see ``value_formula``).
+    ``counts`` has the multiple of each joint variable in this sum. Return None if ``counts`` is
+    None, or if the values are not such a sum.
     """
     if counts is None:
         return None

@@ -111,9 +111,10 @@ def register(
     name: str = "",
     **known: Any,
 ) -> Record:
-    """Add a record; ``code`` may be several codes, and ``known`` are other fields of Record.
+    """Add a record to the list of all records, and return it.
 
-    A record without a function documents a code that other functions give to a finding.
+    ``code`` may be several codes. ``known`` has values for other fields of Record. Without a
+    ``function``, the record only documents a code; other functions make findings with this code.
     """
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)
@@ -125,7 +126,7 @@ def register(
 def misconception(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Decorate a function that yields hypotheses; the arguments are those of Record."""
+    """Decorate a function that yields hypotheses; the arguments are the fields of its Record."""
     add = partial(register, of=of, rank=rank, code=code, **known)
 
     def registered(function: AnyFunction) -> AnyFunction:
@@ -139,7 +140,7 @@ def misconception(
 def check(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Decorate a function that returns a finding or None; the arguments are those of Record."""
+    """Decorate a function that returns a finding or None, with the fields of its Record."""
     return misconception(of=of, rank=rank, code=code, is_check=True, **known)
 
 

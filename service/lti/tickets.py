@@ -30,7 +30,7 @@ class FormTicket(BaseModel):
 
 
 class LtiTicket(FormTicket):
-    """The ticket of a tutor's page about a course and one of the course's resource links.
+    """The ticket in a tutor's page, which shows a course and one of its resource links.
 
     ``learner`` is the learner whose attempts the tutor wants to see, or "".
     """
@@ -42,7 +42,7 @@ class LtiTicket(FormTicket):
 
 
 class LinkingTicket(FormTicket):
-    """The request of the platform in a message of deep linking.
+    """The ticket of a deep-linking page: it contains what the platform has asked for.
 
     ``course`` is "" until somebody launches the course. ``data`` is sent back unchanged.
     ``notices_url`` is "" unless the exercises are for files that students hand in at the platform.

@@ -1,6 +1,7 @@
 """An answer that equals the expected one is always right, and any other answer is always wrong.
 
-Each test tries some hundred answers; a harmless change in another cell draws new samples each time.
+Each test grades an answer many times. Each time, another cell is written differently with the same
+value, so that the grading draws new samples.
 """
 
 from collections.abc import Callable, Mapping

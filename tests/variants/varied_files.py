@@ -39,7 +39,10 @@ frames = "free"
 
 
 def varied_text(vary: str = VARY, more: str = "") -> str:
-    """Return an exercise file with this table ``[vary]``; ``more`` is added to a table cell."""
+    """Return the text of an exercise file.
+
+    ``vary`` is its section ``[vary]``; ``more`` is written before the α of the second DH row.
+    """
     return _FILE.format(vary=vary, more=more)
 
 

@@ -1,4 +1,7 @@
-"""The costliest known bodies cost roughly no more than promised, and the search runs."""
+"""The costliest known request bodies take roughly no more time than promised.
+
+The search for costly request bodies works.
+"""
 
 import random
 from collections.abc import Callable, Iterator

@@ -1,4 +1,7 @@
-"""Find the exercise and the parts that a request names, or list the known names in a problem."""
+"""Find the exercises and the parts that a request names.
+
+An unknown name raises ProblemError; the response suggests the nearest known name, if there is one.
+"""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace

@@ -50,7 +50,7 @@ def vocabulary_of(names: Sequence[str]) -> Vocabulary:
 
 
 def read_formula(field: str, text: str, vocabulary: Vocabulary) -> Expression:
-    """Read a formula whose names are varied numbers. Raises FieldError."""
+    """Read a formula in which every symbol is the name of a varied number. Raises FieldError."""
     try:
         return read(text, vocabulary)
     except ExpressionError as error:

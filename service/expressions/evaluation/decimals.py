@@ -72,7 +72,10 @@ def _name(i: int) -> str:
 
 
 def _sign(replaced: Node) -> int:
-    """Return the sign, 1 or -1, of a tree that is only the symbol of a decimal; else 0."""
+    """Return 1 for a tree that is a single decimal, -1 for a decimal with a minus sign, else 0.
+
+    In ``replaced``, a symbol stands in for each decimal.
+    """
     match replaced:
         case SymbolNode(Symbol(name)) if name == _name(0):
             return 1

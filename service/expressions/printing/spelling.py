@@ -133,10 +133,10 @@ def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
 
 
 def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
-    """Return the common spelling of formulas: the most frequent unit, and the first names.
+    """Return one spelling for several formulas.
 
-    ``degrees`` is True if the student works in degrees. If no formula shows a unit, ``degrees``
-    decides.
+    It has the most frequent unit of angles and, for each symbol, the name that is used first.
+    ``degrees`` is True if the student works in degrees; it decides the unit if no formula has one.
     """
     names: dict[str, str] = {}
     angles: Counter[str] = Counter()

@@ -124,7 +124,11 @@ def _moved(body: Matrices, points: Numbers) -> Numbers:
 
 
 def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableMechanism:
-    """Return the mechanism for these numbers of all symbols; joints are placed for this pose."""
+    """Return the mechanism that can be moved.
+
+    ``numbers`` has the value of every symbol: each length and each joint variable. With these joint
+    values, no drawn joint should hide another joint.
+    """
     values: SymbolValues = as_samples(numbers, 1)
     path = path_of(reference, values, 1)
     bodies = motions(reference, values, 1)[:, 0]

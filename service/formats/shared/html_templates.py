@@ -160,19 +160,19 @@ def _telling(shown: Callable[..., str], language: Language) -> Callable[..., str
 
 
 def _text(language: Language, text: str, /, **values: object) -> Markup:
-    """Return a text of a template in the language, escaped, with its values."""
+    """Translate a text of a template, escape it, and fill in ``values``."""
     return _filled(escape(_translated(language, text)), language, values)
 
 
 def _markup(language: Language, text: str, /, **values: object) -> Markup:
-    """Return HTML of a template in the language, with its values."""
+    """Translate HTML of a template, and fill in ``values``."""
     return _filled(_translated(language, text), language, values)
 
 
 def _counted_markup(
     language: Language, one: str, many: str, count: int, /, **values: object
 ) -> Markup:
-    """Return HTML of a template in the language's plural form for ``count``, with its values."""
+    """Translate HTML of a template, in the plural form for ``count``; fill in ``values``."""
     translation = language.translation
     if translation is None:
         chosen = one if count == 1 else many

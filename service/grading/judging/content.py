@@ -1,8 +1,9 @@
-"""The content of a correct answer: the cells that need knowledge and therefore earn points.
+"""Find the content cells of a correct answer: the cells that earn points.
 
 Most cells of a DH table are 0, and every row has its joint variable in the usual place. An answer
-with nothing else is called lazy; it needs no geometry. So the content cells are those cells of the
-correct answer that differ from the lazy answer.
+with nothing else is called lazy; it needs no knowledge of geometry. The content cells are those
+cells of the correct answer that differ from the lazy answer. In these functions, ``known`` is a
+mask of these cells.
 """
 
 from collections.abc import Sequence
@@ -39,11 +40,10 @@ def of_rows(
     most: int | None = None,
     usual: tuple[int, int] | None = None,
 ) -> Content:
-    """Return the content of a table or of screws.
+    """Return the content cells of a table or of screw axes: ``known`` ``(rows, cells)``.
 
-    Each row is also worth something besides its cells.
-
-    ``known`` is ``(rows, cells)``.
+    Each row is also worth something besides its content cells. ``Content`` explains ``most`` and
+    ``usual``.
     """
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
@@ -51,21 +51,26 @@ def of_rows(
 
 
 def of_one_row(known: KnownCells) -> Content:
-    """Return the content of a single row ``(cells,)``."""
+    """Return the content cells of a single row: ``known`` ``(cells,)``, or all cells if none."""
     return Content(_rows(_all_if_none(known)[None]), ((0,) * len(known),))
 
 
 def of_list(known: KnownCells, reference: KnownCells | None = None) -> Content:
-    """Return the content of a list of single values ``(values,)``."""
+    """Return the content cells of a list of single values: ``known`` ``(values,)``.
+
+    If no value is known, all values are content cells. At most as many of them count as
+    ``reference`` marks.
+    """
     return Content(
         _rows(_all_if_none(known)[:, None]), ((0,),) * len(known), most=_count(reference)
     )
 
 
 def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
-    """Return the content of a rotation ``(3, 3, samples)`` or a transform ``(4, 4, samples)``.
+    """Return the content cells of a rotation ``(3, 3, samples)`` or transform ``(4, 4, samples)``.
 
-    If rotation and position both differ from the identity, each is worth one half.
+    The content cells are the entries that differ from the identity. If there are such entries
+    both in the rotation and in the position, each of the two is worth one half.
     """
     exercise = grading.exercise
     if grading.following:
@@ -97,9 +102,9 @@ def _of_rigid(right: Numbers, length_scale: float) -> Content:
 
 
 def of_matrix(right: Numbers, scale: Numbers) -> Content:
-    """Return the content of a matrix with any meaning, ``(rows, columns, samples)``.
+    """Return the content cells of any other matrix ``(rows, columns, samples)``.
 
-    The zero matrix and the identity are both lazy answers.
+    The zero matrix and the identity are both lazy answers, so a content cell differs from both.
     """
     known = known_cells(right, 0.0, scale)
     if known.shape[0] == known.shape[1]:
@@ -110,10 +115,10 @@ def of_matrix(right: Numbers, scale: Numbers) -> Content:
 def of_links(
     right: Matrices, reference: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
 ) -> Content:
-    """Return the content of link transforms ``(links, samples, 4, 4)``, with four rows each.
+    """Return the content cells of link transforms ``(links, samples, 4, 4)``, with four rows each.
 
     The lazy link transform of a joint contains only the joint's motion. ``reference`` are the link
-    transforms that the reference gives.
+    transforms of the reference: at most as many cells count as these have content cells.
     """
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)

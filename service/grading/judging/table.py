@@ -72,8 +72,9 @@ class Judgement:
     ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures`` is
     the cost of these frames, infinite if the intended frames are unknown. ``extra`` are the rows
     without a counterpart. ``in_place`` is true if each row was compared with the reference's row of
-    the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost`` are the
-    units that the wrong cells lose, in the frames in which they lose the fewest.
+    the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost`` is the
+    number of units that the wrong cells lose, in the frames in which they lose the fewest; a single
+    wrong cell loses one unit.
     """
 
     rows: tuple[JudgedRow, ...]
@@ -219,7 +220,7 @@ def _judged_as_read(
     convention: Convention,
     grading: Grading,
 ) -> Judgement:
-    """Judge a table with unread cells.
+    """Judge a table with unread cells: cells that are empty or could not be read.
 
     If some values in the unread cells make the table valid, no other cell is wrong. There are no
     remarks on the frames, which are unknown.
@@ -264,7 +265,7 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the table by the ``intended`` table ``(rows, 4, SAMPLES)``; all roles have rows."""
+    """Judge the table by the ``intended`` table ``(rows, 4, SAMPLES)``; no row is missing."""
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
     judgement = _judged_by(nearest, roles, convention, grading)
@@ -275,7 +276,7 @@ def judged_by_intended(
 def _judged_by(
     nearest: NearestTable, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the rows, which have these ``roles``, by the nearest valid table."""
+    """Judge the rows by the nearest valid table; ``roles`` has each row with its joint."""
     right = nearest.cost < WRONG_CELL
     shared = [False] * len(nearest.roles)
     if not right:

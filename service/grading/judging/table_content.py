@@ -31,7 +31,7 @@ from service.kinematics.dh import Convention
 def table_content(
     part: DhTableSpec, judgement: Judgement, convention: Convention, grading: Grading
 ) -> Content:
-    """Return the cells that differ from a lazy table of zeros and bare joint variables."""
+    """Return the content cells: those that differ from zeros and bare joint variables."""
     exercise = grading.exercise
     task = _Task(exercise.version, part.id, convention, part, exercise)
     # Unreadable cells alone do not increase the cost of a unit.
@@ -73,7 +73,7 @@ class _Task:
 
 @lru_cache(maxsize=256)
 def _of_reference(task: _Task) -> Content:
-    """Return the content of the reference's table."""
+    """Return the content cells of the reference's table."""
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)

@@ -27,7 +27,10 @@ from service.kinematics.dh import Convention
 
 
 def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
-    """Return the table with the lazy entry in each cell without a value."""
+    """Return the table with a lazy entry in each cell without a value.
+
+    The lazy entry is the joint variable if it belongs in the cell, else 0.
+    """
     roles = roles_in(answer.rows, convention, grading, in_order=True)
     lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
     return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)

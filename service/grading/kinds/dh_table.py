@@ -160,10 +160,10 @@ def _of_the_whole(
     convention: Convention,
     grading: Grading,
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
-    """Explain a wrong table as a whole, or find the motion that its arm cannot make.
+    """Explain a wrong table as a whole, or else find a motion that the student's arm cannot make.
 
-    Return the judgement, the findings that explain the table, and the findings on the lost motion.
-    The judgement fits the explanation.
+    Return the judgement, the findings that explain the table, and the findings on the motion. If
+    the table is explained, the judgement is revised to fit the explanation.
     """
     if not judgement.wrong:
         return judgement, (), ()

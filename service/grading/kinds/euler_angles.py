@@ -83,7 +83,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
 
 
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
-    """Return the content: the angles that are not 0.
+    """Return the content cells: the angles that are not 0.
 
     The number of angles that count is at most that of the simplest triple of the rotation.
     """

@@ -107,7 +107,7 @@ class _Asked:
 
 @lru_cache(maxsize=256)
 def _content(asked: _Asked) -> Content:
-    """Return the content of the frames. An empty cell costs as much as a wrong one."""
+    """Return the content cells of the frames. An empty cell costs as much as a wrong one."""
     return of_rows(known_frames(asked.robot, asked.home))
 
 

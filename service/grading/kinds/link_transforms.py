@@ -125,14 +125,18 @@ def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
 def _by_other_links(
     links: Matrices, part: LinkTransformsSpec, grading: Grading, case: MatrixCase
 ) -> list[Explanation]:
-    """Return explanations of the last of ``links`` by the earlier links."""
+    """Return the slips that explain why the student's last link transform is wrong.
+
+    Such a slip is an angle or a factor of the earlier ``links``. ``links`` are the correct
+    transforms up to the wrong one.
+    """
     joints, count = grading.exercise.robot.joints, case.actual.shape[-1] // 2
     link = LinkAmongOthers.of(links, joints, grading.samples, part.convention, count)
     return explain_link(link, case)
 
 
 def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:
-    """Return the content: the entries that differ from the joint's motion alone."""
+    """Return the content cells: the entries that differ from the joint's motion alone."""
     exercise, samples = grading.exercise, grading.samples
     table = exercise.robot.tables[part.convention]
     reference = links(table.values(samples.values, SAMPLES), part.convention)

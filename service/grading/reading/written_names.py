@@ -1,7 +1,8 @@
 """Order values that have names, such as y = l1 s1, by these names, or report a wrong name.
 
-A name may have several places if textbooks differ, or none. The values are reordered only if each
-value that is not empty names exactly one place, and no two values name the same place.
+A name may belong to several places, because textbooks differ, or to no place. The values are
+reordered only if each value that is not empty names exactly one place, and no two values name the
+same place.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -30,7 +30,11 @@ Links = dict[int, RobotLink]
 
 @dataclass(slots=True)
 class ScriptNames:
-    """The values of names in a script: links, by the list's name and a number, and other values."""
+    """The values that a script gives to names.
+
+    ``links`` maps the name of a list to its links by number. Other values are stored by name, or by
+    name and number.
+    """
 
     links: dict[str, Links] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)

@@ -2,8 +2,9 @@
 
 A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
 the frame before the row. Its kind decides what the row must match: the line of a revolute axis, the
-direction of a prismatic axis, or the whole frame of the tool. If the geometry leaves a value open,
-the written value is as good as the reference's value, so both are tried.
+direction of a prismatic axis, or the whole frame of the tool. A value is called open if the
+geometry does not determine it. Then the written value is as good as the reference's value, so both
+are tried.
 
 Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``; rows are
 ``(..., 4, L)`` in the column order a, α, d, θ. The written row is ``(4, L)``, with NaN for cells
@@ -84,7 +85,10 @@ def written_or(written: Numbers, other: Numbers) -> Numbers:
 
 
 def _to_skew(target: Matrices, written: Numbers) -> Numbers:
-    """Return the rows to a skew axis: x is along the common normal, and x and z may be reversed."""
+    """Return the rows that lead to a skew axis.
+
+    x is along the common normal. Both x and z may be reversed.
+    """
     ux, uy, uz = (target[..., i, 2] for i in range(3))
     px, py, pz = (target[..., i, 3] for i in range(3))
     sine = np.hypot(ux, uy)
@@ -97,7 +101,10 @@ def _to_skew(target: Matrices, written: Numbers) -> Numbers:
 
 
 def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
-    """Return the rows to a parallel axis: x points from one axis to the other, and d is open."""
+    """Return the rows that lead to a parallel axis.
+
+    x points from one axis to the other. d is open: the written and the reference's d are tried.
+    """
     px, py, pz = (target[..., i, 3] for i in range(3))
     theta, a = np.arctan2(py, px), np.hypot(px, py)
     x_sign, z_sign = _signs(target, theta, a, written)
@@ -112,7 +119,10 @@ def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
 
 
 def _to_coincident(target: Matrices, written: Numbers) -> Numbers:
-    """Return the rows to a coincident axis: θ and d are open."""
+    """Return the rows that lead to a coincident axis.
+
+    θ and d are open: the written and the reference's values are tried.
+    """
     pz = target[..., 2, 3]
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     alpha = _parallel_twist(target, _Z_SIGNS)
@@ -135,9 +145,10 @@ _TO_LINE = {
 
 
 def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
-    """Return the rows to a direction that is not parallel to z: a and d are open.
+    """Return the rows that turn z to a given direction that is not parallel to z.
 
-    Each of a and d is taken as written or from ``rows``, in all combinations.
+    a and d are open, because only the direction is given. Each of them is taken as written or from
+    ``rows``, in all combinations.
     """
     options = []
     for columns in ((A, D), (A,), (D,), ()):
@@ -149,7 +160,10 @@ def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
 
 
 def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRelation) -> Numbers:
-    """Return the rows to a direction that is parallel to z: a, d and θ are open."""
+    """Return the rows that turn z to a given direction that is parallel to z.
+
+    a, d and θ are open, because only the direction is given.
+    """
     on_line = _TO_LINE[relation](target, written)
     as_written = np.empty((len(target), 2, 4, target.shape[1]))
     as_written[:] = written_or(written, on_line[:, :1])

@@ -115,7 +115,10 @@ def judge(
 def places(
     report: PartReport, rows: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, Sequence[int]]]:
-    """Yield random places, each a row and columns; half of them are among the wrong cells."""
+    """Yield random places to empty: the index of a row, and the indices of its columns.
+
+    Half of the places are chosen among the wrong cells.
+    """
     blamed = [
         (i, j)
         for i, row in enumerate(report.rows)
@@ -190,7 +193,10 @@ def _task(task: tuple[Sequence[int], int, int, int]) -> Found:
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if too many empty places earned more."""
+    """Run the campaign and print the figures.
+
+    Return 1 if emptying a row or a cell raised the points too often, else 0.
+    """
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.blanking")
     parser.add_argument("--tries", type=int, default=20_000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")

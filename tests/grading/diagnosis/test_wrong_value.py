@@ -1,4 +1,4 @@
-"""Which hypotheses explain numbers; a hypothesis that changes nothing explains nothing."""
+"""Wrong numbers are explained only by hypotheses that fit them and make a difference."""
 
 import numpy as np
 

@@ -1,8 +1,9 @@
 """`python -m tests.load.sizing`: measure one process, and simulate classes before a deadline.
 
-Print the processor time of each kind of request, the waiting times of 10,000 students with one, two
-and eight processes, the largest class for each, and the attempts that fit into a GB. Run nothing
-else meanwhile.
+The program prints the processor time of each kind of request. For one, two and eight processes, it
+prints the waiting times of 10,000 students, and the size of the largest class that does not wait
+too long. It also prints how many attempts fit into a GB. Do not run other programs during the
+measurement.
 """
 
 import argparse

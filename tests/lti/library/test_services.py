@@ -28,7 +28,10 @@ class Course:
     journey: Journey
 
     def launch(self, user: str) -> None:
-        """Let the library launch; the message has the addresses of the platform's services."""
+        """Launch the tool as ``user``, with a launch message that the library makes.
+
+        The message contains the addresses of the platform's services for scores and the roster.
+        """
         tool, other = self.journey.tool, self.other
         begun = tool.login(user)
         launch = Launch(Preflight(begun.asked), other.configuration)

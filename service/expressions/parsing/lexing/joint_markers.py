@@ -4,10 +4,11 @@ Followed by nothing    θ1*, (d3*), atan2(q1*, k)    the marker
 Followed by +          θ1* + 90°, d3*+l1            the marker: nobody writes a product like this
 Followed by -          θ1* - 90°, θ1*-π/2           the marker, with a note
                        d3*-l1                       a product, with a note
-Followed by others     q1*k                         a product
+Followed by other text q1*k                         a product
 
-A marked variable is the first factor of its term. After another factor (k*q1*) or a blank
-(q1 * + k), a star in the first three rows is ambiguous. A raised star is always the marker.
+A marked variable is the first factor of its term. If another factor precedes it (k*q1*+s1), a star
+before + or before a subtracted angle is ambiguous. If a blank precedes the star (q1 * + k), a star
+before + is ambiguous. A raised star is always the marker.
 """
 
 import re

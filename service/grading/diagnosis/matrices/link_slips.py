@@ -152,7 +152,7 @@ class PositionAmongOthers:
 
 @misconception(of=RotationAmongOthers, rank=10)
 def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
-    """Only the rotation contains the angles of earlier joints."""
+    """The student added the angles of earlier joints to the link's angle in the rotation only."""
     return _in_block(link, ROTATION_BLOCK)
 
 
@@ -162,7 +162,7 @@ def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
     example=("planar-rr", "links", {"A2.1/4": "a2 c12", "A2.2/4": "a2 s12"}),
 )
 def angle_in_position(link: LinkAmongOthers) -> Hypotheses:
-    """Only the position contains the angles of earlier joints."""
+    """The student added the angles of earlier joints to the link's angle in the position only."""
     return _in_block(link, POSITION_BLOCK)
 
 
@@ -173,7 +173,7 @@ def _in_block(link: LinkAmongOthers, block: Block) -> Hypotheses:
 
 
 def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
-    """Return the explanation of a wrong link transform by the links before it, if there is one."""
+    """Return the slips that explain a wrong link transform, such as an earlier joint's angle."""
     return as_explanations(case, explanation(case, link)) or [
         found
         for block, kind in (

@@ -1,8 +1,9 @@
 """Slips in a product of link transforms.
 
-Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may submit the pose, its
-rotation or its position. Therefore a finding contains only the name of the pose, and advice.
-``named`` puts both into a sentence: "This matrix is …", "The position comes from …".
+Each misconception yields the wrong pose ``(SAMPLES, 4, 4)`` that it leads to. Its finding has a
+phrase for this pose, such as "the pose of frame {2}", and advice. The student may have submitted
+the pose, or only its rotation or its position. Therefore ``named`` puts the phrase into a sentence
+that fits the answer: "This matrix is …", or "The position comes from …".
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -83,7 +84,7 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
 
 
 def _other_pose(pose: Sentence, advice: Sentence, correction: Sentence) -> Finding:
-    """Return a finding with the name of a pose, which ``named`` puts into a sentence."""
+    """Return a finding with a phrase for a wrong pose; ``named`` puts it into a sentence."""
     return says(say("{pose}. {advice}", pose=pose, advice=advice), correction)
 
 

@@ -94,7 +94,10 @@ class SlipSearch:
 
     @cached_property
     def _at_two_samples(self) -> tuple[Mask, Mask]:
-        """The masks of ``_compared`` for all slips at only two samples, as a first test."""
+        """The entries that each slip explains, and those that it changes: two masks ``(K, ...)``.
+
+        All slips are compared at only two samples, which is a quick first test.
+        """
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:

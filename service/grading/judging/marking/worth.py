@@ -86,7 +86,7 @@ class CellWorth:
         return units
 
     def fifth(self, group: int) -> int:
-        """Return the cost of all unread cells of a row in ``group`` that need no knowledge."""
+        """Return what the unread cells of a row that are no content cells cost together."""
         return max(1, round(self.units[group] * BESIDES))
 
     def points(self, steps: int) -> float:

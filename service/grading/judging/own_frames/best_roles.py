@@ -1,4 +1,4 @@
-"""Choose the roles of the submitted rows that give the nearest valid table."""
+"""Choose which joint each submitted row belongs to, so that the nearest valid table is near."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,7 +22,7 @@ from service.kinematics.frames.frame_choice import WRONG_CELL
 def best_roles(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """Return the roles of the rows, and the valid table nearest to them."""
+    """Return each row with its joint, and the valid table nearest to the rows."""
     freedom = freedom_of(part)
     roles, nearest = _best_as_written(rows, convention, freedom, grading)
     return roles, with_rounded_cells(nearest, convention, freedom, grading)
@@ -65,7 +65,7 @@ def roles_in(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Return the roles of the submitted rows, with rounded angles made exact.
+    """Return each submitted row with its joint, and with rounded angles made exact.
 
     ``expected_rows`` is by default the number of rows of the reference. ``in_order`` is true if the
     rows are in the order of the joints, None if unknown.

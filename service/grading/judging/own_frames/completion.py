@@ -1,9 +1,10 @@
 """Search for values of the unread cells of a table that make the table valid.
 
-If such values exist, no readable cell is wrong. The search uses one set of link lengths. So an
-unread cell is a constant, or a constant plus or minus the joint variable that belongs in the cell.
-The tool frame must agree with the reference tool frame at all joint values. The method is Newton's
-with damping (Levenberg and Marquardt), from many starts at once.
+An unread cell is empty or could not be read, so it has no value. If such values exist, no other
+cell is wrong. The search uses one set of link lengths. So the value of an unread cell is a
+constant, or a constant plus or minus the joint variable that belongs in the cell. The tool
+frame must agree with the reference tool frame at all joint values. The method is Newton's with
+damping (Levenberg and Marquardt), from many starts at once.
 
 Shapes: S starts, L joint values, U unread cells and twists of a free base or tool.
 """

@@ -1,4 +1,7 @@
-"""Pair the rows of a submitted table with joints, and read which frames an exercise leaves free."""
+"""Pair the rows of a submitted table with joints, and read which frames an exercise leaves free.
+
+Each pair of a row and its joint is called a role.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +37,10 @@ def freedom_of(part: DhTableSpec) -> FrameFreedom:
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """A row and its joint. A row without a joint is fixed; the row of a joint may be missing."""
+    """A row of a submitted table, and the joint that it belongs to.
+
+    ``joint`` is None for a fixed row. ``row`` is None if the student left out the joint's row.
+    """
 
     row: StudentRow | None
     joint: Joint | None
@@ -87,7 +93,7 @@ def roles_of(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Return the roles of the rows; the reference's table has ``expected_rows`` rows.
+    """Return each row with its joint; the reference's table has ``expected_rows`` rows.
 
     If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
     Otherwise the joint variables decide: the pairing in order with the most matching variables is

@@ -68,9 +68,10 @@ def _in_places(
     count: int,
     grading: Grading,
 ) -> list[StudentRow | None] | None:
-    """Return, for each place in the table, its row; None for a row that was left out.
+    """Return a list with the submitted row, or None, for each row of the full table.
 
-    Return None if there are too many rows.
+    The list has None where the student submitted no row. Return None instead of a list if there are
+    too many rows.
     """
     if len(rows) == count:
         return list(rows)

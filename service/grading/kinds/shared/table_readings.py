@@ -5,8 +5,9 @@ its columns in another order, with its lengths in another unit, or with a and d 
 exchanged. Each reading is judged alike. A reading that explains enough wrong cells counts, with the
 finding on its slip.
 
-Three more readings only limit the points: the table without its extra rows, with lazy entries in
-its unread cells, and with one row given up (``fair_points``).
+Three more readings only limit the points: the table without its extra rows; the table with each
+unread cell replaced by its joint variable or 0; and the table with one row given up
+(``fair_points``).
 """
 
 from collections.abc import Callable, Iterator
@@ -162,8 +163,8 @@ class _Readings:
         """Return the judgement of a table as written, with an upper limit of its points.
 
         A wrong table earns no more than it would without its extra rows, because the points belong
-        to the rows of the mechanism. It earns no more than with lazy entries in its unread cells,
-        whose right values are unknown.
+        to the rows of the mechanism. A table with unread cells, whose right values are unknown,
+        earns no more than if each of these cells contained its joint variable or 0.
         """
         judged, convention = first
         if judged.is_right:

@@ -183,7 +183,10 @@ def _header(name: object, names: dict[str, Header | None]) -> Header | None:
 
 
 def _in_order(rows: Sequence[_Read]) -> list[object]:
-    """Return the rows in the order of their labels, or unchanged unless each has its own label."""
+    """Return the rows in the order of their labels.
+
+    If a label is missing or occurs twice, return the rows in their own order.
+    """
     places = [_place(label) for label, _ in rows]
     known = [place for place in places if place is not None]
     if len(known) < len(rows) or len(set(known)) < len(known):

@@ -86,9 +86,10 @@ def table_of(
 ) -> PastedTable:
     """Read the rows of a pasted DH table.
 
-    Columns are identified by their headers. Without headers there must be four columns in the order
-    that ``comments`` name, else in ``order``, or five with the row numbers first. Rows are ordered
-    by their labels, if they have any. Raises GridError if the columns cannot be identified.
+    Columns are identified by their headers. Without headers there must be four columns, or five if
+    the first column has row numbers. Their order is the order that a comment in the text
+    ``comments`` names, or else ``order``. Rows are ordered by their labels, if they have any.
+    Raises GridError if the columns cannot be identified.
     """
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):

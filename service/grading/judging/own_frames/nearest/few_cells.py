@@ -54,9 +54,9 @@ class NearestTable:
 
     ``frames`` ``(joints, samples, 4, 4)`` are the frames of the valid table on the joint axes, as
     seen from the reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1,
-    the submitted table is valid. ``lost`` is the loss of points for the wrong cells, in units. It
-    is computed for the valid table with the smallest loss (not always this table), and infinite if
-    unknown.
+    the submitted table is valid. ``lost`` is the number of units that the wrong cells lose: a
+    single wrong cell loses one unit. It is computed for the valid table with the smallest loss (not
+    always this table), and infinite if unknown.
     """
 
     roles: tuple[Role, ...]
@@ -107,7 +107,7 @@ def nearest_by_few_cells(
     """Return the valid table that equals the written table, or differs in 1-2 cells or 1 row.
 
     If there are several such tables, return the table with the likeliest slip; None if there is no
-    such table. Every role must have a row.
+    such table. No row may be missing.
     """
     case = _case(roles, convention, grading)
     if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:
@@ -129,7 +129,7 @@ def single_repairs(
 ) -> frozenset[CellIndex]:
     """Return the cells that can each be repaired alone, so that the table becomes valid.
 
-    Every role must have a row, and every cell a value.
+    No row may be missing, and every cell must have a value.
     """
     case = _case(roles, convention, grading)
     factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
@@ -238,7 +238,7 @@ def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | Non
 
 
 def _lost(repair: CellRepair, case: _Case) -> float:
-    """Return the loss of points for the cells of a repair, in units."""
+    """Return the number of units that the repaired cells lose; a single cell loses one unit."""
     if len(repair.cells) == 1:
         return WRONG_CELL
     repaired = case.table[..., SUBSET_SAMPLES].copy()

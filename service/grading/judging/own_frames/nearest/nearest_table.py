@@ -1,4 +1,4 @@
-"""Find the valid table nearest to a submitted one whose rows have known roles."""
+"""Find the valid table nearest to a submitted table; the joint of each row is known."""
 
 from dataclasses import replace
 from functools import partial

@@ -152,7 +152,7 @@ def one_cell_match(
 ) -> ChainMatch | None:
     """Return the valid table that differs from the written table in one cell, or None.
 
-    If there are several, return the one with the likeliest slip. Every role must have a row.
+    If there are several, return the one with the likeliest slip. No row may be missing.
     """
     wrong = np.array([row.wrong_regardless | ~(row.is_gradable | row.absent) for row in rows])
     wrong_cells = np.argwhere(as_table(wrong, convention)).tolist()

@@ -13,7 +13,7 @@ from service.kinematics.chain import Table
 def units_lost(
     expected: Table, variables: Table, wrong: NDArray[np.bool_], length_scale: float
 ) -> float:
-    """Return the loss for the ``wrong`` cells ``(rows, 4)`` in units.
+    """Return the number of units that the ``wrong`` cells ``(rows, 4)`` lose.
 
     A unit is the cost of one wrong cell. Several wrong cells in one row lose no more than the row
     is worth. A single wrong cell always loses a whole unit, even in a row of zeros, which is worth

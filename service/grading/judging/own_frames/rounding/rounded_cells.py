@@ -244,7 +244,11 @@ def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading)
 def _with_known_angles(
     roles: tuple[Role, ...], grading: Grading
 ) -> tuple[tuple[Role, ...], list[CellIndex]]:
-    """Return the roles as written but with known angles made exact, and the angles' cells."""
+    """Return the roles with the numbers as written, but with recognized angles made exact.
+
+    A rounded angle is recognized if its exact value is known: 1.57 is π/2. The second result has
+    the cells of the recognized angles.
+    """
     exercise, samples = grading.exercise, grading.samples
     written = _as_written(roles)
     known = [(i, column) for i, column in np.argwhere(known_angles(written, exercise, samples))]
