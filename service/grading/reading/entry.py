@@ -1,5 +1,6 @@
 """Read a submitted cell as an entry, and evaluate entries at the samples."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -24,6 +25,7 @@ from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.converted_lengths import converted
+from service.grading.reading.tables.words import METRES
 from service.grading.report import Verdict
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
@@ -35,6 +37,9 @@ EXPECTED_IN_TABLES = frozenset({"joint_marker"})
 
 # The codes of errors on a name that may be an absent joint variable (``absent_variables``).
 _UNKNOWN_NAMES = frozenset({"unknown_joint", "unknown_symbol"})
+
+# The unit in "all lengths are in metres".
+_STATED = re.compile(r"(?<!\w)(?:in|en)\s(\w{4,12})(?!\w)")
 
 # The largest absolute values. No robot is larger, and a larger angle has no precise digits left
 # after whole turns are removed.
@@ -64,6 +69,7 @@ class Reader:
     """Reads the cells of one submission. Copies with another angle unit share the work budget.
 
     ``length_unit`` is the unit of all lengths of the exercise, None if they have several units.
+    If no length has a letter, it is the unit that the statement names: "in metres".
     """
 
     vocabulary: Vocabulary
@@ -82,6 +88,7 @@ class Reader:
     ) -> Self:
         """Return a reader for a submission to an exercise."""
         units = {variable.unit for variable in exercise.variables if variable.kind == "length"}
+        units = units or METRES.keys() & _STATED.findall(exercise.statement.lower())
         unit = units.pop() if len(units) == 1 else None
         return cls(exercise.vocabulary, samples, angle_unit, unit, budget or WorkBudget())
 

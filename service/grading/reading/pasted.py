@@ -9,6 +9,8 @@ from typing import Final
 from service.expressions.characters.decimal_comma import with_points
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
+from service.grading.reading.given_letters import with_given_letters
+from service.grading.reading.tables.words import ANGLE_UNITS, METRES
 from service.grading.work_budget import MAX_PASTED
 from service.grids import (
     GRID_LIMITS,
@@ -25,6 +27,9 @@ from service.translations import say
 
 # An index in square brackets: theta[1], l[2].
 _INDEX: Final = re.compile(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
+_IN_UNIT: Final = re.compile(
+    r"(?<![^\W\d_])(?:in|en|and|und|y|et) ([^\W\d_]{1,12})(?![^\W\d_])", re.IGNORECASE
+)
 _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 
 
@@ -34,7 +39,7 @@ def pasted_grid(text: str, reader: Reader) -> Grid:
     Raises GridError if there is none, or if the pasted texts of a submission are too long.
     """
     _charge(text, reader)
-    return read_grid(_prepared(text, reader))
+    return with_given_letters(read_grid(_prepared(text, reader)), text, reader)
 
 
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
@@ -42,10 +47,11 @@ def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
 
     Raises GridError if the script's table is ambiguous, or if the pasted texts are too long.
     """
-    robot = read_robot(text)
-    if robot is not None:
-        _charge(text, reader)
-    return robot
+    robot = read_robot(_without_own_units(text, reader))
+    if robot is None:
+        return None
+    _charge(text, reader)
+    return replace(robot, grid=with_given_letters(robot.grid, text, reader))
 
 
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
@@ -58,7 +64,21 @@ def _prepared(text: str, reader: Reader) -> str:
     """Return the text with decimal points for decimal commas, and with unambiguous indices."""
     if reader.vocabulary.decimal_comma:
         text = with_points(text)
-    return _with_indices_from_one(text, reader)
+    return _with_indices_from_one(_without_own_units(text, reader), reader)
+
+
+def _without_own_units(text: str, reader: Reader) -> str:
+    """Return the text with blanks for "in radians" in "all angles in radians" if that is the unit.
+
+    Every character keeps its place. Another unit stays, and such a sentence is refused.
+    """
+
+    def without_unit(found: re.Match[str]) -> str:
+        unit, length = found[1].lower(), METRES.get(reader.length_unit or "", 0)
+        is_own = ANGLE_UNITS.get(unit) == reader.angle_unit or METRES.get(unit) == length
+        return " " * len(found[0]) if is_own else found[0]
+
+    return _IN_UNIT.sub(without_unit, text)
 
 
 def _with_indices_from_one(text: str, reader: Reader) -> str:

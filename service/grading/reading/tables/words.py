@@ -30,6 +30,7 @@ TERMS: Final[Mapping[str, str]] = {
 }  # fmt: skip
 PLACES: Final = frozenset(
     {"link", "joint", "row", "frame", "axis", "index", "no", "nr", "number", "name", "label", "#"}
+    | {"kinematics", "id"}
     | {"gelenk", "glied", "achse", "arm", "armteil", "zeile", "reihe", "korper", "nummer"}
     | {"gelenknummer", "gliednummer", "achsnummer", "zeilennummer"}
     | {"articulacion", "eslabon", "eje", "fila", "numero", "num", "indice"}
@@ -43,7 +44,8 @@ FILLERS: Final = frozenset(
     | {"drehwinkel", "drehung", "giro", "rotacion", "traslacion", "translation", "en"}
 )
 ASIDES: Final = re.compile(
-    r"(?:joint )?(?:type|variables?|range|limits?)|comments?|notes?|remarks?|home(?: position)?"
+    r"(?:joint )?(?:type|var\.?|variables?|range|limits?)|comments?|notes?|remarks?"
+    r"|home(?: position)?|dynamics|mass(?: [(\[]kg[)\]])?|cent(?:er|re) of mass"
     # The joint type of Khalil and the Robotics Toolbox: 0 turns, 1 slides.
     r"|sigma(?: [ijn])?|σ(?: ?[ijn])?"
     r"|(?:gelenk)?(?:typ|variable|art)|(?:bemerkung|anmerkung|kommentar|hinweis)(?:en|e)?"

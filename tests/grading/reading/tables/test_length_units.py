@@ -62,6 +62,27 @@ def test_a_reader_has_the_length_unit_of_its_exercise(make_exercise: Maker, arm:
 
 
 @pytest.mark.parametrize(
+    ("statement", "unit"),
+    [
+        ("All lengths are in metres.", "metres"),
+        ("Alle Längen in Millimetern.", "millimetern"),
+        ("Lengths are in millimeters, and angles in degrees.", "millimeters"),
+        ("Lengths in metres, offsets in mm or in inches.", None),
+        ("Joint 1 turns in front of joint 2.", None),
+    ],
+)
+def test_without_lengths_as_letters_the_statement_names_the_unit(
+    statement: str, unit: str | None, make_exercise: Maker
+) -> None:
+    numbers = ARM.partition("[symbols]")[0] + "[[parts]]" + ARM.partition("[[parts]]")[2]
+    numbers = numbers.replace("l1", "0.4").replace("l2", "0.3")
+    exercise = make_exercise(numbers.replace('statement = "test"', f'statement = "{statement}"'))
+    assert length_unit(exercise) == unit
+    lettered = make_exercise(ARM.replace('statement = "test"', f'statement = "{statement}"'))
+    assert length_unit(lettered) == "UNIT"
+
+
+@pytest.mark.parametrize(
     ("head", "cell", "metres"),
     [
         ("a", "0.25", 0.25),

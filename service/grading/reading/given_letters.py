@@ -1,0 +1,64 @@
+"""Put in the numbers that a script gives to letters: ``d1 = 0.1625`` above a table.
+
+They count only if the exercise has no lengths as letters; otherwise letters are its symbols.
+"""
+
+import re
+from dataclasses import replace
+from itertools import islice
+from typing import Final
+
+from service.expressions.errors import Note
+from service.grading.reading.entry import Reader
+from service.grading.reading.tables.column_headers import read_header
+from service.grids import Grid, GridCell
+from service.grids.cutting.source_text import joined
+from service.translations import say
+
+_NUMBER: Final = re.compile(
+    r"(?:^|[;,\n])[ \t]*([A-Za-z]\w{0,20})[ \t]*=[ \t]*([-+]?(?:\d{1,9}\.?\d{0,12}|\.\d{1,12}))"
+    r"[ \t\r]*(?=[;,\n%#]|\Z)"
+)
+_ASSIGNED: Final = re.compile(r"(?<![\w.])(\w{1,21})[ \t]{0,40}[-+*/]?=(?!=)")
+_NAME: Final = re.compile(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[])")
+_MOST: Final = 40
+
+
+def with_given_letters(grid: Grid, text: str, reader: Reader) -> Grid:
+    """Return the grid with the numbers of letters put in, and a note on them."""
+    given = _given(text, reader)
+    used: dict[str, None] = {}
+    rows = tuple(tuple(_cell(cell, given, used) for cell in row) for row in grid.rows)
+    if not used:
+        return grid
+    message = say(
+        "The numbers that the text gives to {letters} were used.", letters=", ".join(used)
+    )
+    notes = [note for note in grid.notes if note.code != "given_numbers"]
+    return replace(grid, rows=rows, notes=(*notes, Note("used_numbers", message, (0, len(text)))))
+
+
+def _given(text: str, reader: Reader) -> dict[str, str]:
+    """Return the number of each letter that the text sets once and the exercise does not know."""
+    slides = reader.vocabulary.sliding.values()
+    if any(each.kind == "length" and each not in slides for each in reader.vocabulary.symbols):
+        return {}
+    names = _ASSIGNED.findall(text)
+    return {
+        each[1]: each[2]
+        for each in islice(_NUMBER.finditer(text), _MOST)
+        if names.count(each[1]) == 1 and not reader.read(each[1], "number").readable
+    }
+
+
+def _cell(cell: GridCell, given: dict[str, str], used: dict[str, None]) -> GridCell:
+    names = [name for name in _NAME.finditer(cell.text) if name[0] in given]
+    if not names or read_header(cell.text):
+        return cell
+    pieces, start = [], 0
+    for name in names:
+        used[name[0]] = None
+        value = given[name[0]] if name[0] == cell.text else f"({given[name[0]]})"
+        pieces += [cell.cut(start, name.start()), cell.cut(*name.span()).spelled(value)]
+        start = name.end()
+    return joined([*pieces, cell.cut(start, len(cell.text))], cell.at)

@@ -1,0 +1,59 @@
+"""Numbers that a script gives to letters are put in if the exercise has no lengths as letters."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading.reading.preview import PastedPreview, preview_pasted
+
+HEADERS = "a,alpha,d,theta"
+ROWS = ("0, pi/2, d1, q1", "a2, 0, 0, q2", "-a2/2, 0, 0, q3")
+TABLE = "[" + "; ".join(ROWS) + "]"
+LINKS = (
+    "L(1) = Revolute('d', d1, 'alpha', pi/2);\nL(2) = Revolute('a', a2);\n"
+    "L(3) = Revolute('a', -a2/2);"
+)
+
+
+def lengths(read: PastedPreview) -> list[tuple[str, str]]:
+    return [(row[0].text, row[2].text) for row in read.rows]
+
+
+def codes(read: PastedPreview) -> list[str]:
+    return [note.code for note in read.notes if note.code.endswith("_numbers")]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"d1 = 0.1625; a2 = -0.425;\nDH = {TABLE}",
+        f"d1 = 0.1625  % height\na2 = -0.425  % upper arm\nDH = {TABLE}",
+        f"d1 = 0.1625;\na2 = -0.425;\n{LINKS}",
+        "\n".join(["d1 = 0.1625, a2 = -0.425", HEADERS, *ROWS]),
+    ],
+)
+def test_a_letter_means_its_number(text: str, catalogue: Mapping[str, Exercise]) -> None:
+    read = preview_pasted(text, catalogue["ur5e"], "table")
+    assert read.ok
+    assert lengths(read) == [("0", "0.1625"), ("-0.425", "0"), ("-(-0.425)/2", "0")]
+    assert codes(read) == ["used_numbers"]
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["d1 = 0.1; d1 = 0.2;", "", "d1 = 2*a2;", "d1 = 0.1; d1 = d1 + 0.2;", "d1 = 0.1;\nd1 *= 2;"],
+)
+@pytest.mark.parametrize("table", [f"DH = {TABLE}", LINKS, "\n".join([HEADERS, *ROWS])])
+def test_a_letter_without_one_number_is_unknown(
+    given: str, table: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    text = f"a2 = 0.4;\n{given}\n{table}"
+    assert not preview_pasted(text, catalogue["ur5e"], "table").ok
+
+
+def test_letters_of_the_exercise_keep_their_meaning(catalogue: Mapping[str, Exercise]) -> None:
+    text = "a1 = 0.4; a2 = 0.3;\nDH = [a1 0 0 q1; a2 0 0 q2]"
+    read = preview_pasted(text, catalogue["planar-rr"], "table")
+    assert lengths(read) == [("a1", "0"), ("a2", "0")]
+    assert codes(read) == ["given_numbers"]
