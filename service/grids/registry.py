@@ -7,9 +7,19 @@ from typing import Final
 from service.grids.cutting.grid import Grid, GridError, GridFormat
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.source_text import SourceText
-from service.grids.formats import columns, csv, html, latex, markdown, semicolons, tsv
+from service.grids.formats import (
+    columns,
+    csv,
+    html,
+    latex,
+    markdown,
+    named_values,
+    semicolons,
+    stacked,
+    tsv,
+)
 from service.grids.formats.data_frame import without_frame
-from service.grids.matrices import bracketed, drawn_matrix, matlab_rows, word
+from service.grids.matrices import bracketed, drawn_matrix, maple, matlab_rows, word
 from service.grids.scripts.given_values import without_definitions, without_given_values
 from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_title
@@ -22,8 +32,9 @@ from service.translations import say
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
-    html.FORMAT, word.FORMAT, latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT,
-    matlab_rows.FORMAT, tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
+    named_values.FORMAT, stacked.FORMAT, maple.FORMAT, html.FORMAT, word.FORMAT, latex.FORMAT,
+    drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT, matlab_rows.FORMAT, tsv.FORMAT,
+    semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
 )  # fmt: skip
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
@@ -43,7 +54,11 @@ def read_grid(text: str) -> Grid:
 
     Takes linear time. The length of the text is bounded by ``GRID_LIMITS``.
     """
-    source, defined = without_definitions(pasted_source(text))
+    source = pasted_source(text)
+    if named_values.FORMAT.matches(source.text):
+        # The label of the first row would be a title.
+        return named_values.FORMAT.parse(source)
+    source, defined = without_definitions(source)
     source, titles = without_titles(without_frame(without_title(source)))
     source, values = without_given_values(source)
     notes = (*defined, *titles, *values)

@@ -13,6 +13,8 @@ from service.translations import say
 GridCell = SourceText
 # Quotation marks of word processors around a whole cell.
 _QUOTED: Final = re.compile(r"„[^„“”]+[“”]|“[^“”]+”|«[^«»]+»|»[^«»]+«")
+# The remark that a value is the variable of its joint.
+_VARIABLE: Final = re.compile(r"\s*[(\[](?:joint )?(?:variable|var\.?)[)\]]$", re.IGNORECASE)
 Rows = Sequence[Sequence[GridCell]]
 
 
@@ -113,6 +115,8 @@ def tidy(cell: GridCell) -> GridCell:
     if "$" in cell.text and cell.text.count("$") % 2 == 0 and "\\$" not in cell.text:
         # Replace each $ by a blank, so that $a$$b$ does not become one name.
         cell = SourceText(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
+    if variable := _VARIABLE.search(cell.text[-20:]):
+        cell = cell.cut(0, len(cell.text) - len(variable[0]))
     if cell.text.startswith("\\(") and cell.text.endswith("\\)"):
         cell = cell.cut(2, len(cell.text) - 2).strip()
     return cell

@@ -1,5 +1,6 @@
 """Cells separated by commas. A comma in brackets, as in atan2(y, x), separates nothing."""
 
+import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
@@ -7,13 +8,28 @@ from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
 
+# The label of a row with a colon or bracket after it: "1: l1, 0", "Row 1: l1, 0", "a: l1, l2".
+_LABEL: Final = re.compile(
+    r"(?:[ij]\s?=\s?)?((?:[^\W\d_]{3,20}[ .]?|[JjLl])?\d{1,2}|(?:alpha|theta|[adαθ])(?=\s?:))"
+    r"\s?[:)]\s{0,9}(?=\S)"
+)
+
 
 def _matches(text: str) -> bool:
     return any(text[i] == "," for i in outside(text, pairs(text)))
 
 
 def _parse(source: SourceText) -> Grid:
-    return grid("CSV", split_cells(source, ",", brackets=True), source.whole)
+    rows = split_cells(source, ",", brackets=True)
+    rows = [[row[0].strip(), *row[1:]] for row in rows if any(cell.text.strip() for cell in row)]
+    labels = [_LABEL.match(row[0].text) for row in rows]
+    if all(labels) and len(set(map(len, rows))) == 1:
+        rows = [
+            [row[0].cut(*label.span(1)), row[0].cut(label.end(), len(row[0].text)), *row[1:]]
+            for row, label in zip(rows, labels, strict=True)
+            if label
+        ]
+    return grid("CSV", rows, source.whole)
 
 
 FORMAT: Final = GridFormat(_matches, _parse)

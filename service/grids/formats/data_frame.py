@@ -5,10 +5,10 @@ from typing import Final
 
 from service.grids.cutting.source_text import SourceText, joined
 
-# The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "shape: (3, 4)".
+# The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "ans = 3×4", "shape: (3, 4)".
 _SIZE: Final = re.compile(
     r"^[ \t]*(?:# A tibble: \d{1,3} [×x] \d{1,3}|\d{1,3} ?[×x] ?\d{1,3} (?:DataFrame|table"
-    r"|Matrix\{\w{1,20}\}:)|shape: \(\d{1,3}, \d{1,3}\))"
+    r"|Matrix\{\w{1,20}\}:)|\w{1,20} = \d{1,3} ?[×x] ?\d{1,3}|shape: \(\d{1,3}, \d{1,3}\))"
     r"[ \t]*\r?$",
     re.MULTILINE,
 )

@@ -6,6 +6,7 @@ from typing import Final
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import text_around
+from service.grids.scripts.titles import UNIT
 from service.translations import say
 
 # The number of arguments in braces after \begin{…}.
@@ -45,6 +46,13 @@ _OPTIONS: Final = {
 _RULES: Final = re.compile(
     rf"\\(?:{'|'.join(f'(?:{name})(?![A-Za-z]){options}' for name, options in _OPTIONS.items())})"
 )
+# A row that is one cell over several columns, with words only: the title of the table.
+_TITLE: Final = re.compile(
+    r"(?:\A|(?<=\\\\)|(?<=\\hline)|(?<=\\toprule))\s*\\multicolumn\s?\{\d{1,2}\}\s?\{[^{}]{0,40}\}"
+    r"\s?\{(?:\\text[bi][ft]\{)?[^\W\d_]{2,20}(?:[ -][^\W\d_]{2,20}){0,11}\}{1,2}\s*\\\\"
+)
+# A cell over one column, as generators of tables write each header.
+_ONE_COLUMN: Final = re.compile(r"\\multicolumn\s?\{1\}\s?\{[^{}]{0,40}\}\s?(?=\{)")
 # An escaped % does not begin a comment.
 _COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
 _POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
@@ -70,6 +78,7 @@ _WRAPPERS: Final = (
         r"\\(?:centering|displaystyle|small|footnotesize|scriptsize|normalsize|large|noindent"
         r"|boxed|nonumber|notag|item)(?![A-Za-z])"
     ),
+    re.compile(r"\\(?:documentclass|usepackage)\s?(?:\[[^\[\]]{0,200}\])?\{[^{}]{0,200}\}"),
     re.compile(
         r"\\(?:caption|label|tag|vspace|hspace|setlength|l?eqno|text|mbox)\*?"
         r"(?:\{(?:[^{}=]|\{[^{}]{0,80}\}){0,200}\}){1,2}"
@@ -84,7 +93,10 @@ def _matches(text: str) -> bool:
 
 
 def _parse(source: SourceText) -> Grid:
-    rows = _rows(_body(without_comments(source)))
+    body = _body(without_comments(source))
+    if (title := _TITLE.search(body.text)) and not UNIT.search(title[0]):
+        body = joined(body.split(_TITLE), body.at)
+    rows = _rows(joined(body.split(_ONE_COLUMN), body.at))
     if not any(cell.text.strip() for cell in rows[-1]):
         rows.pop()
     return grid("LaTeX", rows, source.whole)

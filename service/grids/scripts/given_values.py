@@ -5,6 +5,7 @@ with a note. Any other value may be needed to read the matrix, so the text is re
 """
 
 import re
+import unicodedata
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from typing import Final
@@ -18,11 +19,11 @@ from service.translations import say
 # The value may be a calculation or a call of a function, but not a matrix or a list.
 ASSIGNMENT: Final = re.compile(
     r"[ \t\r]*(?P<line>(?P<name>[A-Za-z]\w{0,60})[ \t]*=(?!=)[ \t]*"
-    r"(?P<value>(?=[^\s])(?:[^;,\n\[\](){}=]|\([^()\n]{0,40}\)){1,80}))(?:[;,\n]|\Z)"
+    r"(?P<value>(?=[^\s])(?:[^;,\n\[\](){}=]|\((?:[^()\n\[]|\[(?!\s?\[)){0,40}\)){1,80}))(?:[;,\n]|\Z)"
 )
 _NUMBER: Final = re.compile(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]?\d{1,3})?")
 _HARMLESS: Final = re.compile(
-    r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load)\b[^;\n]*)?(?:[;,\n]|\Z)"
+    r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load|import|from)\b[^;\n]*)?(?:[;,\n]|\Z)"
 )
 # A name that is not the left side of an assignment.
 # A line above or below a table: "where d1 = 0.135 m, a2 = 0.4 m".
@@ -37,7 +38,24 @@ _DEFINITIONS: Final = re.compile(
 )
 _DEFINED: Final = re.compile(r"[^\W\d]\w*(?=\s{0,4}[=:])")
 _READ: Final = re.compile(r"[A-Za-z]\w*(?!\w|[ \t]*=(?!=))")
-_SHOWS: Final = re.compile(r"(?:disp|display|pretty)\(\w{1,60}\)\Z")
+# A last statement that shows a matrix or counts its rows: disp(T), print(T), T, n = size(T, 1).
+_SHOWS: Final = re.compile(
+    r"(?:[;,\n][ \t]*(?:(?:\w{1,12}\.)?(?:disp|display|pretty|print|pprint)"
+    r"\((?:latex\(|simplify\()?[ \t]*\w{1,60}[ \t]*\){1,2}"
+    r"|\w{1,60}[ \t]*=[ \t]*(?:size|length|len|height|rows)\([\w, \t]{1,60}\)"
+    r"|(?:TableForm|MatrixForm|Print)\[\w{1,60}\]|\w{1,60} ?// ?(?:TableForm|MatrixForm))"
+    r"|[;\n][ \t]*[A-Za-z]\w{0,60})\Z"
+)
+_MOST_SHOWN: Final = 4
+# The shorthand of a cosine or sine: c12 = cos(q1 + q2), s_1 = \\sin\\theta_1, c_i = cos θ_i.
+_ANGLE: Final = r"\\?(?:theta|th|θ|q|t)_?\{?([\d₀-₉ijk])\}?"
+_SHORTHAND: Final = re.compile(
+    r"\$?([cs])_?\{?(\d{1,6}|[ijk]{1,3})\}?\s{0,4}=\s{0,4}\\?(?:\w{1,6}\.)?(cos|sin)\s{0,2}"
+    rf"(?:\(\s?({_ANGLE}(?:\s?\+\s?{_ANGLE}){{0,5}})\s?\)|({_ANGLE})(?!\s?[\w+*/-]))\$?"
+)
+_AROUND_SHORTHANDS: Final = re.compile(
+    r"[\s,;:.]*(?:(?:where|with|using|wobei|mit|donde|con|où|avec|其中|and|und|y|et|etc)[\s,;:.]*){0,9}"
+)
 _TAIL: Final = " \t\r\n;,"
 _MOST_NAMES: Final = 8
 
@@ -58,7 +76,7 @@ class GivenValue:
     @property
     def is_itself(self) -> bool:
         """True if the statement only declares the letter as a symbol: ``q1 = sym('q1')``."""
-        return self.value[:3] == "sym" and self.value[5:-2] == self.name
+        return self.value.startswith((f"sym('{self.name}'", f'sym("{self.name}"'))
 
 
 def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
@@ -71,7 +89,7 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
     shown = _without_display(plain)
     given, at = _given_values(shown)
     rest = shown.cut(at, len(shown.text))
-    if (shown is plain and not given) or not begins_as_matrix(rest.text):
+    if (shown is plain and not at) or not begins_as_matrix(rest.text):
         return source, ()
     return rest, given_numbers_note(given, set(_READ.findall(rest.text)))
 
@@ -82,21 +100,28 @@ def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...
     Any other text is returned unchanged.
     """
     lines = [line for line in source.lines() if line.text.strip()]
-    is_definition = [_DEFINITIONS.fullmatch(line.text) is not None for line in lines]
+    numbers = [_DEFINITIONS.fullmatch(line.text) is not None for line in lines]
+    is_definition = [
+        given or _defines_shorthands(line.text) for given, line in zip(numbers, lines, strict=True)
+    ]
     rows = [line for line, defines in zip(lines, is_definition, strict=True) if not defines]
-    if len(rows) < 2 or len(rows) == len(lines) or any("=" in row.text for row in rows):
+    if len(rows) < 2 or len(rows) == len(lines):
         return source, ()
     first = is_definition.index(False)
     if any(is_definition[first : first + len(rows)]):
         return source, ()
-    around = [line for line, defines in zip(lines, is_definition, strict=True) if defines]
+    start, end = source.starts.index(rows[0].starts[0]), source.starts.index(rows[-1].starts[-1])
+    if not any(numbers):
+        return source.cut(start, end + 1), ()
+    if any("=" in row.text for row in rows):
+        return source, ()
+    around = [line for line, given in zip(lines, numbers, strict=True) if given]
     names = [name for line in around for name in _DEFINED.findall(line.text)]
     message = say(
         "The numbers of {letters} were not used. The letters were read as the exercise's symbols.",
         letters=", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else ""),
     )
     note = Note("given_numbers", message, around[0].whole)
-    start, end = source.starts.index(rows[0].starts[0]), source.starts.index(rows[-1].starts[-1])
     return source.cut(start, end + 1), (note,)
 
 
@@ -107,7 +132,8 @@ def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Not
     is not a plain number.
     """
     for each in given:
-        if each.name in read and not each.is_number:
+        is_known = each.is_number or not _without_shorthands(f"{each.name} = {each.value}")
+        if each.name in read and not is_known:
             raise GridError(
                 "given_value",
                 say(
@@ -151,7 +177,28 @@ def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
 
 
 def _without_display(source: SourceText) -> SourceText:
-    """Return the text without a last statement that only shows the matrix: ``disp(DH)``."""
-    stripped = source.strip(_TAIL)
-    shown = _SHOWS.search(stripped.text, max(0, len(stripped.text) - 72))
-    return stripped.cut(0, shown.start()) if shown else source
+    """Return the text without last statements that only show the matrix: ``disp(DH)``."""
+    for _ in range(_MOST_SHOWN):
+        stripped = source.strip(_TAIL)
+        shown = _SHOWS.search(stripped.text, max(0, len(stripped.text) - 160))
+        if shown is None:
+            break
+        source = stripped.cut(0, shown.start())
+    return source
+
+
+def _without_shorthands(line: str) -> str:
+    """Return the text without definitions of shorthands such as ``c12 = cos(q1 + q2)``."""
+
+    def rest(found: re.Match[str]) -> str:
+        angles = unicodedata.normalize("NFKC", found[4] or found[7])
+        is_right = found[3].startswith(found[1]) and "".join(re.findall(_ANGLE, angles)) == found[2]
+        return "" if is_right else found[0]
+
+    return _SHORTHAND.sub(rest, line)
+
+
+def _defines_shorthands(line: str) -> bool:
+    """True if a line says only what shorthands mean: where c1 = cos(q1) and s1 = sin(q1)."""
+    rest = _without_shorthands(line)
+    return rest != line and _AROUND_SHORTHANDS.fullmatch(rest) is not None

@@ -38,12 +38,16 @@ _COLUMNS: Final = {
 _PARAMETERS: Final = frozenset(_COLUMNS.values())
 # The beginning of a list with the name of a column, in a statement of its own.
 _LIST: Final = re.compile(
-    r"(?:^|(?<=;))[ \t]{0,8}(alpha|al|a|d|theta|th|q|α|θ)[ \t]{0,8}=[ \t]{0,8}"
-    r"(?=(?:(?:np\.|sp\.|numpy\.)?\w{1,12}\()?[\[(])",
+    r"(?:^|(?<=;))[ \t]{0,8}(?:[A-Za-z]\w{0,20}\.)?(alpha|al|a|d|theta|th|q|α|θ)[ \t]{0,8}="
+    r"[ \t]{0,8}(?=(?:(?:np\.|sp\.|numpy\.)?\w{1,12}\()?[\[(])",
     re.MULTILINE,
 )
-_HARMLESS: Final = re.compile(r"(?:syms|import|from|clc|clear|close|format|pkg)\b")
+_HARMLESS: Final = re.compile(
+    r"(?:syms|import|from|clc|clear|close|format|pkg|class|def)\b"
+    r"|\w+\s*=\s*(?:table|length|len|numel|size)\([\w, ]+\)\Z"
+)
 _FRAME: Final = "DataFrame"
+_TITLES: Final = frozenset({"robot", "name", "title", "model"})
 _DASH: Final = re.compile(r"-[ \t]{1,8}(?=\{)")
 _OPENS_ITEMS: Final = re.compile(r"\{|dict\(")
 
@@ -58,7 +62,7 @@ def describes_columns(text: str) -> bool:
     """True if a text seems to contain a dictionary."""
     # LaTeX has braces and colons, too.
     names = {_COLUMNS[found[1]] for found in islice(_LIST.finditer(text), GRID_LIMITS.columns)}
-    if len(names) == len(_PARAMETERS):
+    if len(names) == len(_PARAMETERS) or "VariableNames" in text:
         return True
     return (
         (":" in text or "dict(" in text)
@@ -80,6 +84,8 @@ def read_columns(source: SourceText) -> RobotTable | None:
     for statement in found_statements:
         if rows := _row_items(statement):
             return _by_row(rows, source)
+        if columns := _table_call(statement):
+            return _by_column(*columns, source)
         found = _items(statement)
         if not found:
             continue
@@ -120,6 +126,20 @@ def _value(statement: SourceText) -> SourceText:
     return value
 
 
+def _table_call(statement: SourceText) -> tuple[list[_Item], list[list[SourceText]]] | None:
+    """Return the columns of MATLAB's ``table(a, …, 'VariableNames', {'a', …})``, or None."""
+    call = split_call(_value(statement))
+    given = arguments(call[1]) if call and call[0] == "table" else []
+    if len(given) < 3 or given[-2].text.strip("'\"") != "VariableNames":
+        return None
+    *values, _, names = given
+    keys = [unquoted(each) for each in arguments(names.cut(1, len(names.text) - 1))]
+    columns = [column for value in values if (column := _column(value))]
+    if len(columns) != len(values) or len(keys) != len(values):
+        return None
+    return [*map(_Item, keys, values)], columns
+
+
 def _keywords(inside: SourceText) -> list[_Item]:
     """Return the items of ``dict(a=l1, d=0)``; [] if an argument has no name."""
     items = []
@@ -136,8 +156,8 @@ def _row_items(statement: SourceText) -> list[list[_Item]]:
     """Return the items of each dictionary in a list of dictionaries; [] for any other text."""
     value = _value(statement)
     if value.text.startswith("{"):
-        # JSON may name the list: {"table": [{…}, {…}]}.
-        items = _items(value)
+        # JSON may name the list and the robot: {"robot": "RR", "table": [{…}, {…}]}.
+        items = [item for item in _items(value) if item.key.text not in _TITLES]
         if len(items) != 1:
             return []
         value = items[0].value

@@ -14,18 +14,22 @@ from service.translations import say
 MAKERS: Final = frozenset(
     {"array", "asarray", "mat", "matrix", "Matrix", "ImmutableMatrix", "MutableDenseMatrix"}
     | {"ImmutableDenseMatrix", "Array", "list", "tuple", "sym", "simplify", "trigsimp", "expand"}
-    | {"trigreduce", "ratsimp"}
+    | {"trigreduce", "ratsimp", "SE3"}
 )
 # Imports, and declarations of symbols.
 _STATEMENT: Final = (
     r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format|pkg|load|with)\b.*"
-    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*)"
+    r"|def \w{1,40}\([^()\n]{0,100}\)[^()\n:]{0,40}:[ \t]*"
+    r"|(?:\w{1,12}\.)?(?:print|pprint|disp|display)\([^()\n]{0,100}\)[ \t;]*"
+    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:(?:dynamic)?symbols|Symbol|var|sym)"
+    r"\([^()\[\]{}]{0,200}\)[ \t;]*)"
 )
 _HARMLESS: Final = re.compile(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
 _HARMLESS_LINE: Final = re.compile(rf"^{_STATEMENT}$", re.MULTILINE)
 # The left sides of an equation or assignment: T = A1*A2 = …, A1(q1) := …, A1 : …
 _NAMES: Final = re.compile(
-    r"\s*(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
+    r"\s*(?:return\s|(?:const )?std::vector<[\w:<>, ]{1,60}>\s)?"
+    r"(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
     r"(?::=?|=)(?!=)\s*){0,4}"
     r"(?:\(sym \d+ ?[x×] ?\d+ matrix\)\s*)?"
 )

@@ -11,14 +11,17 @@ from typing import Final
 
 from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError
-from service.grids.cutting.source_text import SourceText
+from service.grids.cutting.source_text import SourceText, joined
 from service.translations import say
 
+_QUOTED: Final = re.compile(r"^[ \t]{0,3}>(?!>)(?=[ \t|]) ?", re.MULTILINE)
 _FENCE: Final = re.compile(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
 _BARS: Final = "|│┃║"
 # The separators of rows; the first that at least two lines have is the one of the table.
 _SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
-_PROGRAM: Final = re.compile(r"[\[■]|(?<!\w)(?:dict|np|sp)(?!\w)")
+# A bracket that is not the unit in a header.
+_PROGRAM: Final = re.compile(r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|(?<!\w)(?:dict|np|sp)(?!\w)")
+_ENVIRONMENT: Final = re.compile(r"\\(?:begin|end) ?\{|\\[\[\]]|\$\$")
 _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
 # A line of one or two words, which may be short: "DH", "% DH", "End".
@@ -27,6 +30,10 @@ _FEW_WORDS: Final = re.compile(r"[%#*\s]*(?!pi\b)[^\W\d_]{2,}(?: [^\W\d_]+)?\s?[
 _SEVERAL: Final = re.compile(r"[\s,;\[\]]")
 # Signs of a formula, a row or a program.
 _SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
+# A name in a sentence of Markdown or LaTeX, a reference, or an escaped star.
+_INLINE: Final = re.compile(
+    r"\$[^$=\n]{1,60}\$|\\\([^=\n]{1,60}?\\\)|~?\\(?:eq)?ref\{[^{}]{0,40}\}|\\(?=[*_#])"
+)
 # A legend of the stars that mark joint variables.
 _LEGEND: Final = re.compile(r"\*+\)?\s?[=:]")
 _WORD: Final = re.compile(
@@ -35,14 +42,16 @@ _WORD: Final = re.compile(
 _PARAMETER: Final = re.compile(r"(?<!\w)(?:alpha|alfa|theta|th|[adrqθα])(?=_|[^\w']|\Z)")
 _CONTROL: Final = re.compile(r"[ \t]*(?:for|while|if|elif|else|def|class|try|with|lambda)(?!\w)")
 _TITLE: Final = re.compile(
-    r"[ \t]*(?:#|\*\*|(?:table|tabelle|tab\.|tabla|tableau|tabella|表) ?\d)|.*[:：][ \t]*\Z",
+    r"[ \t]*(?:#|\*\*|(?:table|tabelle|tab\.|tabla|tableau|tabella|表) ?\d)|.*[:：][ \t]*\Z"
+    # A footnote, or a sentence.
+    r"|[ \t]*(?:[*∗†‡]{1,2} ?[^\W\d_]{4}|(?:note|hinweis|nota|remarque)\b)|[^\d=\n]{20,200}\.\Z",
     re.IGNORECASE,
 )
 _FREEDOM: Final = re.compile(
     r"degrees? of freedom|freiheitsgrade?|grados de libertad|degrés? de liberté|自由度",
     re.IGNORECASE,
 )
-_UNIT: Final = re.compile(
+UNIT: Final = re.compile(
     r"(?<![^\W\d_])(?:deg(?:rees?)?|degrés?|grad|grados?|gradi|rad(?:ian\w{0,4})?|bogenma(?:ß|ss)"
     r"|[cmd]m|(?:milli|centi|mili|zenti)?m(?:et(?:er|re|ro)s?|ètres?)|inch(?:es)?)(?![^\W\d_])"
     r"|°|弧度|度|毫米|厘米|米",
@@ -51,7 +60,12 @@ _UNIT: Final = re.compile(
 
 
 def without_fence(source: SourceText) -> SourceText:
-    """Return the text in a code fence, if there is one fence with only sentences around it."""
+    """Return the text in a code fence, if there is one fence with only sentences around it.
+
+    The marks of a quotation, a > before each line, are removed, too.
+    """
+    if all(map(_QUOTED.match, filter(str.strip, source.text.splitlines()))):
+        source = joined(source.split(_QUOTED), source.at)
     if "```" not in source.text and "~~~" not in source.text:
         return source
     lines = source.lines()
@@ -91,6 +105,9 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
 
 def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
     """Return a function that tells whether a line of ``text`` may be a row."""
+    if marks := [i for i, line in enumerate(lines) if _ENVIRONMENT.search(line.text)]:
+        within = {line.text for line in lines[marks[0] : marks[-1] + 1]}
+        return within.__contains__
     if "\\begin" in text or "\\\\" in text:
         return lambda line: "\\" in line or "$" in line
     if not _PROGRAM.search(text):
@@ -127,6 +144,7 @@ def _is_padded(line: str) -> bool:
 
 def _is_prose(line: str) -> bool:
     """True if a line has words, and no signs of a formula or of headers."""
+    line = _INLINE.sub(" ", line)
     if _is_few_words(line):
         return True
     if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:
@@ -140,7 +158,7 @@ def _is_few_words(line: str) -> bool:
 
 def _check_units(line: SourceText) -> None:
     """Raise GridError for a sentence with the name of a unit, which may apply to the table."""
-    if _UNIT.search(_FREEDOM.sub("", line.text)):
+    if UNIT.search(_FREEDOM.sub("", line.text)):
         raise GridError(
             "text_around",
             say(

@@ -25,6 +25,13 @@ def test_no_text_is_misread_and_each_refused_one_has_advice(language: str) -> No
             assert not any(advice.startswith("no_grid") for advice in reading.advice), case.title
 
 
+@pytest.mark.parametrize("file", ["around", "named"])
+def test_each_text_of_a_form_that_is_read_keeps_its_meaning(file: str) -> None:
+    for case in texts(file):
+        reading = reading_of(case)
+        assert reading.outcome == ("read" if case.rows else "advised"), (case.title, reading)
+
+
 @pytest.mark.long
 def test_most_texts_are_read(figure: Callable[[str], None]) -> None:
     found = [case for language in languages() for case in texts(language) if case.rows]
